@@ -61,6 +61,7 @@ from app.api.routes.languages import (
     revisions,
     slates,
     test_sets,
+    triggers,
 )
 from app.api.routes.recognitions import recognition_pages, recognitions
 from app.api.routes.samples import sample_clips, sample_languages
@@ -148,6 +149,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         practice.router,
         slates.router,
         language_settings.router,
+        triggers.router,
         pair_differences.router,
         gestures.router,
         demonstrations.router,

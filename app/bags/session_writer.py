@@ -25,6 +25,7 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Take, TakeMachine, takes_in
 from app.recognition.recording.video import read_frames
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 Progress = Callable[[int, int], None]
 
@@ -90,6 +91,7 @@ def write_session(
     *,
     video: Path | None = None,
     name: str = "",
+    trigger: Trigger = SALUTE,
     progress: Progress | None = None,
 ) -> None:
     """Write keypoints, salute, takes, recognitions and video of a clip to an MCAP file.
@@ -106,6 +108,8 @@ def write_session(
         The clip's video, shown beside; None: none.
     name
         What the clip is called.
+    trigger
+        What begins and ends the takes.
     progress
         ``progress(done, total)`` frames.
 
@@ -131,7 +135,7 @@ def write_session(
             channels[topic] = writer.register_channel(topic, "json", known)
         about = {"clip": name, "program": "osg-studio", "version": __version__}
         writer.add_metadata("session", about | {"time": "seconds of the clip; first frame at 0"})
-        for event in _events(recording, recognitions, video, progress):
+        for event in _events(recording, recognitions, video, trigger, progress):
             stamp = round(event.time * 1e9)
             content = json.dumps(event.content, separators=(",", ":"), allow_nan=False).encode()
             writer.add_message(channels[event.topic], stamp, content, stamp)
@@ -142,13 +146,14 @@ def _events(
     recording: Recording,
     recognitions: Sequence[NamedRecognition],
     video: Path | None,
+    trigger: Trigger,
     progress: Progress | None,
 ) -> Iterator[_Event]:
     """Give all messages in the order of time."""
     sources = [
         _log(recording),
-        _frames(recording, progress),
-        _takes(takes_in(recording)),
+        _frames(recording, trigger, progress),
+        _takes(takes_in(recording, trigger=trigger)),
         _recognition_events(recognitions),
         _labels(recognitions),
     ]
@@ -163,18 +168,18 @@ def _log(recording: Recording) -> Iterator[_Event]:
         yield _Event(0.0, "/log", content | {"name": "osg-studio", "file": "", "line": 0})
 
 
-def _frames(recording: Recording, progress: Progress | None) -> Iterator[_Event]:
-    poses, machine = recording.poses, TakeMachine()
-    for index, (time, score) in enumerate(
-        zip(poses.time.tolist(), recording.salute.tolist(), strict=True)
-    ):
-        machine.update(time, score)
+def _frames(recording: Recording, trigger: Trigger, progress: Progress | None) -> Iterator[_Event]:
+    poses, machine = recording.poses, TakeMachine.of(trigger)
+    begin, end = (each.tolist() for each in trigger.score(poses, recording.salute))
+    for index, time in enumerate(poses.time.tolist()):
+        machine.update(time, begin[index], end[index])
+        score = max(begin[index], end[index])
         stamp = stamp_of(time)
         yield _Event(time, "/keypoints", _keypoints(recording, index, stamp))
         drawn = foxglove_overlay.skeleton(poses.xy[index], poses.landmarks, poses.frame_size, stamp)
         yield _Event(time, "/pose", drawn)
         salute = {"timestamp": stamp, "score": round(score, SCORE_DIGITS)}
-        state = {"held": machine.trigger.held, "state": machine.state.value}
+        state = {"held": machine.held, "state": machine.state.value}
         yield _Event(time, "/salute", salute | state)
         if progress is not None:
             progress(index + 1, len(poses))

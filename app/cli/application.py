@@ -30,6 +30,7 @@ from app.cli.clip_argument import (
     FrameRateOption,
     FrameSizeOption,
     LandmarkOption,
+    TriggerOption,
     clip_and_span,
     define_gesture,
     keypoint_options,
@@ -56,6 +57,7 @@ from app.cli.terminal import (
     show_recognition,
 )
 from app.cli.tokens import tokens_command
+from app.cli.trigger import trigger
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
@@ -65,6 +67,8 @@ from app.recognition.gestures.profile import PROFILES
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.spotting import Spotter
+from app.recognition.triggers.arm_pose import HOLD_SECONDS
+from app.recognition.triggers.trigger import SALUTE
 
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
@@ -81,6 +85,7 @@ models_command = typer.Typer(
 )
 command_line.add_typer(models_command, name="models")
 command_line.add_typer(demonstrations_command, name="demonstrations")
+command_line.command()(trigger)
 command_line.command()(evaluate)
 command_line.command()(extract)
 command_line.command()(check)
@@ -149,7 +154,8 @@ def define(
         list[str],
         typer.Argument(
             metavar="LABEL=CLIP[,CLIP...]...",
-            help="A clip per gesture with a salute at both ends; LABEL=CLIP@START-END without. "
+            help="A clip per gesture with a salute, or the trigger of --trigger, at both ends; "
+            "LABEL=CLIP@START-END without. "
             "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file. Up to five clips "
             "per gesture, best of several divers.",
         ),
@@ -157,6 +163,7 @@ def define(
     name: Annotated[str, typer.Option(help="Name of the language.")],
     output: Annotated[Path, typer.Option(help="Language file to write.")],
     author: Annotated[str, typer.Option(help="Author of the language.")] = "",
+    trigger_of: TriggerOption = None,
     diver: DiverOption = "",
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
@@ -165,12 +172,16 @@ def define(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Create a language from one demonstration clip per gesture, or several."""
+    """Create a language from one demonstration clip per gesture, or several.
+
+    With --trigger it has the trigger of that language file.
+    """
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(water, estimator, hands, keypoints=keypoints)
+    held = SALUTE if trigger_of is None else Language.load(trigger_of).trigger
+    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held)
     given = [parse_demonstrations(text) for text in demonstrations]
     gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
-    language = Language(name=name, gestures=gestures, author=author).calibrated()
+    language = Language(name=name, gestures=gestures, author=author, trigger=held).calibrated()
     language.save(output)
     people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 
@@ -222,7 +233,8 @@ def recognize(
     if expected is not None:
         loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
     recognizer = Recognizer(loaded, profile)
-    spotter = Spotter(recognizer) if without_salutes else None
+    spots = without_salutes or loaded.trigger.spots
+    spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     reading = ClipReading(water, estimator, hands, topic, keypoints)
     if is_folder_of_clips(path):
@@ -237,10 +249,10 @@ def recognize(
         recording, results = recognize_clip(path, span, reading, recognizer, spotter)
         if mcap is not None:
             named = name_recognitions(loaded, expected, results)
-            save_session(mcap, path, topic, recording, named)
+            save_session(mcap, path, topic, recording, named, loaded.trigger)
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results:
-            explain_absence(path, recording, recognizer, without_salutes=without_salutes)
+            explain_absence(path, recording, recognizer, without_salutes=spots)
         recognised = sum(result.label is not None for _, result in results)
     if not recognised:
         raise typer.Exit(NOTHING_RECOGNISED)
@@ -286,6 +298,9 @@ def explain_absence(
         people.print(
             f"{path}: no salute found in {seconds}, so no take; hold the "
             f"salute for at least 0.3 s, or give the range: {path}@START-END"
+            if recognizer.language.trigger == SALUTE
+            else f"{path}: no take {recognizer.language.trigger.words} found in {seconds}; hold "
+            f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
         )
 
 
@@ -317,6 +332,8 @@ def convert(
             f"{', '.join(several)}",
             markup=False,
         )
+    if language.trigger != SALUTE and file_format is not FileFormat.OSG_STUDIO:
+        people.print(f"{target}: {file_format.value} knows no trigger; tell it on the slate")
     if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
     else:

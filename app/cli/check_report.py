@@ -24,6 +24,7 @@ def format_report(report: HealthReport) -> str:
     """Format the report as text with a trailing line break."""
     lines = [
         *_format_head(report),
+        *_format_trigger(report),
         *_format_gestures(report),
         *_format_pairs(report),
         *_format_findings(report),
@@ -42,6 +43,15 @@ def _format_head(report: HealthReport) -> Iterator[str]:
         f"thresholds: {MOST_CONFUSION:.0%} confusion of a pair, {MOST_MISSED:.0%} of a gesture's "
         "takes missed"
     )
+
+
+def _format_trigger(report: HealthReport) -> Iterator[str]:
+    if (trigger := report.trigger) is not None:
+        yield f"takes lie {trigger.words}"
+        yield (
+            f"trigger: missed of {format_rate(trigger.missed)} of other people, set off "
+            f"{trigger.false_per_hour:.0f} times in an hour of moving arms"
+        )
 
 
 def _format_gestures(report: HealthReport) -> Iterator[str]:

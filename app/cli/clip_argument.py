@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -32,6 +32,7 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.spotting import Spotter
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 FrameRateOption = Annotated[
     float | None,
@@ -54,6 +55,16 @@ LandmarkOption = Annotated[
     ),
 ]
 
+
+TriggerOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--trigger",
+        metavar="FILE",
+        help="Language file whose trigger begins and ends the takes of the clips; by default a "
+        "salute. See osg-studio trigger.",
+    ),
+]
 
 DiverOption = Annotated[
     str, typer.Option(metavar="NAME", help="Name of the diver who shows all given clips.")
@@ -102,6 +113,8 @@ class ClipReading:
         Of a dive recording, which one; None: the one that the clip names, or the only one.
     keypoints
         What keypoint files do not tell.
+    trigger
+        What begins and ends their takes.
 
     """
 
@@ -110,6 +123,7 @@ class ClipReading:
     hands: str = MEDIAPIPE_HANDS
     topic: str | None = None
     keypoints: KeypointOptions = field(default_factory=KeypointOptions)
+    trigger: Trigger = SALUTE
 
     def options(self, topic: str | None) -> ReadOptions:
         """Return the same for a clip source; `topic` is the one that the clip names."""
@@ -127,16 +141,19 @@ class ReadClip:
         The landmarks.
     salutes
         Whether its source can show a hand, and so a salute.
+    trigger
+        What begins and ends its takes.
 
     """
 
     recording: Recording
     salutes: bool
+    trigger: Trigger = SALUTE
 
     def takes(self, span: tuple[float, float] | None) -> list[Take]:
-        """Return the range given by hand, or what lies between salutes.
+        """Return the range given by hand, or what lies between salutes or other triggers.
 
-        The whole recording where its source cannot show a salute.
+        The whole recording where its source cannot show a salute, or without a trigger.
 
         Raises
         ------
@@ -146,14 +163,16 @@ class ReadClip:
         """
         if span is not None:
             return [take_by_hand(self.recording, span)]
-        if self.salutes:
-            return list(takes_in(self.recording))
+        if self.trigger.kind == "pose" or (self.trigger.kind == "salute" and self.salutes):
+            return list(takes_in(self.recording, trigger=self.trigger))
         poses = self.recording.poses
         if poses.duration > LONGEST_TAKE:
+            spots = self.trigger.spots
+            lack = "has no trigger that is held" if spots else "without hands has no salutes"
             raise GestureError(
-                f"a recording of {poses.duration:.0f} s without hands has no salutes to cut it at, "
-                f"and a gesture lasts at most {LONGEST_TAKE:g} s; give the range by hand, "
-                f"CLIP@START-END, or find gestures anywhere with --without-salutes"
+                f"a recording of {poses.duration:.0f} s {lack} to cut it at, and a gesture lasts "
+                f"at most {LONGEST_TAKE:g} s; give the range by hand, CLIP@START-END, or find "
+                f"gestures anywhere with --without-salutes"
             )
         return [take_by_hand(self.recording, (float(poses.time[0]), float(poses.time[-1])))]
 
@@ -254,8 +273,9 @@ def demonstration_poses(
     closed = [take for take in takes if take.closed]
     if len(closed) != 1:
         found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
+        trigger = SALUTE if reading is None else reading.trigger
         raise GestureError(
-            f"{clip} holds {found}, a demonstration needs one closed take between two salutes; "
+            f"{clip} holds {found}, a demonstration needs one closed take {trigger.words}; "
             f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
         )
     return closed[0].poses
@@ -296,7 +316,7 @@ def spot_takes(
     poses = recording.poses.between(*span) if span else recording.poses
     return [
         (take_by_hand(recording, (found.start, found.end)), found.recognition)
-        for found in spotter.listen(poses)
+        for found in spotter.for_stream().listen(poses)
     ]
 
 
@@ -349,6 +369,8 @@ def read_clip(
 
     """
     how = reading or ClipReading()
+    if language is not None:
+        how = replace(how, trigger=language.trigger)
     path, named = bag_and_topic(str(clip))
     options = how.options(named)
     source = source_of(path, options.topic)
@@ -356,9 +378,14 @@ def read_clip(
         read = _read_pictures(source, path, options, how, language)
     else:
         read = _read_keypoints(source, path, options, language)
-    for warning in read.recording.warnings:
+    recording = read.recording
+    if how.trigger.kind != "salute":
+        # Nobody salutes, and nobody needs to.
+        kept = tuple(each for each in recording.warnings if "salute" not in each)
+        recording = replace(recording, warnings=kept)
+    for warning in recording.warnings:
         people.print(f"{clip}: {warning}", markup=False)
-    return read
+    return replace(read, recording=recording, trigger=how.trigger)
 
 
 def _read_keypoints(

@@ -67,7 +67,7 @@ def add_demonstrations(
     for shown in given:
         loaded.gesture(shown[0].label)  # an unknown label is an error before any clip is read
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(water, estimator, hands, keypoints=keypoints)
+    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=loaded.trigger)
     for shown in given:
         gesture = loaded.gesture(shown[0].label)
         changed = define_gesture(shown, reading, diver=diver, gesture=gesture)

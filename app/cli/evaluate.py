@@ -15,6 +15,7 @@ from app.cli.clip_argument import (
     FrameRateOption,
     FrameSizeOption,
     LandmarkOption,
+    TriggerOption,
     keypoint_options,
 )
 from app.cli.terminal import people, progress_bar
@@ -26,6 +27,7 @@ from app.evaluation.one_shot import one_shot, recognize_takes
 from app.evaluation.protocols import recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.triggers.trigger import SALUTE
 
 DEFAULT_VARIANTS = 50
 """Variants of each gesture; the paper shows each of its eight gestures as often."""
@@ -81,6 +83,7 @@ def evaluate(
         Path | None,
         typer.Option(help="With a folder: recognise the clips by this language."),
     ] = None,
+    trigger: TriggerOption = None,
     layout: Annotated[
         str | None,
         typer.Option(help=f"Position of label and person in a path, as in {LAYOUTS[-1]}."),
@@ -102,12 +105,16 @@ def evaluate(
 ) -> None:
     """Measure how often gestures are recognised correctly, with interval and confusion matrix."""
     profiles = profile or list(PROFILES)
+    held = trigger or language
     problems: dict[str, str] = {}
     if source.is_dir():
         keypoints = keypoint_options(frame_rate, frame_size, landmark)
         with progress_bar("clips") as advance:
             collection = collect_takes(
-                labelled_files(source, layout), keypoints=keypoints, progress=advance
+                labelled_files(source, layout),
+                keypoints=keypoints,
+                trigger=SALUTE if held is None else Language.load(held).trigger,
+                progress=advance,
             )
         problems = collection.problems
         results = list(_evaluate_takes(collection, profiles, language, problems))

@@ -13,6 +13,7 @@ from app.bags.session_writer import NamedRecognition, write_session
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import ReadOptions, source_of
 from app.recognition import Language, Recognition, Recording, Take
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 
 def save_session(
@@ -21,6 +22,7 @@ def save_session(
     topic: str | None,
     recording: Recording,
     recognitions: Sequence[NamedRecognition],
+    trigger: Trigger = SALUTE,
 ) -> None:
     """Write a clip and its recognitions to `target`, completely or not at all.
 
@@ -32,6 +34,8 @@ def save_session(
         Source of `recording`, as for `app.cli.clip_argument.read_clip`.
     recording, recognitions
         Landmarks of the clip, and its recognised takes.
+    trigger
+        What begins and ends them.
 
     Raises
     ------
@@ -47,7 +51,13 @@ def save_session(
         video = source.playable_video(path, options, Path(made, "video"))
         with progress_bar(target.name) as advance:
             write_session(
-                partial, recording, recognitions, video=video, name=path.name, progress=advance
+                partial,
+                recording,
+                recognitions,
+                video=video,
+                name=path.name,
+                trigger=trigger,
+                progress=advance,
             )
         partial.replace(target)
     people.print(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove", markup=False)

@@ -13,6 +13,7 @@ from app.evaluation.one_shot import LabelledTake
 from app.keypoint_files import KeypointOptions
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +38,7 @@ def collect_takes(
     *,
     keep_in: Path | None = None,
     keypoints: KeypointOptions | None = None,
+    trigger: Trigger = SALUTE,
     progress: Progress | None = None,
 ) -> Collection:
     """Read all files and collect their takes; unreadable files become problems.
@@ -50,6 +52,8 @@ def collect_takes(
         clip may be renamed or moved.
     keypoints
         Values that keypoint files do not contain.
+    trigger
+        What begins and ends a take.
     progress
         Called after every extracted frame; an exception in it stops the extraction.
 
@@ -64,7 +68,7 @@ def collect_takes(
     with closing(ClipRecorder(keep_in, keypoints=keypoints, progress=progress)) as recorder:
         for file in files:
             try:
-                takes += _takes(file, recorder.record(file.path))
+                takes += _takes(file, recorder.record(file.path), trigger)
             except ModelError:
                 raise
             except (OsgError, OSError) as error:
@@ -72,9 +76,9 @@ def collect_takes(
     return Collection(tuple(takes), problems)
 
 
-def _takes(file: LabelledFile, recording: Recording) -> list[LabelledTake]:
-    """Return the takes between salutes, or the whole recording where there are none."""
-    found = [take.poses for take in takes_in(recording)] or [recording.poses]
+def _takes(file: LabelledFile, recording: Recording, trigger: Trigger) -> list[LabelledTake]:
+    """Return the takes between triggers, or the whole recording where there are none."""
+    found = [take.poses for take in takes_in(recording, trigger=trigger)] or [recording.poses]
     sources = [f"{file.path}, take {number}" for number in range(1, len(found) + 1)]
     if len(found) == 1:
         sources = [str(file.path)]

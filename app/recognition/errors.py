@@ -62,6 +62,10 @@ class GestureError(OsgError):
     """Raised when a demonstration cannot become a gesture, for instance because nothing moves."""
 
 
+class TriggerError(OsgError):
+    """Raised when a pose of the arms cannot be a trigger, for instance because it is not held."""
+
+
 class LanguageError(OsgError):
     """Raised when a language file or a language is invalid.
 

@@ -25,6 +25,7 @@ from app.recognition.preprocessing.outliers import measure_body_unit
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recognizer import Recognizer
 from app.recognition.recording.trimming import GRID_STEP, Motion, Span, measure_motion, split_pieces
+from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 
 CONFIDENT = 0.8
 """Least confidence of a spotted gesture; below, another gesture is about as near."""
@@ -64,6 +65,9 @@ LONGEST_MEMORY = 20.0
 RANK_PER_SECOND = 2.0
 """Gain in rank, in log-odds, per second of a stretch's duration."""
 
+LONGEST_BETWEEN = 60.0
+"""Most seconds from a trigger gesture to the end of the one that closes, as of takes."""
+
 BEAT = 1e-6
 """Tolerance in seconds when times are compared."""
 
@@ -99,15 +103,52 @@ class Spotted:
         return self.start < end - SLOW_EDGE and start < self.end - SLOW_EDGE
 
 
+class TriggerGate:
+    """Lets through the spotted gestures that lie between two trigger gestures.
+
+    Parameters
+    ----------
+    trigger
+        Of kind ``gesture``; any other lets all through.
+
+    """
+
+    def __init__(self, trigger: Trigger) -> None:
+        self._trigger = trigger
+        self._opened: float | None = None  # when the gesture that begins ended
+        self._between: list[Spotted] = []
+
+    def admit(self, found: tuple[Spotted, ...]) -> tuple[Spotted, ...]:
+        """Process gestures as they are spotted; return those that a stop gesture confirms now."""
+        if self._trigger.kind != "gesture":
+            return found
+        confirmed: list[Spotted] = []
+        for each in found:
+            label = each.recognition.label
+            if self._opened is not None and each.end - self._opened > LONGEST_BETWEEN:
+                self._opened = None
+            if self._opened is not None and label == self._trigger.stop_label:
+                confirmed += self._between
+                self._opened, self._between = None, []
+            elif label == self._trigger.start_label:
+                self._opened, self._between = each.end, []
+            elif self._opened is not None:
+                self._between.append(each)
+        return tuple(confirmed)
+
+
 class Spotter:
     """Spots gestures in a stream of poses, with bounded memory and bounded work per frame.
 
     Parameters
     ----------
     recognizer
-        Of profile ``full``.
+        Of profile ``full``. Where the trigger of its language is a gesture, only what lies between
+        two trigger gestures is reported, once the second is seen.
     confident
         Least confidence of what is reported.
+    triggered
+        False: the language's trigger does not matter.
 
     Raises
     ------
@@ -117,7 +158,9 @@ class Spotter:
 
     """
 
-    def __init__(self, recognizer: Recognizer, *, confident: float = CONFIDENT) -> None:
+    def __init__(
+        self, recognizer: Recognizer, *, confident: float = CONFIDENT, triggered: bool = True
+    ) -> None:
         if not PROFILES[recognizer.profile].rejects:
             raise OsgError(
                 f"profile {recognizer.profile!r} rejects nothing, so every movement would be a "
@@ -132,6 +175,8 @@ class Spotter:
             )
         self._recognizer = recognizer
         self._confident = confident
+        self._triggered = triggered
+        self._gate = TriggerGate(recognizer.language.trigger if triggered else NO_TRIGGER)
         single = [each for gesture in gestures for each in gesture.single_demonstrations()]
         mirrored = [
             [other_side(name) for name in gesture.salient]
@@ -194,7 +239,7 @@ class Spotter:
             self._looked = now
             self._look(now)
         self._recognize_one()
-        return self._take_final(now)
+        return self._gate.admit(self._take_final(now))
 
     def listen(self, poses: PoseSequence) -> tuple[Spotted, ...]:
         """Process a whole pose sequence frame by frame, as a robot does, and end the stream."""
@@ -202,6 +247,10 @@ class Spotter:
         for moment in poses.time.tolist():
             found += self.feed(poses.between(moment, moment))
         return (*found, *self.finish())
+
+    def for_stream(self) -> Spotter:
+        """Return a spotter of the same gestures for another stream, whose time begins anew."""
+        return Spotter(self._recognizer, confident=self._confident, triggered=self._triggered)
 
     def for_language(self, recognizer: Recognizer) -> Spotter:
         """Return a spotter of another language that continues this stream.
@@ -215,7 +264,7 @@ class Spotter:
             As for a new one.
 
         """
-        other = Spotter(recognizer, confident=self._confident)
+        other = Spotter(recognizer, confident=self._confident, triggered=self._triggered)
         other._seen.extend(self._seen)
         other._looked, other._moving = self._looked, self._moving
         # Only stretches that end from now on are queued: old movements are not reported again.
@@ -228,7 +277,7 @@ class Spotter:
             self._look(np.inf)
         while self._waiting:
             self._recognize_one()
-        return self._take_final(np.inf)
+        return self._gate.admit(self._take_final(np.inf))
 
     def _look(self, now: float) -> None:
         """Find strokes in the kept frames, and queue the stretches that end with a new one."""

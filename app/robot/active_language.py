@@ -10,6 +10,7 @@ from typing_extensions import Self
 
 from app.recognition import Language, Recognizer
 from app.recognition.language.file import name_file, read_content, seal
+from app.recognition.triggers.trigger import Trigger
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +39,11 @@ class ActiveLanguage:
     def revision(self) -> int:
         """The language's revision."""
         return self.recognizer.language.revision
+
+    @property
+    def trigger(self) -> Trigger:
+        """What begins and ends a take."""
+        return self.recognizer.language.trigger
 
     @classmethod
     def load(cls, path: str | Path, profile: str | None = None) -> Self:

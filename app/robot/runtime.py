@@ -9,7 +9,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, correct_colours
-from app.recognition.language.requirements import require_landmarks
+from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
@@ -94,9 +94,7 @@ class Runtime:
         changes: LanguageChanges = keep_language,
         observer: Observer | None = None,
     ) -> None:
-        require_landmarks(
-            listener.language.recognizer.language, list_landmarks(estimator), THE_ESTIMATOR
-        )
+        self._require(listener.language, estimator)
         self._source = source
         self._estimator = estimator
         self._listener = listener
@@ -179,8 +177,7 @@ class Runtime:
         change = self._changes()
         if isinstance(change, ActiveLanguage):
             try:
-                language = change.recognizer.language
-                require_landmarks(language, list_landmarks(self._estimator), THE_ESTIMATOR)
+                self._require(change, self._estimator)
                 self._listener.set_language(change)
             except OsgError as error:
                 change = error
@@ -189,6 +186,13 @@ class Runtime:
         if isinstance(change, OsgError):
             kept = self._listener.language
             yield LanguageRefused(self._time, str(change), kept.sha256, kept.revision)
+
+    @staticmethod
+    def _require(active: ActiveLanguage, estimator: PoseEstimator) -> None:
+        """Refuse a language that the estimator's landmarks do not suffice for."""
+        language, landmarks = active.recognizer.language, list_landmarks(estimator)
+        require_landmarks(language, landmarks, THE_ESTIMATOR)
+        require_trigger(language, landmarks, THE_ESTIMATOR)
 
 
 class DropCounter:

@@ -54,6 +54,7 @@ MEANINGS = {
     "too_many_guesses": "too many wrong tokens came from this address",
     "topic_needed": "the recording has several usable topics; choose one first",
     "topic_unusable": "a topic was given for a file that is no bag",
+    "trigger_unusable": "the range holds no pose of the arms that can begin or end takes",
     "tus_version": "the upload uses another version of tus than 1.0.0",
     "unsupported_media_type": "the file is neither a video, a bag nor a known keypoint file",
     "upload_broken_off": "the connection ended before the upload was complete",

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, astuple
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
+import numpy.typing as npt
 
-from languages.render.cast import CLIPS, DIVERS, SIGN_CLIPS, TESTS_OF_SIGNS, WATERS, Clip
+from languages.render.body import Array
+from languages.render.cast import (
+    CLIPS,
+    DIVERS,
+    POSED_CLIPS,
+    SIGN_CLIPS,
+    TESTS_OF_SIGNS,
+    WATERS,
+    Clip,
+)
 from languages.render.encode import encode_within_limit
 from languages.render.gestures import DRAWINGS
 from languages.render.performance import Performance, move_about, perform, perform_sign
@@ -57,9 +69,13 @@ def render(clip: Clip) -> tuple[bytes, dict[str, Any]]:
         zip(performance.body, performance.right, performance.left, strict=True)
     ):
         joints = pose_body(scene.body, motion, right, left)
-        frames.append(scene.render(joints, number / RATE))
+        frame = scene.render(joints, number / RATE)
         for side, points in hands.items():
-            points.append(scene.pixels(hand_points(scene.body, joints, side)).round(2).tolist())
+            place = scene.pixels(hand_points(scene.body, joints, side))
+            points.append(place.round(2).tolist())
+            if clip.mittens:
+                cover_hand(frame, place, DIVERS[clip.diver].suit.panel)
+        frames.append(frame)
     truth = {
         "rate": RATE,
         "phases": [asdict(phase) for phase in performance.phases],
@@ -67,6 +83,15 @@ def render(clip: Clip) -> tuple[bytes, dict[str, Any]]:
         "left_hand": hands["L"],
     }
     return encode_within_limit(frames, RATE), truth
+
+
+def cover_hand(frame: npt.NDArray[np.uint8], points: Array, colour: Sequence[float]) -> None:
+    """Paint a mitten over a hand of ``(21, 2)`` pixels, in place, so that no finger can be seen."""
+    hull = cv2.convexHull(np.round(points).astype(np.int32))
+    width = max(3, round(0.12 * float(np.ptp(points, axis=0).max())))
+    dark = tuple(channel / 2 for channel in colour)
+    cv2.polylines(frame, [hull], True, dark, width, cv2.LINE_AA)
+    cv2.fillPoly(frame, [hull], dark, cv2.LINE_AA)
 
 
 def write_phases(path: Path) -> None:
@@ -93,7 +118,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the clips")
     parser.add_argument("--truth", type=Path, help="folder for where the hands truly are, as JSON")
     arguments = parser.parse_args()
-    known = {clip.name: clip for clip in (*CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS)}
+    known = {clip.name: clip for clip in (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS)}
     if unknown := set(arguments.names) - known.keys():
         parser.error(
             f"no clip is called {', '.join(sorted(unknown))}; see languages/render/cast.py"

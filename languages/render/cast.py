@@ -125,6 +125,8 @@ class Clip:
         Of everything left to chance.
     is_sign
         Whether the gesture is a divers' sign.
+    mittens
+        Whether mittens hide the fingers.
 
     """
 
@@ -136,6 +138,7 @@ class Clip:
     manner: Manner
     seed: int
     is_sign: bool = False
+    mittens: bool = False
 
 
 UPPER_BODY = View(1.72, aim=(0, -0.06))
@@ -341,3 +344,18 @@ SIGN_CLIPS = tuple(_sign(label, number) for number, label in enumerate(SIGNS))
 
 TESTS_OF_SIGNS = tuple(_sign_test(label, number) for number, label in enumerate(SIGNS))
 """Each sign by another diver. What is found in these clips is kept for the tests, not the clips."""
+
+
+def _posed(name: str, gesture: str, who: str, where: str, view: View, closing: str) -> Clip:
+    manner = Manner(tempo=1.2, wobble=0.01, opening="belly", closing=closing)
+    return Clip(name, gesture, who, where, view, manner, len(name), mittens=True)
+
+
+POSED_CLIPS = (
+    _posed("circle-by-belly", "circle", "instructor", "lagoon", UPPER_BODY, "belly"),
+    _posed("circle-by-belly-2", "circle", "biologist", "reef", View(1.7, yaw=8), "belly"),
+    _posed("wedge-by-belly", "wedge", "surveyor", "open sea", View(1.8, yaw=-6), "belly"),
+    _posed("wedge-by-belly-and-head", "wedge", "instructor", "lagoon", UPPER_BODY, "head"),
+)
+"""Divers in mittens who hold the left forearm across the belly instead of a salute, for the tests
+of triggers; in the last one, the left hand on the head ends the take."""

@@ -22,6 +22,17 @@ REST = ArmTarget(np.array([-0.15, -0.09, -0.46]), DOWN, TO_THIGH, HAND_SHAPES["r
 """The arm hangs beside the body."""
 SALUTE = ArmTarget(np.array([-0.19, -0.28, 0.10]), UP, TO_CAMERA, HAND_SHAPES["salute"])
 """Beside the face, palm to the camera, clear of the head and of the body."""
+ON_THE_HEAD = ArmTarget(
+    np.array([0.13, -0.05, 0.36]), np.array([0.9, 0.0, 0.25]), DOWN, HAND_SHAPES["flat"]
+)
+"""The hand lies on the head, the elbow points outwards."""
+ON_THE_BELLY = ArmTarget(
+    np.array([0.14, -0.24, -0.25]), np.array([0.95, 0.0, 0.2]), TO_FACE, HAND_SHAPES["flat"]
+)
+"""The forearm lies across the belly, palm to the body."""
+
+OPENINGS = {"salute": (SALUTE, REST), "head": (REST, ON_THE_HEAD), "belly": (REST, ON_THE_BELLY)}
+"""Right and left arm before and after the gesture, by name."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +59,8 @@ class Manner:
         Metres the body drifts to either side.
     hold
         Seconds each salute is held.
+    opening, closing
+        What is held before and after the gesture, names in `OPENINGS`.
 
     """
 
@@ -60,6 +73,8 @@ class Manner:
     lean: float = 0.0
     drift: float = 0.015
     hold: float = 0.9
+    opening: str = "salute"
+    closing: str = "salute"
 
 
 @dataclass(frozen=True)
@@ -161,14 +176,15 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
     timeline = Timeline(rate)
     still = [REST] * timeline.frames(0.4)
     timeline.add("rest", still, still)
-    timeline.move("raise", 0.75 / manner.tempo, SALUTE, REST)
+    opening, closing = OPENINGS[manner.opening], OPENINGS[manner.closing]
+    timeline.move("raise", 0.75 / manner.tempo, *opening)
     timeline.hold("salute", manner.hold)
     left = _left_of(first, drawing)
-    timeline.move("transit", _transit_time(SALUTE, first, manner), first, left)
+    timeline.move("transit", _transit_time(opening[0], first, manner), first, left)
     timeline.hold("pause", PAUSE)
     _draw(timeline, strokes, drawing, manner)
     timeline.hold("pause", PAUSE)
-    timeline.move("transit", _transit_time(SALUTE, last, manner), SALUTE, REST)
+    timeline.move("transit", _transit_time(closing[0], last, manner), *closing)
     timeline.hold("salute", manner.hold)
     timeline.move("lower", 0.75 / manner.tempo, REST, REST)
     timeline.hold("rest", 0.3)

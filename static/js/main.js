@@ -19,6 +19,7 @@ import { followViews, go, loadViews } from "./core/views.js";
 import { bindExport, drawExportButton } from "./export/export-dialog.js";
 import { bindPicker, drawPicker } from "./languages/language-picker.js";
 import { reloadLanguages, reloadOneLanguage } from "./languages/language-store.js";
+import { drawTrigger, triggerKey } from "./languages/language-trigger.js";
 import { drawTuning } from "./languages/language-tuning.js";
 import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
@@ -78,6 +79,7 @@ function drawEverything() {
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
+  follow(["gestures"], drawTrigger);
   follow(["gestures", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
@@ -96,9 +98,9 @@ function drawEverything() {
 /** What is loaded when something else is selected. */
 function loadWithSelection() {
   let ready = "";
-  follow(["clips", "clip"], () => {
+  follow(["clips", "clip", "gestures"], () => {
     const clip = selectedClip();
-    const now = clip ? `${clip.id} ${clip.status}` : "";
+    const now = clip ? `${clip.id} ${clip.status} ${triggerKey(state)}` : "";
     if (now === ready) return;
     ready = now;
     loadTakes();

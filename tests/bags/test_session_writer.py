@@ -16,6 +16,7 @@ from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
 from tests.api.recordings import recording_of
 from tests.bags.sessions import checked
+from tests.posed import BY_BELLY, posed_recording
 from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.slow
@@ -128,3 +129,12 @@ def test_without_what_writes_mcap_the_command_to_install_it_is_told(
     with pytest.raises(BagError, match="pip install"):
         write_session(tmp_path / "session.mcap", recording)
     assert not (tmp_path / "session.mcap").exists()
+
+
+def test_takes_lie_between_the_triggers_of_the_language(tmp_path: Path) -> None:
+    file = tmp_path / "session.mcap"
+    write_session(file, posed_recording("circle-by-belly"), trigger=BY_BELLY)
+    found = checked(file)
+    (take,) = takes_in(posed_recording("circle-by-belly"), trigger=BY_BELLY)
+    assert [content["start"] for _, content in found["/takes"]] == pytest.approx([take.start])
+    assert max(content["score"] for _, content in found["/salute"]) > 0.9

@@ -11,6 +11,7 @@ from app.recognition.health.check import check_health
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio
+from tests.posed import posed_language
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
@@ -88,3 +89,10 @@ def test_columns_are_aligned_and_fit_a_terminal() -> None:
     starts = {row.index("right_wrist") for row in lines[head + 1 : head + 3]}
     assert starts == {lines[head].index("depends on")}
     assert max(map(len, lines[: head + 3])) <= 100
+
+
+def test_the_rates_of_an_arm_trigger_are_told_above_the_gestures() -> None:
+    lines = format_report(check_health(posed_language(), takes=2)).splitlines()
+    assert "takes lie between two poses of the arms (left hand before the body)" in lines
+    (rates,) = (line for line in lines if line.startswith("trigger: missed of 0.0% (0.0%-"))
+    assert len(rates) <= 100

@@ -1,6 +1,7 @@
 """Spotting in a stream: each gesture once, soon after it ended, and nothing else."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.spotting import Spotted, Spotter
+from app.recognition.spotting import Spotted, Spotter, TriggerGate
+from app.recognition.triggers.trigger import Trigger
 from tests.recognition.motions import (
     Movement,
     circle,
@@ -72,6 +74,39 @@ def test_every_gesture_is_reported_once_where_it_was(
     assert [each.recognition.label for each in found] == labels
     for each, (start, end) in zip(found, spans, strict=True):
         assert (each.start, each.end) == pytest.approx((start, end), abs=0.35)
+
+
+@pytest.mark.parametrize(
+    ("start", "stop", "heard"),
+    [
+        ("zigzag", "", ["square", "circle"]),
+        ("zigzag", "circle", ["square"]),
+        ("circle", "", ["zigzag", "square"]),
+    ],
+)
+def test_between_trigger_gestures_alone_gestures_are_reported(
+    recognizer: Recognizer, start: str, stop: str, heard: list[str]
+) -> None:
+    trigger = Trigger("gesture", start_label=start, stop_label=stop)
+    poses, _ = stream(["circle", "zigzag", "square", "circle", "zigzag", "square"])
+    triggered = Recognizer(replace(recognizer.language, trigger=trigger))
+    assert [each.recognition.label for _, each in spotted(triggered, poses)] == heard
+    everywhere = Spotter(triggered, triggered=False).listen(poses)
+    assert len(everywhere) == 6
+
+
+def test_a_trigger_gesture_that_is_forgotten_confirms_nothing_a_minute_later(
+    recognizer: Recognizer,
+) -> None:
+    gate = TriggerGate(Trigger("gesture", start_label="zigzag"))
+    poses, _ = stream(["zigzag", "circle"])
+    opened, between = (each for _, each in spotted(recognizer, poses))
+    closing = replace(opened, start=opened.end + 60, end=opened.end + 61)
+    assert gate.admit((opened, between)) == ()
+    assert gate.admit((closing,)) == ()
+    later = replace(between, start=closing.end + 1, end=closing.end + 3)
+    again = replace(opened, start=later.end + 1, end=later.end + 3)
+    assert gate.admit((later, again)) == (later,)
 
 
 def test_a_gesture_is_reported_soon_after_it_ended(recognizer: Recognizer) -> None:

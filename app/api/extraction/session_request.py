@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from app.bags.session_writer import NamedRecognition
 from app.recognition import Recognition
+from app.recognition.language.trigger_schema import TriggerEntry
 
 
 class SessionRecognition(BaseModel):
@@ -33,7 +34,8 @@ class SessionRecognition(BaseModel):
 
 
 class SessionRequest(BaseModel):
-    """The content of a session, besides the clip's own files."""
+    """The content of a session, besides the clip's own files; `trigger` cuts its takes."""
 
     clip: str
     recognitions: list[SessionRecognition]
+    trigger: TriggerEntry | None = None

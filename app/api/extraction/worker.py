@@ -38,6 +38,7 @@ from app.bags.session_writer import write_session as write_mcap
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
 from app.recognition.errors import LanguageError, ModelError, OsgError, VideoError
 from app.recognition.estimation import create_estimator
+from app.recognition.language.trigger_entry import entry_to_trigger
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import VideoFrame
@@ -122,7 +123,15 @@ def write_session(request: Path, session: Path, files: ClipFiles, report: Report
         probe_video(files.video)
         video = files.video
     named = [each.named() for each in wanted.recognitions]
-    write_mcap(session, recording, named, video=video, name=wanted.clip, progress=progress)
+    write_mcap(
+        session,
+        recording,
+        named,
+        video=video,
+        name=wanted.clip,
+        trigger=entry_to_trigger(wanted.trigger),
+        progress=progress,
+    )
     report(Finished(frames=len(recording.poses), warnings=()))
 
 

@@ -14,13 +14,16 @@ import numpy as np
 from pydantic import BaseModel
 
 from app.api.extraction.messages import Pose, pose_in
-from app.recognition import OsgError, Recognition, Recognizer, Take
+from app.recognition import OsgError, PoseSequence, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, correct_colours
 from app.recognition.poses.frame import Image
+from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import LiveTakes, Sight
 from app.recognition.recording.segmentation import TakeState
+from app.recognition.spotting import Spotter
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 MOST_PIXELS: Final = 2_500_000
 """Of one frame, with the margin that FFmpeg adds when it counts: 1920 x 1080 passes, and the page
@@ -31,6 +34,9 @@ RATE_SECONDS: Final = 2.0
 
 TIMESTAMP: Final = struct.Struct("<d")
 """What stands before a frame's JPEG: when it was captured, in seconds of the page's own clock."""
+
+ASK_SECONDS: Final = 1.0
+"""Seconds between two looks at the language's trigger, which an edit may change."""
 
 RecognizerSource = Callable[[], Recognizer | None]
 """Returns the recogniser to ask now; None where only landmarks and takes are wanted."""
@@ -48,9 +54,9 @@ class Seen(BaseModel):
     hands
         Up to two hands of 21 landmarks each (`HAND_LANDMARKS`), as `pose`.
     salute
-        In [0, 1]: how much the best hand salutes.
+        In [0, 1]: how much the best hand salutes, or the language's other trigger is shown.
     held
-        Whether a salute counts now.
+        Whether it counts now.
     state
         Whether a salute is awaited, a take goes on, or the salute that ended it is still held.
     frames_per_second
@@ -168,6 +174,10 @@ class Watcher:
         self._water = water
         self._recognizer = recognizer
         self._takes: LiveTakes | None = None
+        self._trigger = SALUTE
+        self._asked = -np.inf  # when the trigger was asked for
+        self._spotter: Spotter | None = None
+        self._spots: Recognizer | None = None  # whose gestures the spotter finds
         self._time = -np.inf
         self._looks: deque[float] = deque()
 
@@ -188,7 +198,10 @@ class Watcher:
         takes = self._takes
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
             self._estimator.reset()
-            takes = self._takes = LiveTakes((width, height))
+            takes, self._spotter, self._asked = None, None, -np.inf
+        trigger = self._find_trigger()
+        if takes is None or takes.trigger != trigger:
+            takes = self._takes = LiveTakes((width, height), trigger)
         self._time = frame.time
         found = self._estimator.estimate(correct_colours(image, self._water), frame.time)
         sight = takes.feed(frame.time, found)
@@ -203,7 +216,8 @@ class Watcher:
             seconds=round(clock.monotonic() - frame.arrived, 4),
             skipped=frame.skipped,
         )
-        return (seen, *self._recognize(sight))
+        moment = build_frame_sequence(found, frame.time, (width, height))
+        return (seen, *(self._spot(moment) if trigger.spots else self._recognize(sight)))
 
     def close(self) -> None:
         """Release the models."""
@@ -217,6 +231,32 @@ class Watcher:
             self._looks.popleft()
         lasted = now - self._looks[0]
         return round((len(self._looks) - 1) / lasted, 2) if lasted > 0 else 0.0
+
+    def _find_trigger(self) -> Trigger:
+        """Return the trigger of the language that is asked, of none the salute."""
+        if clock.monotonic() - self._asked > ASK_SECONDS:
+            self._asked = clock.monotonic()
+            try:
+                recognizer = self._recognizer()
+                self._trigger = SALUTE if recognizer is None else recognizer.language.trigger
+                if recognizer is not None and self._trigger.spots:
+                    self._renew_spotter(recognizer)
+            except OsgError:  # no such language, or no gesture to spot in it
+                self._trigger, self._spotter = SALUTE, None
+        return self._trigger
+
+    def _renew_spotter(self, recognizer: Recognizer) -> None:
+        if self._spotter is None or self._spots is not recognizer:
+            self._spotter, self._spots = Spotter(recognizer), recognizer
+
+    def _spot(self, moment: PoseSequence) -> tuple[Recognized, ...]:
+        """Return the gestures that ended, without a trigger around them."""
+        if self._spotter is None or self._spots is None:
+            return ()
+        return tuple(
+            _view_answer(self._spots, each.recognition, each.start, each.end, closed=True)
+            for each in self._spotter.feed(moment)
+        )
 
     def _recognize(self, sight: Sight) -> tuple[Recognized, ...]:
         if sight.take is None:
@@ -238,10 +278,18 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
     """
     if recognizer is None:
         return _view_take(take, problem="no language is chosen; choose one above")
-    result: Recognition = recognizer.recognize(take.poses)
+    result = recognizer.recognize(take.poses)
+    return _view_answer(recognizer, result, take.start, take.end, closed=take.closed)
+
+
+def _view_answer(
+    recognizer: Recognizer, result: Recognition, start: float, end: float, *, closed: bool
+) -> Recognized:
     votes = list(result.counted.values())
-    return _view_take(
-        take,
+    return Recognized(
+        start=start,
+        end=end,
+        closed=closed,
         language=recognizer.language.name,
         label=result.label,
         nearest=result.nearest,

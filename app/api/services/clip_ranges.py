@@ -8,6 +8,7 @@ from app.api.http.problems import Fault, ProblemError
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Take, takes_in
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 SAME_MOMENT = 1e-3
 """Seconds within which a given moment is a take's: numbers travel through JSON and text fields
@@ -38,6 +39,7 @@ def demonstration_in(
     end: float | None = None,
     *,
     keep_transit: bool = False,
+    trigger: Trigger = SALUTE,
 ) -> Demonstration:
     """Find the demonstration meant by a range of seconds.
 
@@ -45,13 +47,15 @@ def demonstration_in(
     from and to the salute unless `keep_transit`. Any other range is taken as it is.
     Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
 
+    Takes are what lies between salutes, or other triggers of a language.
+
     Raises
     ------
     ProblemError
         422 when the range is empty or reversed, or no range is given and there are several takes.
 
     """
-    takes = takes_in(recording)
+    takes = takes_in(recording, trigger=trigger)
     poses = recording.poses
     if start is None and end is None:
         if len(takes) > 1:
@@ -76,9 +80,11 @@ def demonstration_in(
     return Demonstration(first, last, inside)
 
 
-def surroundings_in(recording: Recording, start: float, end: float) -> PoseSequence:
-    """Return what a range was cut out of: the take around it between its salutes, or the clip."""
-    for take in takes_in(recording):
+def surroundings_in(
+    recording: Recording, start: float, end: float, trigger: Trigger = SALUTE
+) -> PoseSequence:
+    """Return what a range was cut out of: the take around it between its triggers, or the clip."""
+    for take in takes_in(recording, trigger=trigger):
         if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
             return take.untrimmed
     return recording.poses

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.api.services.salute_ranges import Outline, count_salutes, outline_of
 from app.api.services.studio import Studio
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 CUT_SHARE = 0.2
 """Share of a stroke that is missing when a demonstration counts as cut short: what is left is
@@ -17,16 +18,25 @@ LEAST_REST = 0.5
 """Seconds of rest that count; a hand stops for less between two strokes."""
 
 
-def describe_fault(studio: Studio, clip_id: str, start: float, end: float) -> str | None:
+def describe_fault(
+    studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
+) -> str | None:
     """Return what is wrong with a range as a demonstration, as a clause; None: nothing known."""
-    outline = outline_of(studio, clip_id)
-    return None if outline is None else fault_in(outline, start, end)
+    outline = outline_of(studio, clip_id, trigger)
+    return None if outline is None else fault_in(outline, start, end, trigger)
 
 
-def fault_in(outline: Outline, start: float, end: float) -> str | None:
+def describe_count(trigger: Trigger, count: int) -> str:
+    """Return a number of a language's triggers in words, such as "a Vulcan salute"."""
+    if trigger.kind == "pose":
+        return "a trigger's pose of the arms" if count == 1 else f"{count} of the trigger's poses"
+    return "a Vulcan salute" if count == 1 else f"{count} Vulcan salutes"
+
+
+def fault_in(outline: Outline, start: float, end: float, trigger: Trigger = SALUTE) -> str | None:
     """Return the fault of a range of a clip with these parts, see `describe_fault`."""
     if salutes := count_salutes(outline.salutes, start, end):
-        contained = "a Vulcan salute" if salutes == 1 else f"{salutes} Vulcan salutes"
+        contained = describe_count(trigger, salutes)
         whole = start <= outline.start + LEAST_REST and end >= outline.end - LEAST_REST
         return f"is the whole clip, with {contained}" if whole else f"contains {contained}"
     for first, last in outline.strokes:

@@ -13,6 +13,7 @@ from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.segmentation import takes_in
+from app.recognition.triggers.trigger import Trigger
 from app.store import DemonstrationSource, LanguageState
 
 
@@ -33,7 +34,8 @@ def keep_source(
     end = demonstration.end if where.end is None else where.end
     if where.start is None and where.end is None:
         # Who names no range means the clip's only take, from salute to salute.
-        for take in takes_in(studio.recording(where.clip_id)):
+        trigger = studio.language(state).trigger
+        for take in takes_in(studio.recording(where.clip_id), trigger=trigger):
             start, end = take.start, take.end
     source = DemonstrationSource(
         trajectory=key,
@@ -48,7 +50,9 @@ def keep_source(
 def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView | None]]:
     """Return by label what is known of where demonstrations come from; see `find_sources`."""
     return {
-        label: [None if source is None else _view(studio, source) for source in row]
+        label: [
+            None if source is None else _view(studio, source, language.trigger) for source in row
+        ]
         for label, row in find_sources(studio, language).items()
     }
 
@@ -66,8 +70,8 @@ def find_sources(studio: Studio, language: Language) -> dict[str, list[Demonstra
     }
 
 
-def _view(studio: Studio, source: DemonstrationSource) -> SourceView:
-    where = (source.clip_id, source.start, source.end)
+def _view(studio: Studio, source: DemonstrationSource, trigger: Trigger) -> SourceView:
+    where = (source.clip_id, source.start, source.end, trigger)
     return SourceView(
         **source.model_dump(exclude={"trajectory"}),
         salutes=count_salutes_in_clip(studio, *where),

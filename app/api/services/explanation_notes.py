@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from app.api.services.demonstration_faults import describe_count
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.salute_ranges import count_salutes_in_clip
 from app.api.services.studio import Studio
 from app.recognition import Language
+from app.recognition.triggers.trigger import Trigger
 from app.store import RecognitionRecord
 
 
@@ -28,15 +30,20 @@ def write_notes(
         The gestures whose demonstrations matter: the expected and the nearest one.
 
     """
-    return [*_describe_range(studio, record), *_describe_demonstrations(studio, language, labels)]
+    return [
+        *_describe_range(studio, record, language.trigger),
+        *_describe_demonstrations(studio, language, labels),
+    ]
 
 
-def _describe_range(studio: Studio, record: RecognitionRecord) -> Iterator[str]:
-    count = count_salutes_in_clip(studio, record.clip_id, record.start, record.end)
+def _describe_range(studio: Studio, record: RecognitionRecord, trigger: Trigger) -> Iterator[str]:
+    count = count_salutes_in_clip(studio, record.clip_id, record.start, record.end, trigger)
     if count:
+        between = "salutes" if trigger.start is None else "poses"
+        contained = describe_count(trigger, count)
         yield (
-            f"The range that was recognised contains {_salutes(count)}; choose a take, or a range "
-            "between the salutes."
+            f"The range that was recognised contains {contained}; choose a take, or a range "
+            f"between the {between}."
         )
 
 

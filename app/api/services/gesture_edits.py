@@ -17,13 +17,16 @@ from app.api.services.clip_ranges import Demonstration, demonstration_in
 from app.api.services.studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 WORDS = frozenset({"label", "description", "command", "diver"})
 """What of a gesture is for people and the robot, and does not change what is recognised."""
 
 
-def demonstration_at(studio: Studio, where: NewDemonstration) -> Demonstration:
-    """Find the demonstration that a request names.
+def demonstration_at(
+    studio: Studio, where: NewDemonstration, trigger: Trigger = SALUTE
+) -> Demonstration:
+    """Find the demonstration that a request names, in takes by a language's trigger.
 
     Raises
     ------
@@ -34,7 +37,9 @@ def demonstration_at(studio: Studio, where: NewDemonstration) -> Demonstration:
 
     """
     recording = studio.recording(where.clip_id)
-    return demonstration_in(recording, where.start, where.end, keep_transit=where.keep_transit)
+    return demonstration_in(
+        recording, where.start, where.end, keep_transit=where.keep_transit, trigger=trigger
+    )
 
 
 def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
@@ -59,7 +64,7 @@ def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
 
 
 def gestures_from(
-    studio: Studio, drafts: Sequence[GestureDraft]
+    studio: Studio, drafts: Sequence[GestureDraft], trigger: Trigger = SALUTE
 ) -> list[tuple[Gesture, Demonstration]]:
     """Return the gestures that drafts describe, with their demonstrations.
 
@@ -74,7 +79,7 @@ def gestures_from(
     made = []
     for index, draft in enumerate(drafts):
         try:
-            demonstration = demonstration_at(studio, draft)
+            demonstration = demonstration_at(studio, draft, trigger)
             made.append((gesture_from(draft, demonstration), demonstration))
         except ProblemError as error:
             raise _refusal(error.status_code, error.code, index, draft, error.detail) from error

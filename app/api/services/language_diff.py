@@ -82,6 +82,8 @@ def describe_changes(older: Language, newer: Language) -> list[str]:
     ]
     if older.tuning != newer.tuning:
         words.append(f"was recognised {older.tuning.words}, is {newer.tuning.words}")
+    if older.trigger != newer.trigger:
+        words.append(f"takes were found {older.trigger.words}, are {newer.trigger.words}")
     shared = [label for label in newer.labels if label in older.labels]
     if shared != [label for label in older.labels if label in newer.labels]:
         words.append("the gestures are in another order")

@@ -19,6 +19,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal
 from app.recognition.language.grammar_entry import grammar_to_entry
 from app.recognition.language.short_code import short_code
+from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import LanguageState
 
@@ -48,6 +49,8 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
         profile=language.profile,
         tuning=tuning_to_entry(language.tuning),
         tuning_words=language.tuning.words,
+        trigger=trigger_to_entry(language.trigger),
+        trigger_words=language.trigger.words,
     )
 
 

@@ -13,6 +13,8 @@ from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE, HOLD_SECONDS
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.recording.trimming import WRISTS
+from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
+from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import JobStatus
 
 LEAST_OVERLAP = 0.1
@@ -31,13 +33,14 @@ RESTING_SPEED = 0.1
 SaluteRange = tuple[float, float]
 
 
-def find_salutes(recording: Recording) -> tuple[SaluteRange, ...]:
-    """Return start and end, in seconds, of every salute that is held long enough."""
-    held = np.asarray(recording.salute) >= ENTER_SCORE
+def find_salutes(recording: Recording, trigger: Trigger = SALUTE) -> tuple[SaluteRange, ...]:
+    """Return start and end, in seconds, of every salute, or other trigger, held long enough."""
+    scores = np.maximum(*trigger.score(recording.poses, recording.salute))
+    held, hold = scores >= ENTER_SCORE, POSE_SECONDS if trigger.start else HOLD_SECONDS
     steps = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]])))
     time = recording.poses.time
     ranges = [(float(time[a]), float(time[b - 1])) for a, b in steps.reshape(-1, 2)]
-    return tuple((start, end) for start, end in ranges if end - start >= HOLD_SECONDS)
+    return tuple((start, end) for start, end in ranges if end - start >= hold)
 
 
 def count_salutes(salutes: tuple[SaluteRange, ...], start: float, end: float) -> int:
@@ -45,9 +48,11 @@ def count_salutes(salutes: tuple[SaluteRange, ...], start: float, end: float) ->
     return sum(min(b, end) - max(a, start) >= LEAST_OVERLAP for a, b in salutes)
 
 
-def count_salutes_in_clip(studio: Studio, clip_id: str, start: float, end: float) -> int:
+def count_salutes_in_clip(
+    studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
+) -> int:
     """Return how many salutes a range of a clip contains; 0 while its poses are not extracted."""
-    outline = outline_of(studio, clip_id)
+    outline = outline_of(studio, clip_id, trigger)
     return 0 if outline is None else count_salutes(outline.salutes, start, end)
 
 
@@ -58,7 +63,7 @@ class Outline:
     Attributes
     ----------
     salutes
-        The held salutes.
+        The held salutes, or other triggers.
     strokes
         By take, the gesture without the hand's way to it and from it.
     start, end
@@ -75,20 +80,22 @@ class Outline:
     moving: tuple[float, float]
 
 
-def outline_of(studio: Studio, clip_id: str) -> Outline | None:
+def outline_of(studio: Studio, clip_id: str, trigger: Trigger = SALUTE) -> Outline | None:
     """Return the parts of a clip; None while its poses are not extracted."""
     if studio.clips.get(clip_id).job.status != JobStatus.DONE:
         return None
-    return _outline_of(str(studio.clips.recording(clip_id)))
+    return _outline_of(str(studio.clips.recording(clip_id)), trigger)
 
 
 @lru_cache(CACHED_CLIPS)
-def _outline_of(path: str) -> Outline:
+def _outline_of(path: str, trigger: Trigger) -> Outline:
     recording = Recording.load(path)
     time = recording.poses.time
     return Outline(
-        salutes=find_salutes(recording),
-        strokes=tuple((take.stroke_start, take.stroke_end) for take in takes_in(recording)),
+        salutes=find_salutes(recording, trigger),
+        strokes=tuple(
+            (take.stroke_start, take.stroke_end) for take in takes_in(recording, trigger=trigger)
+        ),
         start=float(time[0]),
         end=float(time[-1]),
         moving=_find_movement(recording.poses),

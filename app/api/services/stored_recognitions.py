@@ -53,7 +53,7 @@ def recognize_range(
     language = studio.language(state)
     profile = profile or language.profile
     require_landmarks_of(studio.clips.get(clip_id).clip, recording.poses, language)
-    demonstration = demonstration_in(recording, start, end)
+    demonstration = demonstration_in(recording, start, end, trigger=language.trigger)
     recognizer = make_recognizer(studio, state, profile, tuning, trial)
     answer = recognizer.recognize(demonstration.poses).to_dict()
     if tuning is not None:
@@ -93,11 +93,12 @@ def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionCont
     """Return the situation in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id)
+    trigger = studio.language(state).trigger
     view = view_recognition(record)
     return RecognitionContext(
         recognizer=make_recognizer(studio, state, record.profile, view.tuning, view.trial),
-        poses=demonstration_in(recording, record.start, record.end).poses,
-        whole=surroundings_in(recording, record.start, record.end),
+        poses=demonstration_in(recording, record.start, record.end, trigger=trigger).poses,
+        whole=surroundings_in(recording, record.start, record.end, trigger),
     )
 
 
@@ -129,8 +130,9 @@ def try_gesture(studio: Studio, state: LanguageState, trial: GestureTrial) -> La
     """Return a copy of a revision in which one gesture is changed; errors as `make_recognizer`."""
     change = trial.change.model_copy(update={"label": None})
     shown = change.demonstration
-    demonstration = None if shown is None else demonstration_at(studio, shown)
-    return change_gesture_of(studio.language(state), trial.label, change, demonstration)
+    language = studio.language(state)
+    demonstration = None if shown is None else demonstration_at(studio, shown, language.trigger)
+    return change_gesture_of(language, trial.label, change, demonstration)
 
 
 def load_language(record: RecognitionRecord, studio: Studio) -> Language:

@@ -15,12 +15,12 @@ from app.api.http.schemas.test_sets import (
     TestSetView,
 )
 from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.stored_recognitions import recognize_range
 from app.api.services.studio import Studio
 from app.evaluation.proportion import Share
 from app.recognition import OsgError
-from app.recognition.recording.segmentation import takes_in
 from app.store import (
     LabelledResult,
     LabelledTake,
@@ -54,7 +54,7 @@ def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTake
             expected=draft.expected,
         )
         for draft in drafts
-        for start, end in _ranges(studio, draft)
+        for start, end in _ranges(studio, draft, studio.languages.get(language_id))
     ]
     try:
         studio.labelled.add(takes)
@@ -119,16 +119,19 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
     )
 
 
-def _ranges(studio: Studio, draft: LabelledTakeDraft) -> Iterator[tuple[float, float]]:
+def _ranges(
+    studio: Studio, draft: LabelledTakeDraft, state: LanguageState
+) -> Iterator[tuple[float, float]]:
     """Yield start and end of what a draft means."""
     recording = studio.recording(draft.clip_id)
     if draft.start is None and draft.end is None:
-        takes = takes_in(recording)
+        takes = find_takes(studio, draft.clip_id, state)
         yield from ((take.start, take.end) for take in takes)
         if not takes:
             yield float(recording.poses.time[0]), float(recording.poses.time[-1])
         return
-    meant = demonstration_in(recording, draft.start, draft.end)
+    trigger = studio.language(state).trigger
+    meant = demonstration_in(recording, draft.start, draft.end, trigger=trigger)
     yield (
         meant.start if draft.start is None else draft.start,
         meant.end if draft.end is None else draft.end,

@@ -115,7 +115,9 @@ class FolderBatch:
             "language": seal(json.loads(self.recognizer.language.to_json())),
             "profile": self.recognizer.profile,
             "salutes": self.spotter is None,
-            "reading": asdict(self.reading),
+            "reading": {
+                name: value for name, value in asdict(self.reading).items() if name != "trigger"
+            },  # the language has its own
         }
 
     def _name(self, clip: Path) -> str:

@@ -64,7 +64,7 @@ def robot(
         typer.Option(help=f"Set of voters, {' or '.join(PROFILES)}; by default the language's."),
     ] = None,
     without_salutes: Annotated[
-        bool, typer.Option("--without-salutes", help="Recognise gestures without salutes.")
+        bool, typer.Option("--without-salutes", help="Recognise gestures without triggers.")
     ] = False,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
@@ -115,14 +115,17 @@ def robot(
         raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
         watched = opened.enter_context(WatchedLanguage(language, profile))
-        listener = create_listener(watched.first, without_salutes=without_salutes)
         frames = opened.enter_context(closing(open_source(source)))
         finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
-        if not without_salutes and not finds_hands(finder):
+        salutes = watched.first.trigger.kind == "salute" and not without_salutes
+        if salutes and not finds_hands(finder):
             raise EstimatorError(
-                f"--hands {hands} finds no hand and so no salute: choose other hands, or add "
-                "--without-salutes"
+                f"--hands {hands} finds no hand and so no salute: choose other hands, give the "
+                "language another trigger, or add --without-salutes"
             )
+        listener = create_listener(
+            watched.first, without_salutes=without_salutes, hands=finds_hands(finder)
+        )
         if profile_stages:
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)

@@ -34,6 +34,7 @@ from app.recognition.health.report import (
 )
 from app.recognition.health.second_divers import advise_second_divers
 from app.recognition.health.simulated_trials import SimulatedTrials
+from app.recognition.health.trigger_health import check_trigger, list_trigger_findings
 from app.recognition.health.viewing_angles import check_angles, find_blind_angles
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
@@ -143,6 +144,8 @@ def check_health(
     if known_signs is not None:
         compare = _count_steps(progress, "known signs", len(gestures))
         findings += find_known_signs(language, known_signs, compare)
+    trigger = check_trigger(language.trigger, seed=seed)
+    findings += list_trigger_findings(language.trigger, trigger, language.gestures)
     findings += _profile_findings(language)
     compared = neighbours.shape[1] - 1
     if compared + 1 < len(gestures):
@@ -159,6 +162,7 @@ def check_health(
         findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
         places=embed_gestures(_estimate_far_distances(recognizer, distances)),
         neighbours=None if compared + 1 == len(gestures) else compared,
+        trigger=trigger,
     )
 
 
@@ -349,7 +353,7 @@ def _gesture_findings(
     """Return the findings about single gestures; `explained` ones have a finding as a pair."""
     findings: list[Finding] = []
     for gesture, health in zip(language.gestures, gestures, strict=True):
-        findings += check_demonstration(gesture)
+        findings += check_demonstration(gesture, salutes=language.trigger.kind == "salute")
         explained_by_pair = health.label in explained
         if not explained_by_pair and health.missed is not None and health.missed.rate > MOST_MISSED:
             message = f"{health.label} is not recognised in {health.missed.words}"

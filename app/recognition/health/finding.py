@@ -43,7 +43,8 @@ class Finding:
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
         ``one_diver``, ``blind_angle``, ``known_sign``, ``unrejecting``, ``more_confused``,
-        ``neighbours_only``, ``empty``, and of the grammar ``phrases_`` with one of
+        ``neighbours_only``, ``untriggered``, ``trigger_missed``, ``trigger_accidental``,
+        ``trigger_like``, ``trigger_passed``, ``empty``, and of the grammar ``phrases_`` with one of
         `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures concerned; none for phrases.
@@ -68,8 +69,11 @@ class Finding:
         return vars(self) | {"gestures": list(self.gestures), "remedies": remedies}
 
 
-def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
-    """Yield the findings about one gesture's demonstration."""
+def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[Finding]:
+    """Yield the findings about one gesture's demonstration.
+
+    `salutes`: whether a salute ends takes, and a gesture must not resemble one.
+    """
     shown, label = gesture.trajectory, (gesture.label,)
     if shown is None or not gesture.salient:
         yield Finding(
@@ -102,7 +106,7 @@ def check_demonstration(gesture: Gesture) -> Iterator[Finding]:
                 f"{name} of {gesture.label} was seen in {seen:.0%} of its demonstration: film it "
                 "again with the hand in view",
             )
-    if (held := find_longest_held_up(shown)) >= HOLD_SECONDS:
+    if salutes and (held := find_longest_held_up(shown)) >= HOLD_SECONDS:
         yield Finding(
             "salute_like",
             label,

@@ -9,6 +9,7 @@ import numpy as np
 
 from app.recognition.health.finding import Finding
 from app.recognition.health.remedy import is_worse
+from app.recognition.health.trigger_health import TriggerHealth
 from app.recognition.health.viewing_angles import AngleHealth
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
@@ -161,6 +162,8 @@ class HealthReport:
         ``(G, 2)``: the gestures on a map, see `embedding.embed_gestures`.
     neighbours
         Number of nearest gestures that each one is compared with; None: with all of them.
+    trigger
+        Rates of the trigger where that is a pose of the arms.
 
     """
 
@@ -173,6 +176,7 @@ class HealthReport:
     findings: tuple[Finding, ...]
     places: FloatArray
     neighbours: int | None = None
+    trigger: TriggerHealth | None = None
 
     @property
     def ok(self) -> bool:
@@ -191,6 +195,7 @@ class HealthReport:
             "bar": {"confusion": MOST_CONFUSION, "missed": MOST_MISSED},
             "ok": self.ok,
             "neighbours": self.neighbours,
+            "trigger": self.trigger and self.trigger.to_dict(),
             "gestures": [gesture.to_dict() for gesture in self.gestures],
             "pairs": [pair.to_dict() for pair in self.pairs],
             "warnings": [finding.to_dict() for finding in self.findings],

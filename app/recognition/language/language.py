@@ -24,11 +24,13 @@ from app.recognition.language.schema import (
     VERSION,
     LanguageDocument,
 )
+from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_entry
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
@@ -65,6 +67,8 @@ class Language:
         The profile that recognises it, one of `profile.PROFILES`.
     tuning
         The author's changes to that profile. Thresholds do not depend on it.
+    trigger
+        What begins and ends a take; by default a salute.
 
     Raises
     ------
@@ -83,6 +87,7 @@ class Language:
     grammar: Grammar | None = None
     profile: ProfileName = DEFAULT_PROFILE
     tuning: Tuning = AS_THE_PROFILE
+    trigger: Trigger = SALUTE
 
     def __post_init__(self) -> None:
         """Validate and normalise the fields."""
@@ -112,6 +117,12 @@ class Language:
             labels.add(gesture.label)
         if self.grammar is not None:
             self.grammar.require(labels)
+        if missing := sorted(self.trigger.labels - labels):
+            raise LanguageError(
+                f"the trigger needs a gesture {missing[0]!r}, which the language has not: choose "
+                "another trigger first",
+                "/trigger",
+            )
         _check_tuning(self.profile, self.tuning)
         object.__setattr__(self, "created", _utc_second(self.created))
 
@@ -193,7 +204,7 @@ class Language:
         Raises
         ------
         LanguageError
-            When there is none, or a phrase needs it.
+            When there is none, or a phrase or the trigger needs it.
 
         """
         unwanted = self.gesture(label)
@@ -218,7 +229,8 @@ class Language:
         gesture = replace(self.gesture(label), label=new)
         gestures = [gesture if each.label == label else each for each in self.gestures]
         grammar = self.grammar and self.grammar.renamed(label, gesture.label)
-        return replace(self, gestures=gestures, grammar=grammar)
+        trigger = self.trigger.renamed(label, gesture.label)
+        return replace(self, gestures=gestures, grammar=grammar, trigger=trigger)
 
     def to_json(self) -> str:
         """Return the language file's text; the same language gives the same text."""
@@ -236,6 +248,7 @@ class Language:
             grammar=None if self.grammar is None else grammar_to_entry(self.grammar),
             profile=self.profile,
             tuning=tuning_to_entry(self.tuning),
+            trigger=trigger_to_entry(self.trigger),
             gestures=[gesture_to_entry(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -268,6 +281,7 @@ class Language:
             grammar=None if document.grammar is None else entry_to_grammar(document.grammar),
             profile=document.profile,
             tuning=entry_to_tuning(document.tuning),
+            trigger=entry_to_trigger(document.trigger),
         )
 
     def save(self, path: str | Path) -> None:

@@ -51,6 +51,21 @@ def find_requirements(language: Language) -> Requirements:
     return Requirements(salient, limbs, torso, get_args(ModelName))
 
 
+def require_trigger(language: Language, landmarks: Collection[str], source: str) -> None:
+    """Check that a source of poses has the landmarks by which a language's trigger is seen.
+
+    Parameters and errors are those of `require_landmarks`. A salute needs hands instead.
+    """
+    for name in language.trigger.landmarks:
+        if name not in landmarks:
+            raise LandmarkError(
+                f"{source} gives no landmark {name!r}, by which the trigger of {language.name!r} "
+                f"is seen; it gives {', '.join(landmarks)}. Use another source, or choose another "
+                "trigger",
+                name,
+            )
+
+
 def require_landmarks(language: Language, landmarks: Collection[str], source: str) -> None:
     """Check that a source of poses has the salient landmarks of a demonstration of every gesture.
 

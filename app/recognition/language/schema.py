@@ -17,6 +17,7 @@ from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
 from app.recognition.language.grammar_schema import GrammarEntry
+from app.recognition.language.trigger_schema import TriggerEntry
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
@@ -263,6 +264,10 @@ class LanguageDocument(_Model):
     tuning: Annotated[
         TuningEntry | None,
         Field(description="What differs from the profile. Left out when nothing does."),
+    ] = None
+    trigger: Annotated[
+        TriggerEntry | None,
+        Field(description="What begins and ends a take. Left out when a salute does."),
     ] = None
     gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
     sha256: Annotated[

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 
+import numpy as np
+
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.recording.extraction import build_frame_sequence
@@ -17,6 +19,7 @@ from app.recognition.recording.segmentation import (
     TakeState,
     cut_take,
 )
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 LONGEST_SALUTE = 10.0
 """Seconds of a start salute kept in addition to the longest take: the transit takes one, and a
@@ -30,9 +33,9 @@ class Sight:
     Attributes
     ----------
     salute
-        Score in [0, 1] of the best salute.
+        Score in [0, 1] of the best salute, or of the trigger that the language has instead.
     held
-        Whether a salute has been held long enough to count, and still is.
+        Whether it has been held long enough to count, and still is.
     state
         Whether the machine waits for a salute, is in a take, or waits for the end of the salute
         that ended it.
@@ -56,12 +59,15 @@ class LiveTakes:
     ----------
     frame_size
         Width and height of the images in pixels.
+    trigger
+        What begins and ends a take.
 
     """
 
-    def __init__(self, frame_size: tuple[int, int]) -> None:
+    def __init__(self, frame_size: tuple[int, int], trigger: Trigger = SALUTE) -> None:
         self.frame_size = frame_size
-        self._machine = TakeMachine()
+        self.trigger = trigger
+        self._machine = TakeMachine.of(trigger)
         self._moments: deque[PoseSequence] = deque()
         self._gap: Bracket | None = None
 
@@ -98,13 +104,16 @@ class LiveTakes:
         time = float(moment.time[0])
         self._moments.append(moment)
         # Before old frames are dropped: after a pause, the take that it ends is among them.
-        take = self._cut(self._machine.update(time, salute))
+        begin, end = (
+            float(each[0]) for each in self.trigger.score(moment, np.array([salute], np.float64))
+        )
+        take = self._cut(self._machine.update(time, begin, end))
         self._gap = self._machine.gap
         if self._gap is None:
             self._drop_old_frames(time)
         return Sight(
-            salute=salute,
-            held=self._machine.trigger.held,
+            salute=max(begin, end),
+            held=self._machine.held,
             state=self._machine.state,
             take=take,
         )
@@ -133,7 +142,9 @@ class LiveTakes:
         return self._cut(self._machine.finish(float(self._moments[-1].time[0])))
 
     def _cut(self, bracket: Bracket | None) -> Take | None:
-        return cut_take(join_sequences(self._moments), bracket) if bracket else None
+        if bracket is None:
+            return None
+        return cut_take(join_sequences(self._moments), bracket, trigger=self.trigger)
 
     def _drop_old_frames(self, time: float) -> None:
         machine = self._machine

@@ -287,8 +287,8 @@ def best_salute(hands: Iterable[Hand]) -> float:
 
 
 @dataclass
-class SaluteTrigger:
-    """Turns the salute scores of a stream into held salutes.
+class HeldTrigger:
+    """Turns the scores of a stream's trigger, a salute by default, into held ones.
 
     The time between neighbouring frames that both show the salute is summed, so a detection in a
     single frame adds nothing at any frame rate. One such step adds at most half of `hold`: a

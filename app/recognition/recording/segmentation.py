@@ -1,4 +1,8 @@
-"""Segmentation: finds the takes of a recording or a stream, each between two salutes."""
+"""Segmentation: finds the takes of a recording or a stream, each between two triggers.
+
+A trigger is a salute unless a language names another one (`app.recognition.triggers`); what is said
+of salutes here holds for poses of the arms as well.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +17,11 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.extraction import Progress, record
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.salute import SaluteTrigger
+from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
+from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
+from app.recognition.triggers.arm_pose import LEAVE_SCORE as POSE_LEAVE_SCORE
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 SHORTEST_TAKE = 0.8
 """Least seconds between two salutes. A reach, a stroke and a reach back take 0.5 s each (Flash and
@@ -77,10 +84,15 @@ class TakeMachine:
     A salute that returns within `shortest` seconds of its release continues. A take longer than
     `longest` seconds ends unclosed.
 
+    Where another trigger ends a take than begins it, each is known by itself: one that begins
+    leaves an open take unclosed and begins the next, and one that ends does nothing without a take.
+
     Attributes
     ----------
     trigger
         Detects held salutes.
+    stop
+        Detects what ends a take; None: what begins it.
     shortest, longest
         Least and most seconds of a take.
     state
@@ -91,7 +103,8 @@ class TakeMachine:
 
     """
 
-    trigger: SaluteTrigger = field(default_factory=SaluteTrigger)
+    trigger: HeldTrigger = field(default_factory=HeldTrigger)
+    stop: HeldTrigger | None = None
     shortest: float = SHORTEST_TAKE
     longest: float = LONGEST_TAKE
     state: TakeState = field(default=TakeState.idle, init=False)
@@ -101,7 +114,20 @@ class TakeMachine:
     _closing: float = field(default=0.0, init=False)
     _ended: Span | None = field(default=None, init=False)
 
-    def update(self, time: float, score: float) -> Bracket | None:
+    @classmethod
+    def of(cls, trigger: Trigger) -> TakeMachine:
+        """Create the machine for a language's trigger."""
+        if trigger.start is None:
+            return cls()
+        stop = None if trigger.stop is None else create_held_pose()
+        return cls(trigger=create_held_pose(), stop=stop)
+
+    @property
+    def held(self) -> bool:
+        """Whether a trigger is held now."""
+        return self.trigger.held or (self.stop is not None and self.stop.held)
+
+    def update(self, time: float, score: float, stop_score: float = 0.0) -> Bracket | None:
         """Process the next frame.
 
         Parameters
@@ -109,7 +135,9 @@ class TakeMachine:
         time
             Seconds, later than in every call before.
         score
-            Score in [0, 1] of the best salute (`best_salute`).
+            Score in [0, 1] of the best salute (`best_salute`), or of what begins a take.
+        stop_score
+            Score in [0, 1] of what ends a take, for a machine with a `stop` of its own.
 
         Returns
         -------
@@ -118,6 +146,8 @@ class TakeMachine:
         """
         held = self.trigger.update(time, score)
         self.gap = None
+        if self.stop is not None:
+            return self._update_both(time, held, self.stop.update(time, stop_score))
         match self.state:
             case TakeState.idle if held:
                 self.state = TakeState.recording
@@ -154,6 +184,45 @@ class TakeMachine:
         self.state = TakeState.idle
         return self._unclosed(released, time) if time - released >= self.shortest else None
 
+    def _update_both(self, time: float, held: bool, stopped: bool) -> Bracket | None:
+        """Process a frame where what ends a take differs from what begins it."""
+        assert self.stop is not None
+        found = None
+        if self.state is TakeState.done and not stopped:
+            self.state = TakeState.idle
+        if self.state is TakeState.recording:
+            found = self._end_by_stop(time, stopped)
+        begun = self.trigger.since if held else None
+        if self.state is TakeState.idle and begun is not None:
+            self.state, self._began, self._released = TakeState.recording, begun, None
+        elif self.state is TakeState.recording and self._released is None:
+            if not held:
+                self._released = self.trigger.until
+        elif self.state is TakeState.recording and self._released is not None and begun is not None:
+            if begun - self._released >= self.shortest:
+                found = self._unclosed(self._released, begun)
+                self._began = begun
+            self._released = None
+        return found
+
+    def _end_by_stop(self, time: float, stopped: bool) -> Bracket | None:
+        """End a take by what ends it, or because it is too long."""
+        assert self.stop is not None
+        since = self.stop.since
+        released = self.trigger.until if self._released is None else self._released
+        assert released is not None
+        if stopped and since is not None:
+            self.state, self._closing = TakeState.done, since
+            if since - released < self.shortest:
+                return None
+            return Bracket(
+                first_salute=Span(self._began, released), last_salute=Span(since, time), end=since
+            )
+        if self._released is None or time - released <= self.longest:
+            return None
+        self.state = TakeState.idle
+        return self._unclosed(released, released + self.longest)
+
     def _recording(self, time: float, held: bool) -> Bracket | None:
         released, since = self._released, self.trigger.since
         if released is None:
@@ -181,6 +250,11 @@ class TakeMachine:
 
     def _unclosed(self, released: float, end: float) -> Bracket:
         return Bracket(first_salute=Span(self._began, released), last_salute=None, end=end)
+
+
+def create_held_pose() -> HeldTrigger:
+    """Create what detects that a pose of the arms is held."""
+    return HeldTrigger(hold=POSE_SECONDS, leave=POSE_LEAVE_SCORE)
 
 
 @dataclass(frozen=True)
@@ -233,7 +307,9 @@ class Take:
         return replace(self, poses=poses, stroke_start=start, stroke_end=end)
 
 
-def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
+def takes_in(
+    recording: Recording, *, trim: bool = True, trigger: Trigger = SALUTE
+) -> tuple[Take, ...]:
     """Find the takes of a recording.
 
     Parameters
@@ -242,22 +318,30 @@ def takes_in(recording: Recording, *, trim: bool = True) -> tuple[Take, ...]:
         The recording of a clip.
     trim
         Whether to trim the transits from and to the salutes (`app.recognition.recording.trimming`).
+    trigger
+        What begins and ends a take, as the language says (`Language.trigger`).
 
     Returns
     -------
-    The takes in order; none without salutes. Only the last one can be unclosed, unless a stop
-    salute was forgotten for `LONGEST_TAKE` seconds.
+    The takes in order; none without salutes, and none for a language without trigger, whose
+    gestures a `Spotter` finds. Only the last one can be unclosed, unless a stop salute was
+    forgotten for `LONGEST_TAKE` seconds, or another trigger stops than starts.
 
     """
-    machine = TakeMachine()
+    machine = TakeMachine.of(trigger)
     times = recording.poses.time.tolist()
+    begin, end = trigger.score(recording.poses, recording.salute)
     found = [
-        machine.update(time, score)
-        for time, score in zip(times, recording.salute.tolist(), strict=True)
+        machine.update(time, score, stop_score)
+        for time, score, stop_score in zip(times, begin.tolist(), end.tolist(), strict=True)
     ]
     if times:
         found.append(machine.finish(times[-1]))
-    return tuple(cut_take(recording.poses, bracket, trim=trim) for bracket in found if bracket)
+    return tuple(
+        cut_take(recording.poses, bracket, trim=trim, trigger=trigger)
+        for bracket in found
+        if bracket
+    )
 
 
 def find_takes(
@@ -267,13 +351,16 @@ def find_takes(
     progress: Progress | None = None,
     trim: bool = True,
     water: WaterCorrection = "auto",
+    trigger: Trigger = SALUTE,
 ) -> tuple[Take, ...]:
     """Find the takes of a clip; see `extraction.record` and `takes_in`."""
     recording = record(clip, estimator=estimator, progress=progress, water=water)
-    return takes_in(recording, trim=trim)
+    return takes_in(recording, trim=trim, trigger=trigger)
 
 
-def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Take:
+def cut_take(
+    poses: PoseSequence, bracket: Bracket, *, trim: bool = True, trigger: Trigger = SALUTE
+) -> Take:
     """Cut a take out of a pose sequence.
 
     Parameters
@@ -282,7 +369,7 @@ def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Tak
         Poses that cover the bracket with its salutes.
     bracket
         The salutes around the take.
-    trim
+    trim, trigger
         As in `takes_in`.
 
     """
@@ -294,7 +381,12 @@ def cut_take(poses: PoseSequence, bracket: Bracket, *, trim: bool = True) -> Tak
             bracket.first_salute.start,
             bracket.last_salute.end if bracket.last_salute else bracket.end,
         )
-        stroke = find_stroke(repair_poses(around).poses, bracket.first_salute, bracket.last_salute)
+        stroke = find_stroke(
+            repair_poses(around).poses,
+            bracket.first_salute,
+            bracket.last_salute,
+            posed=trigger.kind == "pose",
+        )
     return Take(
         start=bracket.start,
         end=bracket.end,

@@ -141,7 +141,9 @@ class Piece:
     last: int
 
 
-def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | None) -> Span:
+def find_stroke(
+    poses: PoseSequence, first_salute: Span, last_salute: Span | None, *, posed: bool = False
+) -> Span:
     """Find the gesture's own movement between two salutes.
 
     The result does not depend on translation or scale of the poses, and shifts with their clock.
@@ -153,6 +155,9 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
     first_salute, last_salute
         When the salutes were seen. The hand may keep the shape while it leaves, and take it before
         it arrives. None: the take was not closed, and only its beginning is trimmed.
+    posed
+        Whether these are poses of the arms, which a reach leaves or takes: what moves within them
+        alone is unrest.
 
     Returns
     -------
@@ -170,6 +175,12 @@ def find_stroke(poses: PoseSequence, first_salute: Span, last_salute: Span | Non
         motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
     )
     pieces = split_pieces(motion)
+    if posed:
+        pieces = [
+            piece
+            for piece in pieces
+            if motion.time[piece.last] > whole.start and motion.time[piece.first] < whole.end
+        ]
     if len(pieces) < 2:
         return whole
     if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from app.recognition import PoseSequence
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
@@ -24,14 +24,15 @@ class PhraseListener:
     listener
         Recognises the gestures.
     lag
-        Seconds by which `listener` may report a gesture after its end. A pause is too long only
-        when no gesture within it can be reported any more.
+        Seconds by which `listener` may report a gesture after its end, or what returns them, where
+        they depend on the language. A pause is too long only when no gesture within it can be
+        reported any more.
 
     """
 
-    def __init__(self, listener: LandmarkListener, lag: float = 0.0) -> None:
+    def __init__(self, listener: LandmarkListener, lag: float | Callable[[], float] = 0.0) -> None:
         self._listener = listener
-        self._lag = lag
+        self._lag = lag if callable(lag) else lambda: lag
         self._parser = create_parser(listener.language)
         self._time = 0.0
         self._takes: list[TakeRecognized] = []  # candidates for the current message
@@ -66,7 +67,7 @@ class PhraseListener:
         events += self._add_phrases(found)
         # An open take may still continue the message, so a pause cannot end it yet.
         if self._parser is not None and self._listener.state is not TakeState.recording:
-            events += self._to_events(time, self._parser.expire(time - self._lag))
+            events += self._to_events(time, self._parser.expire(time - self._lag()))
         return tuple(events)
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:

@@ -1,4 +1,4 @@
-"""Salute listener: segments landmarks into takes between two salutes and recognises each take."""
+"""Salute listener: segments landmarks into takes between two triggers and recognises each take."""
 
 from __future__ import annotations
 
@@ -7,15 +7,20 @@ from typing import Protocol
 from app.recognition import PoseSequence, Take
 from app.recognition.recording.live_segmentation import LiveTakes
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
+from app.recognition.triggers.trigger import Trigger
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, StateChanged, TakeRecognized, TakeRejected
 from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_take, reject_take
 
-NOT_ENDED_IN_TIME = (
-    f"no salute ended it within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver swam away"
-)
-NOT_ENDED_AT_ALL = "the stream ended before a second salute"
+
+def explain_unclosed(trigger: Trigger) -> str:
+    """Return why a take has no end, in words."""
+    again = "" if trigger.stop is None else ", or what begins a take came again"
+    why = f"within {LONGEST_TAKE:g} s: forgotten, not seen, or the diver swam away{again}"
+    if trigger.kind == "pose":
+        return f"no pose of the arms ended it {why}"
+    return f"no salute ended it {why}"
 
 
 class LandmarkListener(Protocol):
@@ -54,7 +59,7 @@ class LandmarkListener(Protocol):
 
 
 class Listener:
-    """Listener for gestures between two salutes.
+    """Listener for gestures between two salutes, or other triggers of the language.
 
     State and memory are cleared between two takes, and bounded within one: it keeps the landmarks
     of at most `LONGEST_TAKE` and of the salute before it.
@@ -139,24 +144,32 @@ class Listener:
         take = self._clear()
         if take is None:
             return ()
-        return (judge_take(self._language, take, time, NOT_ENDED_AT_ALL),)
+        what = self._language.trigger.noun
+        unclosed = f"the stream ended before a second {what}"
+        return (judge_take(self._language, take, time, unclosed),)
 
     def set_language(self, language: ActiveLanguage) -> None:
-        """Recognise the takes that end from now on by another language."""
+        """Recognise the takes that end from now on by another language.
+
+        Where its trigger is another one, an open take is rejected with the next frame.
+        """
         self._language = language
 
     def _process(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process a frame that is in order."""
-        time = float(moment.time[0])
+        time, trigger = float(moment.time[0]), self._language.trigger
+        left: tuple[Event, ...] = ()
+        if self._takes is not None and self._takes.trigger != trigger:
+            left = self._reject_open(time, "the language's trigger changed")
         if self._takes is None:
-            self._takes = LiveTakes(moment.frame_size)
+            self._takes = LiveTakes(moment.frame_size, trigger)
         sight = self._takes.feed_moment(moment, salute)
         if (missed := self._recognize_gap(time)) is not None:
-            return (*self._set_state(time, TakeState.done), missed)
-        changed = self._set_state(time, sight.state)
+            return (*left, *self._set_state(time, TakeState.done), missed)
+        changed = (*left, *self._set_state(time, sight.state))
         if sight.take is None:
             return changed
-        verdict = judge_take(self._language, sight.take, time, NOT_ENDED_IN_TIME)
+        verdict = judge_take(self._language, sight.take, time, explain_unclosed(trigger))
         self._doubtful = isinstance(verdict, TakeRejected)
         return (*changed, verdict)
 
@@ -166,7 +179,7 @@ class Listener:
         gap = self._takes.cut_gap() if self._doubtful else None
         if gap is None:
             return None
-        verdict = judge_take(self._language, gap, time, NOT_ENDED_IN_TIME)
+        verdict = judge_take(self._language, gap, time, explain_unclosed(self._language.trigger))
         if not isinstance(verdict, TakeRecognized):
             return None
         self._takes.end_gap()

@@ -18,6 +18,8 @@ class SpottingListener:
     ----------
     language
         The language to recognise.
+    triggered
+        Whether a trigger that is a gesture counts: only what two of them bracket is reported.
 
     Raises
     ------
@@ -26,9 +28,10 @@ class SpottingListener:
 
     """
 
-    def __init__(self, language: ActiveLanguage) -> None:
+    def __init__(self, language: ActiveLanguage, *, triggered: bool = True) -> None:
         self._language = language
-        self._spotter = Spotter(language.recognizer)
+        self._triggered = triggered
+        self._spotter = Spotter(language.recognizer, triggered=triggered)
         self._order = StreamOrder()
         self._begun = False
 
@@ -72,7 +75,7 @@ class SpottingListener:
 
     def _start_again(self, time: float) -> tuple[Event, ...]:
         events = self._to_events(time, self._spotter.finish())
-        self._spotter = Spotter(self._language.recognizer)
+        self._spotter = Spotter(self._language.recognizer, triggered=self._triggered)
         return events
 
     def finish(self) -> tuple[Event, ...]:

@@ -16,6 +16,8 @@ from app.recognition.language.file import seal
 from app.recognition.language.short_code import short_code
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
+from app.recognition.triggers.arm_pose import ArmPose
+from app.recognition.triggers.trigger import Trigger
 from app.ui.slate.drawing import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
 
 A4: Final = (210.0, 297.0)
@@ -79,16 +81,51 @@ def _head(language: Language) -> Iterator[Part]:
     )
     yield Words(stamp, (MARGIN + width, MARGIN + 8), 3.6, grey=True, align="end")
     top = MARGIN + 12.5
-    yield from _salute(MARGIN, top, 14.0)
+    yield from _trigger(language.trigger, MARGIN, top, width)
     left = MARGIN + 19
-    yield Words("Vulcan salute", (left, top + 5), 4.6, bold=True)
-    yield Words(
-        "Hold it for half a second before and after every gesture.", (left, top + 10.5), 4.0
-    )
     if (roles := _roles(language)) is not None:
         yield Words(roles, (left, top + 15), fit_size(roles, 3.6, width - 19), grey=True)
     line = top + 17.5
     yield Path(((MARGIN, line), (MARGIN + width, line)), 0.5)
+
+
+def _trigger(trigger: Trigger, left: float, top: float, width: float) -> Iterator[Part]:
+    """Draw what a diver holds before and after a gesture, and name it."""
+    name, rule = "Vulcan salute", "Hold it for half a second before and after every gesture."
+    if trigger.kind == "none":
+        name, rule = "Without a trigger", "Rest for a second before and after every gesture."
+    if trigger.kind == "gesture":
+        name, rule = trigger.words, "Show them before and after every gesture, with a rest between."
+    if trigger.start is None:
+        if trigger.kind == "salute":
+            yield from _salute(left, top, 14.0)
+    else:
+        yield from _arms(trigger.start, left, top, 14.0)
+        name, rule = trigger.start.words, "Hold it for a second before and after every gesture."
+        if trigger.stop is not None:
+            yield from _arms(trigger.stop, left + width - 14, top, 14.0)
+            name = f"{name}; {trigger.stop.words}"
+            rule = "Hold the first for a second before a gesture, and the second after it."
+    room = width - 38
+    yield Words(name, (left + 19, top + 5), fit_size(name, 4.6, room, bold=True), bold=True)
+    yield Words(rule, (left + 19, top + 10.5), fit_size(rule, 4.0, room))
+
+
+def _arms(pose: ArmPose, left: float, top: float, size: float) -> Iterator[Part]:
+    """Draw a head, a trunk and both arms as the robot sees them."""
+
+    def at(place: Point) -> Point:
+        # Two and a half torso lengths high, the shoulders a little above the middle.
+        return left + size * (0.5 + place[0] / 2.6), top + size * (0.42 + place[1] / 2.6)
+
+    yield Disc(at((0.0, -0.38)), 0.085 * size)
+    shoulders = {"left": (0.33, 0.0), "right": (-0.33, 0.0)}
+    trunk = (shoulders["left"], shoulders["right"], (-0.2, 1.0), (0.2, 1.0), shoulders["left"])
+    yield Path(tuple(map(at, trunk)), 0.03 * size)
+    for side, shoulder in shoulders.items():
+        arm = (shoulder, pose.joints[f"{side}_elbow"], pose.joints[f"{side}_wrist"])
+        yield Path(tuple(map(at, arm)), 0.06 * size)
+        yield Disc(at(arm[-1]), 0.05 * size)
 
 
 def _roles(language: Language) -> str | None:

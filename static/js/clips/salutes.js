@@ -3,8 +3,26 @@
 import { plural } from "../core/format.js";
 import { SALUTE } from "./salute-threshold.js";
 
+/** @import { Language } from "../core/types.d.ts" */
+
 const HOLD = 0.3; // s that a salute is held at least: `HOLD_SECONDS` in recording/salute.py.
 const OVERLAP = 0.1; // s; less of a salute in a range is the edge of the take.
+
+/**
+ * The language by whose trigger takes are found; null where that is the salute, as everywhere.
+ *
+ * @param {Language | null} language
+ */
+export const takesLanguage = (language) => (language?.trigger ? language.id : null);
+
+const HELD = { salute: "Vulcan salute", pose: "arm pose", gesture: "gesture", none: "gesture" };
+
+/**
+ * What a diver holds before and after a gesture of a language; "gesture" where nothing is held.
+ *
+ * @param {Language | null} language
+ */
+export const heldName = (language) => HELD[language?.trigger?.kind ?? "salute"];
 
 /**
  * The salutes of which a range contains a part: `[start, end]` in seconds of the clip.
@@ -34,8 +52,9 @@ export function salutesIn({ time, salute }, start, end) {
  * A warning about the salutes in a range; empty without any.
  *
  * @param {[number, number][]} salutes
+ * @param {string} [name] what a diver holds: `heldName`
  */
-export const saluteWarning = (salutes) =>
+export const saluteWarning = (salutes, name = "Vulcan salute") =>
   salutes.length
-    ? `This range contains ${plural(salutes.length, "Vulcan salute")}, which would become part of the gesture. Choose a take, or a range between the salutes.`
+    ? `This range contains ${plural(salutes.length, name)}, which would become part of the gesture. Choose a take, or a range between the ${name === "arm pose" ? "poses" : "salutes"}.`
     : "";

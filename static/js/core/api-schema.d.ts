@@ -28,6 +28,32 @@ export interface components {
             message: string;
         };
         /**
+         * ArmPoseEntry
+         * @description A pose of the arms: where elbows and wrists are held.
+         */
+        ArmPoseEntry: {
+            /**
+             * Left Elbow
+             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
+             */
+            left_elbow: number[];
+            /**
+             * Left Wrist
+             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
+             */
+            left_wrist: number[];
+            /**
+             * Right Elbow
+             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
+             */
+            right_elbow: number[];
+            /**
+             * Right Wrist
+             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
+             */
+            right_wrist: number[];
+        };
+        /**
          * AuditView
          * @description One change.
          */
@@ -700,6 +726,24 @@ export interface components {
             };
         };
         /**
+         * HeldPose
+         * @description Where a pose of the arms is held.
+         */
+        HeldPose: {
+            /** Clip Id */
+            clip_id: string;
+            /**
+             * Start
+             * @description Null: of the clip
+             */
+            start?: number | null;
+            /**
+             * End
+             * @description Null: of the clip
+             */
+            end?: number | null;
+        };
+        /**
          * JobStatus
          * @description Where a job stands; the last three are final.
          * @enum {string}
@@ -1020,6 +1064,13 @@ export interface components {
              * @description The same for people: recognised ...
              */
             tuning_words: string;
+            /** @description What begins and ends a take; null: a salute */
+            trigger: components["schemas"]["TriggerEntry"] | null;
+            /**
+             * Trigger Words
+             * @description The same for people: takes lie ...
+             */
+            trigger_words: string;
         };
         /**
          * MeaningView
@@ -1897,7 +1948,7 @@ export interface components {
             time: number[];
             /**
              * Salute
-             * @description Confidence of the salute, 0 to 1
+             * @description Confidence of the salute, or of the language's other trigger, 0 to 1
              */
             salute: number[];
             /**
@@ -1960,6 +2011,61 @@ export interface components {
             width: number;
             /** Height */
             height: number;
+        };
+        /**
+         * TriggerDraft
+         * @description What shall begin and end the takes of a language.
+         */
+        TriggerDraft: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "salute" | "pose" | "gesture" | "none";
+            /** @description Of kind pose, the one that begins a take; null: the one that does already */
+            start?: components["schemas"]["HeldPose"] | null;
+            /** @description The pose that ends a take; null: the one that begins it */
+            stop?: components["schemas"]["HeldPose"] | null;
+            /**
+             * Start Label
+             * @description Of kind gesture, which one begins
+             * @default
+             */
+            start_label: string;
+            /**
+             * Stop Label
+             * @description Which one ends; empty: the same
+             * @default
+             */
+            stop_label: string;
+        };
+        /**
+         * TriggerEntry
+         * @description What begins and ends a take.
+         */
+        TriggerEntry: {
+            /**
+             * Kind
+             * @description salute: a Vulcan salute. pose: a held pose of the arms. gesture: a gesture of the language. none: nothing, gestures are found anywhere.
+             * @enum {string}
+             */
+            kind: "salute" | "pose" | "gesture" | "none";
+            /** @description Of kind pose, the pose that begins a take. */
+            start?: components["schemas"]["ArmPoseEntry"] | null;
+            /** @description The pose that ends it. Left out when it is the one that begins it. */
+            stop?: components["schemas"]["ArmPoseEntry"] | null;
+            /**
+             * Start Label
+             * @description Of kind gesture, the label of the gesture that begins a take.
+             * @default
+             */
+            start_label: string;
+            /**
+             * Stop Label
+             * @description Label of the gesture that ends it. Left out when it is the same.
+             * @default
+             */
+            stop_label: string;
         };
         /**
          * TuningEntry

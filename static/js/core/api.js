@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, Workspace } from "./types.d.ts" */
+/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, TriggerDraft, Workspace } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -88,6 +88,9 @@ const matching = (language) => ({ "If-Match": `"${language.revision}"` });
 const gestureAt = (language, label, part = "") =>
   `/languages/${id(language.id)}/gestures${part}?label=${id(label)}`;
 
+/** @param {string | null} language whose trigger counts; null: the salute */
+const triggered = (language) => (language ? `?language_id=${id(language)}` : "");
+
 export const session = {
   /** @type {() => Promise<Session>} */
   get: () => request("GET", "/session"),
@@ -97,16 +100,16 @@ export const session = {
 export const clips = {
   /** @type {() => Promise<Clip[]>} */
   list: () => request("GET", "/clips"),
-  /** @type {(clip: string) => Promise<Timeline>} */
-  timeline: (clip) => request("GET", `/clips/${id(clip)}/timeline`),
+  /** @type {(clip: string, by?: string | null) => Promise<Timeline>} */
+  timeline: (clip, by = null) => request("GET", `/clips/${id(clip)}/timeline${triggered(by)}`),
   /** @type {(clip: string) => string} */
   filmstrip: (clip) => `${BASE}/clips/${id(clip)}/filmstrip`,
   /** @type {(clip: string) => Promise<Clip>} */
   get: (clip) => request("GET", `/clips/${id(clip)}`),
   /** @type {(clip: string) => Promise<Poses>} */
   poses: (clip) => request("GET", `/clips/${id(clip)}/poses`),
-  /** @type {(clip: string) => Promise<Take[]>} */
-  takes: (clip) => request("GET", `/clips/${id(clip)}/takes`),
+  /** @type {(clip: string, by?: string | null) => Promise<Take[]>} */
+  takes: (clip, by = null) => request("GET", `/clips/${id(clip)}/takes${triggered(by)}`),
   /** @type {(clip: string) => Promise<unknown>} */
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
   /** @type {(clip: string) => Promise<unknown>} */
@@ -152,6 +155,12 @@ export const languages = {
   change: (language, change) =>
     request("PATCH", `/languages/${id(language.id)}`, {
       body: change,
+      headers: matching(language),
+    }),
+  /** @type {(language: { id: string, revision: number }, trigger: TriggerDraft) => Promise<Language>} */
+  setTrigger: (language, trigger) =>
+    request("PUT", `/languages/${id(language.id)}/trigger`, {
+      body: trigger,
       headers: matching(language),
     }),
   /** @type {(language: string) => Promise<Language>} */

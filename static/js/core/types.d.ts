@@ -43,6 +43,7 @@ export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
 export type TestSet = Schemas["TestSetView"];
 export type LabelledTake = Schemas["LabelledTakeView"];
+export type TriggerDraft = Schemas["TriggerDraft"];
 export type Tuning = Schemas["TuningEntry"];
 export type Problem = Partial<Schemas["Problem"]>;
 export type PhrasePart = GesturesPart | SlotPart | GroupPart;
@@ -214,6 +215,15 @@ export interface HealthReport {
   pairs: PairEstimate[];
   map: { label: string; x: number; y: number }[];
   bar: { missed: number; confusion: number };
+  /** Rates of the trigger; null unless it is a pose of the arms. */
+  trigger: TriggerEstimate | null;
+}
+
+export interface TriggerEstimate {
+  words: string;
+  missed: Rate;
+  false_per_hour: number;
+  set_off_by: string[];
 }
 
 /** How far a health check is; `total` is 0 while it is not known. */

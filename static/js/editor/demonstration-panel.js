@@ -5,7 +5,7 @@ import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
-import { salutesIn, saluteWarning } from "../clips/salutes.js";
+import { heldName, salutesIn, saluteWarning, takesLanguage } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
@@ -168,8 +168,8 @@ export function take({ language, gesture, drawn, pick }) {
         };
       const [poses, found, timeline] = await Promise.all([
         api.clips.poses(id),
-        api.clips.takes(id),
-        api.clips.timeline(id),
+        api.clips.takes(id, takesLanguage(state.gestures)),
+        api.clips.timeline(id, takesLanguage(state.gestures)),
       ]);
       return { id, poses, takes: found, timeline };
     });
@@ -267,6 +267,7 @@ export function take({ language, gesture, drawn, pick }) {
     const own = takeOf(clip, source.takes);
     const warning = saluteWarning(
       own ? [] : salutesIn(source.timeline, time[frames[0]], time[frames[1]]),
+      heldName(state.gestures),
     );
     salutes.textContent = warning;
     salutes.hidden = !warning;

@@ -96,6 +96,7 @@ function facts(contents, language) {
       contents.models.join(", "),
       "osg-studio models export DIR copies them for a robot without a network",
     ),
+    row("Takes", language.trigger_words, "as the robot finds them too"),
     row("Recognised", tuningWords(language), "as kept after a trial; the robot does the same"),
     row("Schema", `${contents.schema_format}, version ${contents.schema_version}`),
     row(

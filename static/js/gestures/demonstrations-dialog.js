@@ -1,5 +1,6 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
+import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural, readable } from "../core/format.js";
@@ -172,7 +173,11 @@ function addForm(label) {
   let ranges = [];
   const load = async () => {
     const clip = clips.value;
-    const found = clip ? await attempt("Loading the takes", () => api.clips.takes(clip)) : [];
+    const found = clip
+      ? await attempt("Loading the takes", () =>
+          api.clips.takes(clip, takesLanguage(state.gestures)),
+        )
+      : [];
     if (!found || clip !== clips.value) return;
     ranges = rangesOf(clip, found);
     takes.replaceChildren(...ranges.map(({ text }, index) => h("option", { value: index }, text)));

@@ -90,12 +90,15 @@ export function rangeText({ clip, takes, take, number }) {
  * What to look at before a row is saved; empty where its take lies between two salutes.
  *
  * @param {GestureRow} row
+ * @param {string} [name] what a diver holds before and after a gesture
  */
-export function rangeWarning({ takes, take }) {
+export function rangeWarning({ takes, take }, name = "Vulcan salute") {
   if (!takes) return "";
-  if (!take)
-    return "No Vulcan salute was found: rest before and after the gesture becomes part of it.";
-  return take.closed ? "" : "No second salute was found: the take goes on to the end of the clip.";
+  if (!take) return `No ${name} was found: rest before and after the gesture becomes part of it.`;
+  const second = name.replace("Vulcan ", "");
+  return take.closed
+    ? ""
+    : `No second ${second} was found: the take goes on to the end of the clip.`;
 }
 
 /**

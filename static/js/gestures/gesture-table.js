@@ -1,6 +1,7 @@
 // The table that makes gestures of several clips: named in one place, saved in one undoable step.
 
 import { BUSY } from "../clips/busy.js";
+import { heldName, takesLanguage } from "../clips/salutes.js";
 import { statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h, reconcile, WRITES } from "../core/dom.js";
@@ -9,6 +10,7 @@ import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
+import { triggerKey } from "../languages/language-trigger.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
 import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
@@ -43,16 +45,23 @@ const onDisplay = () => /** @type {Table} */ (table);
 let followed = false;
 
 /** @type {Map<string, Take[]>} */
-const takes = new Map(); // by clip; a clip's takes never change
+const takes = new Map(); // by clip; they change with the language's trigger alone
 /** @type {Set<string>} */
 const asked = new Set();
+let foundBy = ""; // the trigger by which they were found
 
 /** Load the takes of the clips that have poses by now. */
 function loadTakes() {
+  if (foundBy !== triggerKey(state)) {
+    foundBy = triggerKey(state);
+    takes.clear();
+    asked.clear();
+  }
   for (const { id, status } of state.clips)
     if (status === "done" && !asked.has(id)) {
       asked.add(id);
-      attempt("Loading the takes", () => api.clips.takes(id)).then((found) => {
+      const by = takesLanguage(state.gestures);
+      attempt("Loading the takes", () => api.clips.takes(id, by)).then((found) => {
         if (found) takes.set(id, found);
         else asked.delete(id);
         draw();
@@ -143,7 +152,7 @@ function drawRow(row, problem, element) {
   range.textContent = row.takes
     ? rangeText(row)
     : statusText(row.clip, state.jobs.get(row.clip.job_id));
-  note.textContent = row.chosen ? problem || rangeWarning(row) : "";
+  note.textContent = row.chosen ? problem || rangeWarning(row, heldName(state.gestures)) : "";
   note.classList.toggle("problem", Boolean(row.chosen && problem));
   return drawn;
 }
@@ -289,7 +298,7 @@ export function openGestureTable() {
     h(
       "p",
       { className: "dim" },
-      "Each take between two Vulcan salutes becomes one gesture, under the name beside it.",
+      `Each take between two ${heldName(state.gestures)}s becomes one gesture, under the name beside it.`,
     ),
     element,
     list,
@@ -312,7 +321,7 @@ export function openGestureTable() {
   dialog.showModal();
   if (!followed) {
     followed = true;
-    follow(["clips"], loadTakes);
+    follow(["clips", "gestures"], loadTakes);
     follow(["clips", "jobs", "gestures"], draw);
   } else loadTakes();
   draw();

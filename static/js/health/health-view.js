@@ -264,6 +264,17 @@ function nothing() {
 const reportOf = ({ gestures, health }) =>
   health && health.id === gestures?.id ? health.report : null;
 
+/**
+ * The rates of a trigger of the arms as a further sentence; empty for another trigger.
+ *
+ * @param {HealthReport} report
+ */
+function triggerText({ trigger }) {
+  if (!trigger) return "";
+  const { missed, false_per_hour: often } = trigger;
+  return `. The trigger\u2019s pose is missed in ${percent(missed.rate)} of trials, and set off ${Math.round(often)} times in an hour of moving arms`;
+}
+
 /** Go to the test with clips, which stands below the report. */
 function showTest() {
   const title = document.getElementById("test-title");
@@ -282,7 +293,7 @@ function overview() {
     const report = reportOf(state);
     name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
     about.textContent = report
-      ? `Revision ${health?.shown}, estimated for another diver by ${report.takes} simulated trials of each gesture`
+      ? `Revision ${health?.shown}, estimated for another diver by ${report.takes} simulated trials of each gesture${triggerText(report)}`
       : "";
     says.replaceChildren(
       ...(report && isCurrent(health) && health?.status === "done" ? [verdict(report)] : []),

@@ -6,7 +6,29 @@ import { state as page } from "../core/state.js";
 
 /** @import { Seen } from "./live-messages.d.ts" */
 
+const WITH_TRIGGER = "Show a gesture as the language\u2019s trigger asks.";
+
 const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
+
+/** @type {[string, string]} */
+const NOBODY = ["", "Nobody is in the picture."];
+
+/**
+ * The same where a pose of the arms begins and ends a take.
+ *
+ * @param {Pick<Seen, "pose" | "salute" | "held" | "state">} message
+ */
+function posed({ pose, salute, held, state }) {
+  if (state === "done") return ["closing", "Gesture taken. Lower the arms."];
+  if (state === "recording" && held) return ["salute", "Pose held. Leave it and show the gesture."];
+  const seen = salute > SALUTE;
+  if (state === "recording")
+    return seen
+      ? ["closing", "Closing pose seen. Hold it."]
+      : ["gesture", "Show the gesture, then hold the closing pose."];
+  if (seen) return ["salute", "Pose seen. Hold it."];
+  return pose ? ["", "Waiting for the pose of the arms."] : NOBODY;
+}
 
 /**
  * The diver's step and the next instruction, from a message of the server.
@@ -14,6 +36,9 @@ const FEW = 6; // frames a second: below, a gesture of a second has at most five
  * @param {Seen} message
  */
 function situation({ pose, salute, held, state }) {
+  const trigger = page.gestures?.trigger;
+  if (trigger && trigger.kind !== "pose") return pose ? ["gesture", "Show a gesture."] : NOBODY;
+  if (trigger) return posed({ pose, salute, held, state });
   if (state === "done") return ["closing", "Gesture taken. Let the salute go."];
   if (state === "recording" && held)
     return ["salute", "Salute held. Let it go and show the gesture."];
@@ -22,7 +47,7 @@ function situation({ pose, salute, held, state }) {
       ? ["closing", "Closing salute seen. Hold it."]
       : ["gesture", "Show the gesture, then salute again."];
   if (salute > SALUTE) return ["salute", "Salute seen. Hold it."];
-  return pose ? ["", "Waiting for a Vulcan salute."] : ["", "Nobody is in the picture."];
+  return pose ? ["", "Waiting for a Vulcan salute."] : NOBODY;
 }
 
 /**
@@ -33,7 +58,12 @@ function situation({ pose, salute, held, state }) {
 export function drawState(answer) {
   const [step, text] = answer
     ? situation(answer)
-    : ["", "Hold a Vulcan salute, show the gesture, salute again."];
+    : [
+        "",
+        page.gestures?.trigger
+          ? WITH_TRIGGER
+          : "Hold a Vulcan salute, show the gesture, salute again.",
+      ];
   const words = byId("live-instruction");
   if (words.textContent !== text) words.textContent = text;
   for (const each of byId("live-steps").children) {

@@ -190,7 +190,7 @@ function listening({ language, gestures, problem: trouble }) {
   const text = trouble
     ? `Takes are found, but none is recognised: ${trouble}.`
     : language
-      ? `Between two salutes: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
+      ? `${state.gestures?.trigger ? "By its trigger" : "Between two salutes"}: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
       : "Takes are found, but no language is chosen to recognise them.";
   byId("live-language").textContent = text;
 }

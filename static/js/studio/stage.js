@@ -1,5 +1,6 @@
 // The stage: the clip on display, its takes, and the outcome of its recognition.
 
+import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { percent } from "../core/format.js";
@@ -18,6 +19,7 @@ import { show } from "./workspace.js";
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
 
 let viewTimer = 0;
+let asking = 0; // Counts the questions for takes.
 let shownView = "";
 
 /** Load the takes of the clip on display as soon as it has any. */
@@ -26,10 +28,14 @@ export async function loadTakes() {
   // Those of the clip before must not be taken for this one's while its own are on their way.
   update({ takes: null, timeline: null });
   if (!clip || clip.status !== "done") return undefined;
+  const by = takesLanguage(state.gestures);
+  asking += 1;
+  const mine = asking;
   const loaded = await attempt("Loading the takes", () =>
-    Promise.all([api.clips.takes(clip.id), api.clips.timeline(clip.id)]),
+    Promise.all([api.clips.takes(clip.id, by), api.clips.timeline(clip.id, by)]),
   );
-  if (!loaded || state.clip !== clip.id) return undefined;
+  // An answer by the trigger before may come last.
+  if (!loaded || mine !== asking) return undefined;
   const [takes, timeline] = loaded;
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
   const byHand = state.start !== null || state.end !== null;

@@ -84,12 +84,16 @@ export function curves(timeline) {
   );
 }
 
-/** What the curves are, in words. */
-export function legend() {
+/**
+ * What the curves are, in words.
+ *
+ * @param {string} held what begins and ends a take
+ */
+export function legend(held) {
   return h(
     "ul",
     { className: "curve-legend", "aria-label": "Curves" },
-    h("li", {}, h("i", { className: "salute-area" }), "salute"),
+    h("li", {}, h("i", { className: "salute-area" }), held),
     CURVES.map(({ className, text }) => h("li", {}, h("i", { className }), text)),
   );
 }

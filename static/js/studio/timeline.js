@@ -4,7 +4,7 @@ import { filmstrip } from "../clips/filmstrip.js";
 import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
-import { salutesIn, saluteWarning } from "../clips/salutes.js";
+import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
@@ -58,7 +58,7 @@ function takeButton(take, index, duration) {
       className: `take${chosen ? " chosen" : ""}${take.closed ? "" : " open"}`,
       "aria-pressed": String(chosen),
       "aria-label": `${name}, ${moment(take.start)} to ${moment(take.end)}${take.closed ? "" : ", no closing salute"}`,
-      title: `${name}: from salute to salute. The bright part is the gesture, without the hand's transit from and to the salute.`,
+      title: `${name}: from ${held()} to ${held()}. The bright part is the gesture, without the hand's transit from and to it.`,
       style: {
         left: percent(take.start, duration),
         width: percent(take.end - take.start, duration),
@@ -69,6 +69,9 @@ function takeButton(take, index, duration) {
     h("span", { className: "take-name" }, name, take.closed ? null : h("small", {}, " open")),
   );
 }
+
+/** What a diver holds before and after a gesture. */
+const held = () => heldName(state.gestures);
 
 /**
  * Where a salute opens or closes a take.
@@ -82,7 +85,7 @@ function saluteMark(seconds, kind, duration) {
     "span",
     {
       className: `salute ${kind}`,
-      title: "Vulcan salute",
+      title: held(),
       style: { left: percent(seconds, duration) },
     },
     icon("salute"),
@@ -207,7 +210,7 @@ function summary(range, takes) {
     return `Take ${(state.take ?? 0) + 1} of ${takes.length}: gesture ${moment(from)} \u2013 ${moment(to)}${range.take.closed ? "" : ", without a closing salute"}`;
   }
   if (takes.length) return `Range by hand: ${where}`;
-  return `No Vulcan salute was found; choose the range by hand: ${where}`;
+  return `No ${held()} was found; choose the range by hand: ${where}`;
 }
 
 /**
@@ -267,10 +270,12 @@ export function drawTimeline() {
     },
   });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
-  const salutes = state.takes.flatMap((take) => saluteMarks(take, duration));
+  // Gestures that are found anywhere have nothing held at their ends.
+  const marked = held() === "gesture" ? [] : state.takes;
+  const salutes = marked.flatMap((take) => saluteMarks(take, duration));
   const warning = range.take
     ? ""
-    : saluteWarning(salutesIn(state.timeline, range.start, range.end));
+    : saluteWarning(salutesIn(state.timeline, range.start, range.end), held());
   const note = h(
     "p",
     { className: "range-text" },
@@ -313,7 +318,10 @@ export function drawTimeline() {
     tracksArea(),
     h("i", { className: "now", id: "now" }),
   );
-  box.replaceChildren(along, h("div", { className: "under" }, ruler(duration), legend()));
+  box.replaceChildren(
+    along,
+    h("div", { className: "under" }, ruler(duration), legend(held().replace("Vulcan ", ""))),
+  );
   lane.prepend(filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight) ?? "");
   placeHandles(lane, range);
   scrub(along);

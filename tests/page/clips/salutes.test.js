@@ -1,7 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { salutesIn, saluteWarning } from "../../../static/js/clips/salutes.js";
+import {
+  heldName,
+  salutesIn,
+  saluteWarning,
+  takesLanguage,
+} from "../../../static/js/clips/salutes.js";
 
 // 0.6 s of salute, 2 s of stroke, 0.6 s of salute, and one frame by chance.
 const RATE = 20;
@@ -23,5 +28,27 @@ test("the salutes in a range are those of which it contains more than an edge", 
 
 test("only a range with salutes is warned of", () => {
   assert.equal(saluteWarning([]), "");
+  const bare = /** @type {any} */ ({ id: "c", trigger: { kind: "none" } });
+  assert.equal(heldName(bare), "gesture");
   assert.match(saluteWarning([[0, 1]]), /contains 1 Vulcan salute,/);
+});
+
+test("a language with an arm trigger is asked for takes by its own name of what is held", () => {
+  const posed = /** @type {any} */ ({ id: "a", trigger: { kind: "pose" } });
+  const saluting = /** @type {any} */ ({ id: "b", trigger: null });
+  assert.deepEqual(
+    [takesLanguage(posed), takesLanguage(saluting), takesLanguage(null)],
+    ["a", null, null],
+  );
+  assert.deepEqual([heldName(posed), heldName(saluting)], ["arm pose", "Vulcan salute"]);
+  assert.match(
+    saluteWarning(
+      [
+        [0, 1],
+        [2, 3],
+      ],
+      heldName(posed),
+    ),
+    /2 arm poses.*between the poses/,
+  );
 });

@@ -4,9 +4,14 @@ import pytest
 
 from app.recognition import Gesture, Language
 from app.recognition.errors import LandmarkError
-from app.recognition.language.requirements import find_requirements, require_landmarks
+from app.recognition.language.requirements import (
+    find_requirements,
+    require_landmarks,
+    require_trigger,
+)
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.skeletons import COCO_17
+from tests.posed import BY_BELLY
 from tests.recognition.strategies import circle, line, recording
 
 
@@ -55,3 +60,15 @@ def test_a_source_that_lacks_a_landmark_is_refused_with_its_name() -> None:
     ) as refused:
         require_landmarks(language, COCO_17, "yolo-pose")
     assert refused.value.landmark == "right_index"
+
+
+def test_a_trigger_needs_the_arms_and_a_salute_none_of_the_body() -> None:
+    posed = Language("pool", trigger=BY_BELLY)
+    require_trigger(posed, COCO_17, "yolo-pose")
+    without = [name for name in COCO_17 if name != "left_elbow"]
+    with pytest.raises(
+        LandmarkError, match=r"yolo-pose gives no landmark 'left_elbow', by which the trigger"
+    ) as refused:
+        require_trigger(posed, without, "yolo-pose")
+    assert refused.value.landmark == "left_elbow"
+    require_trigger(Language("pool"), (), "a source of nothing")

@@ -14,7 +14,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.salute import (
     HOLD_SECONDS,
-    SaluteTrigger,
+    HeldTrigger,
     best_salute,
     check_published_rule,
     salute_score,
@@ -137,7 +137,7 @@ def test_the_best_hand_counts_whichever_side_and_size() -> None:
 
 def held_since(*frames: tuple[float, float]) -> float | None:
     """Return the time at which a salute first counts."""
-    trigger = SaluteTrigger()
+    trigger = HeldTrigger()
     return next((time for time, score in frames if trigger.update(time, score)), None)
 
 
@@ -158,7 +158,7 @@ def test_a_salute_in_every_other_frame_is_not_believed() -> None:
 
 
 def test_a_salute_is_released_after_the_dropout_time_and_dated_back() -> None:
-    trigger = SaluteTrigger()
+    trigger = HeldTrigger()
     for index in range(25):
         trigger.update(index / 25, 0.9)
     assert trigger.held

@@ -9,12 +9,14 @@ import pytest
 
 from app.recognition import Gesture, Language
 from app.recognition.errors import OsgError
+from app.recognition.triggers.trigger import NO_TRIGGER
 from app.ui.slate.drawing import Disc, Page, Path, Shape, Words, estimate_width, wrap
 from app.ui.slate.fonts import find_font
 from app.ui.slate.layout import ARROWS, MARGIN, lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg
 from tests.conftest import ROOT
+from tests.posed import BY_BELLY, BY_BELLY_AND_HEAD
 
 TABLE_2 = Language.load(ROOT / "languages" / "osg-table-2.json")
 
@@ -37,6 +39,24 @@ def test_names_meanings_salute_and_roles_are_on_the_page() -> None:
     assert "Go to the waypoint" in texts
     assert "Vulcan salute" in texts
     assert any(text.startswith("A message: circle begins") for text in texts)
+
+
+def test_another_trigger_stands_in_the_place_of_the_salute() -> None:
+    posed, both, bare = (
+        lay_out(replace(TABLE_2, trigger=trigger))
+        for trigger in (BY_BELLY, BY_BELLY_AND_HEAD, NO_TRIGGER)
+    )
+    assert "left hand before the body" in words_of(posed)
+    assert "left hand before the body; left hand at the head" in words_of(both)
+    assert "Without a trigger" in words_of(bare)
+    discs = [sum(isinstance(part, Disc) for part in page.parts) for page in (bare, posed, both)]
+    assert [after - discs[0] for after in discs] == [0, 3, 6]
+    assert not any("salute" in text for page in (posed, both, bare) for text in words_of(page))
+    width, height = posed.width, posed.height
+    for part in both.parts:
+        if isinstance(part, Disc):
+            assert MARGIN <= part.centre[0] <= width - MARGIN
+            assert 0 < part.centre[1] < height
 
 
 def test_every_stroke_has_a_start_dot_with_its_hand_and_arrows() -> None:

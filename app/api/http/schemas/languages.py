@@ -12,6 +12,7 @@ from app.api.http.schemas.values import Author, Body, Name
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.grammar_schema import GrammarEntry
 from app.recognition.language.schema import TuningEntry
+from app.recognition.language.trigger_schema import TriggerEntry
 
 
 class LanguageDraft(Body):
@@ -63,6 +64,8 @@ class LanguageView(LanguageSummary):
     profile: ProfileName = Field(description="The voters that recognise it")
     tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
     tuning_words: str = Field(description="The same for people: recognised ...")
+    trigger: TriggerEntry | None = Field(description="What begins and ends a take; null: a salute")
+    trigger_words: str = Field(description="The same for people: takes lie ...")
 
 
 class RevisionView(BaseModel):

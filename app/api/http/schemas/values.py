@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
+from fastapi import Query
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
@@ -21,6 +22,14 @@ Seconds = Annotated[float, Field(ge=0, le=MOST_SECONDS, allow_inf_nan=False)]
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]
 Command = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | dict[str, Any] | None
+
+TriggerLanguage = Annotated[
+    str | None,
+    Query(
+        max_length=64,
+        description="Language whose trigger begins and ends takes; left out: a salute does",
+    ),
+]
 
 
 class Body(BaseModel):

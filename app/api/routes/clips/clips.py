@@ -17,14 +17,15 @@ from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
 from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
+from app.api.http.schemas.values import TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import require_quota, turn_of
+from app.api.services.clip_takes import find_takes
 from app.api.services.clip_views import view_clip
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
-from app.recognition.recording.segmentation import takes_in
 from app.store import ClipStore, ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2
@@ -244,18 +245,12 @@ def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
 
 
 @router.get("/{clip_id}/takes", responses=problem_responses(404, 409))
-def get_takes(clip_id: str, studio: CurrentStudio) -> list[TakeView]:
-    """List what lies between the salutes."""
-    return [
-        TakeView(
-            start=take.start,
-            end=take.end,
-            closed=take.closed,
-            stroke_start=take.stroke_start,
-            stroke_end=take.stroke_end,
-        )
-        for take in takes_in(studio.recording(clip_id))
-    ]
+def get_takes(
+    clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
+) -> list[TakeView]:
+    """List what lies between the salutes, or other triggers of a language."""
+    state = None if language_id is None else studio.languages.get(language_id)
+    return [TakeView(**vars(take)) for take in find_takes(studio, clip_id, state)]
 
 
 def _views(clips: ClipStore) -> list[ClipView]:

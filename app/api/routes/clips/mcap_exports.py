@@ -19,6 +19,8 @@ from app.api.jobs.job import JobCancelled
 from app.api.jobs.session_export import SessionExportJob
 from app.api.middleware.shutdown import stopping
 from app.api.services.studio import CurrentStudio, Studio
+from app.recognition.language.trigger_entry import trigger_to_entry
+from app.recognition.triggers.trigger import SALUTE
 
 MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""
@@ -72,8 +74,17 @@ def _request(studio: Studio, clip_id: str) -> SessionRequest:
     """Collect the content of a clip's session."""
     studio.recording(clip_id)  # raises while its poses are not found
     clip = studio.clips.get(clip_id).clip
+    records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
+    # Takes are cut as the language does that was asked last.
+    last = records[0] if records else None
+    trigger = (
+        SALUTE
+        if last is None
+        else studio.language(studio.languages.get(last.language_id, last.revision)).trigger
+    )
     return SessionRequest(
         clip=clip.name,
+        trigger=trigger_to_entry(trigger),
         recognitions=[
             SessionRecognition(
                 start=record.start,
@@ -83,6 +94,6 @@ def _request(studio: Studio, clip_id: str) -> SessionRequest:
                 expected=record.expected,
                 result=json.loads(record.result),
             )
-            for record in studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
+            for record in records
         ],
     )

@@ -12,6 +12,8 @@ from pydantic import BaseModel, Field
 from app.api.extraction.pictures import thumbnails_in
 from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
+from app.api.http.schemas.values import TriggerLanguage
+from app.api.services.clip_takes import trigger_of
 from app.api.services.studio import CurrentStudio
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray
@@ -32,7 +34,9 @@ class TimelineView(BaseModel):
     """What lies along a clip's time, one value a frame."""
 
     time: list[float] = Field(description="Seconds, by the container")
-    salute: list[float] = Field(description="Confidence of the salute, 0 to 1")
+    salute: list[float] = Field(
+        description="Confidence of the salute, or of the language's other trigger, 0 to 1"
+    )
     speed: dict[str, list[float | None]] = Field(
         description="Per wrist, torso lengths a second; null where it was not seen"
     )
@@ -43,14 +47,18 @@ class TimelineView(BaseModel):
 @router.get(
     "/{clip_id}/timeline", response_model=TimelineView, responses=problem_responses(404, 409)
 )
-def get_timeline(clip_id: str, studio: CurrentStudio) -> Response:
+def get_timeline(
+    clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
+) -> Response:
     """Return the curves along the clip, one value a frame."""
     recording = studio.recording(clip_id)
+    trigger = trigger_of(studio, language_id)
+    scores = np.maximum(*trigger.score(recording.poses, recording.salute))
     has_thumbnails = studio.clips.filmstrip(clip_id).is_file()
     speeds, unit = wrist_speeds(recording)
     content = {
         "time": np.round(recording.poses.time, TIME_DIGITS).tolist(),
-        "salute": np.round(recording.salute, CURVE_DIGITS).tolist(),
+        "salute": np.round(scores, CURVE_DIGITS).tolist(),
         "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
         "unit": unit,
         "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,

@@ -14,6 +14,7 @@ from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
+from app.api.services.clip_takes import trigger_of
 from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.gesture_edits import (
     add_demonstration_to,
@@ -55,7 +56,7 @@ def add_demonstration(
     expected: ExpectedRevision,
 ) -> LanguageView:
     """Add a take to a gesture as one more demonstration, by the same diver or another."""
-    demonstration = demonstration_at(studio, draft)
+    demonstration = demonstration_at(studio, draft, trigger_of(studio, language_id))
     changed = partial(add_demonstration_to, draft=draft, demonstration=demonstration)
     edit = edit_document(f"Add a demonstration of {draft.label}", changed)
     state = studio.languages.edit(language_id, edit, expected)

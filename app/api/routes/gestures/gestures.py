@@ -14,6 +14,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
+from app.api.services.clip_takes import trigger_of
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import (
     add_gestures_to,
@@ -42,7 +43,7 @@ def add_gesture(
     expected: ExpectedRevision,
 ) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
-    demonstration = demonstration_at(studio, draft)
+    demonstration = demonstration_at(studio, draft, trigger_of(studio, language_id))
     gesture = gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
@@ -64,7 +65,7 @@ def add_gestures(
     expected: ExpectedRevision,
 ) -> LanguageView:
     """Save several demonstrations as new gestures in one revision: all of them, or none."""
-    made = gestures_from(studio, draft.gestures)
+    made = gestures_from(studio, draft.gestures, trigger_of(studio, language_id))
     gestures = [gesture for gesture, _ in made]
     title = f"Add {', '.join(gesture.label for gesture in gestures)}"
     edit = edit_document(title, partial(add_gestures_to, gestures=gestures))
@@ -87,7 +88,9 @@ def change_gesture(
     """Change what a gesture says, what of it counts, or the demonstration that shows it."""
     demonstration = None
     if change.demonstration is not None:
-        demonstration = demonstration_at(studio, change.demonstration)
+        demonstration = demonstration_at(
+            studio, change.demonstration, trigger_of(studio, language_id)
+        )
     changed = partial(change_gesture_of, label=label, change=change, demonstration=demonstration)
     edit = edit_document(f"Change {label}", changed)
     state = studio.languages.edit(language_id, edit, expected)

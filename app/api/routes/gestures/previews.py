@@ -249,7 +249,8 @@ def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draf
         detail = "a new gesture needs a demonstration: name its clip"
         fault = Fault(pointer="/change/demonstration", detail=detail)
         raise ProblemError(422, "request_invalid", detail, errors=[fault])
-    return _Draft(language, request, None if where is None else demonstration_at(studio, where))
+    shown = None if where is None else demonstration_at(studio, where, language.trigger)
+    return _Draft(language, request, shown)
 
 
 def _view(

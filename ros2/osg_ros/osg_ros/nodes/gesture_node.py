@@ -11,7 +11,6 @@ from typing import Any
 
 from std_msgs.msg import Header
 
-from app.recognition.errors import EstimatorError
 from app.recognition.estimation import (
     FrameLandmarks,
     PoseEstimator,
@@ -19,7 +18,7 @@ from app.recognition.estimation import (
     finds_hands,
     list_landmarks,
 )
-from app.recognition.language.requirements import require_landmarks
+from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.robot import ActiveLanguage, Event, Frame, PhraseListener, create_listener
 from osg_ros.estimation_settings import ESTIMATOR, HANDS, PROVIDER, THREADS, WATER
 from osg_ros.language_service import LANGUAGE, PROFILE, WITHOUT_SALUTES, LanguageService
@@ -51,19 +50,13 @@ class GestureNode(ManagedNode):
             When a model cannot be loaded, or the salutes need hands and no hand model is set.
 
         """
-        hands = self.settings["hands"]
         self._estimator = create_estimator(
             self.settings["estimator"],
-            hands=hands,
+            hands=self.settings["hands"],
             threads=self.settings["threads"],
             provider=self.settings["provider"],
         )
         self._without_salutes = self.settings["without_salutes"]
-        if not finds_hands(self._estimator) and not self._without_salutes:
-            raise EstimatorError(
-                f"parameter hands is {hands!r}, and without hands no salute is seen; set "
-                "without_salutes to true or hands to others"
-            )
         self._service = LanguageService(self, self._create_listener, self._change_language)
         self._water = self.settings["water"]
         self._topics = GestureTopics(self)
@@ -131,7 +124,12 @@ class GestureNode(ManagedNode):
         assert self._estimator is not None
         landmarks = list_landmarks(self._estimator)
         require_landmarks(language.recognizer.language, landmarks, "the pose estimator")
-        return create_listener(language, without_salutes=self._without_salutes)
+        require_trigger(language.recognizer.language, landmarks, "the pose estimator")
+        return create_listener(
+            language,
+            without_salutes=self._without_salutes,
+            hands=finds_hands(self._estimator),
+        )
 
     def _change_language(self, language: ActiveLanguage) -> None:
         if self._worker is not None:

@@ -1,0 +1,70 @@
+"""Route of a language's trigger: a salute, poses of the arms from clips, or nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fastapi import APIRouter, Response
+
+from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.revisions import ExpectedRevision
+from app.api.http.schemas.languages import LanguageView
+from app.api.http.schemas.triggers import HeldPose, TriggerDraft
+from app.api.services.language_documents import edit_document
+from app.api.services.language_views import announce
+from app.api.services.studio import CurrentStudio, Studio
+from app.recognition import Language
+from app.recognition.errors import TriggerError
+from app.recognition.triggers.arm_pose import ArmPose
+from app.recognition.triggers.trigger import Trigger
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+
+@router.put("/{language_id}/trigger", responses=problem_responses(404, 409, 412))
+def change_trigger(
+    language_id: str,
+    draft: TriggerDraft,
+    studio: CurrentStudio,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Choose what begins and ends a take; the takes of all clips are then found by it."""
+    start = None if draft.start is None else _pose(studio, draft.start, "/start")
+    stop = None if draft.stop is None else _pose(studio, draft.stop, "/stop")
+
+    def change(language: Language) -> Trigger:
+        kept = language.trigger.start if draft.kind == "pose" else None
+        try:
+            return Trigger(draft.kind, start or kept, stop, draft.start_label, draft.stop_label)
+        except TriggerError as error:
+            raise _refusal(str(error), "/stop" if stop else "/start") from error
+
+    words = change(studio.language(studio.languages.get(language_id))).words
+    edit = edit_document(
+        f"Find takes {words}", lambda language: replace(language, trigger=change(language))
+    )
+    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+
+
+def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
+    """Return the pose that is held in a range of a clip; it is refused with its place."""
+    poses = studio.recording(where.clip_id).poses
+    first = float(poses.time[0]) if where.start is None else where.start
+    last = float(poses.time[-1]) if where.end is None else where.end
+    inside = poses.between(first, last)
+    if not len(inside):
+        raise _refusal(
+            f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
+            f"{poses.time[0]:g} s to {poses.time[-1]:g} s",
+            pointer,
+        )
+    try:
+        return ArmPose.from_poses(inside)
+    except TriggerError as error:
+        raise _refusal(str(error), pointer) from error
+
+
+def _refusal(reason: str, pointer: str) -> ProblemError:
+    fault = Fault(pointer=pointer, detail=reason)
+    return ProblemError(422, "trigger_unusable", reason, errors=[fault])

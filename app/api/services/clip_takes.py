@@ -1,0 +1,84 @@
+"""Clip takes: what lies between a language's triggers in a clip, or is spotted there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from app.api.services.studio import Studio
+from app.recognition import Language, OsgError, Recognizer, Recording
+from app.recognition.recording.segmentation import takes_in
+from app.recognition.spotting import Spotter
+from app.recognition.triggers.trigger import SALUTE, Trigger
+from app.store import LanguageState
+
+CACHED_CLIPS = 64
+"""Clips whose spotted gestures are kept: spotting takes a fifth of a clip's time."""
+
+
+@dataclass(frozen=True)
+class TakeRange:
+    """A take without its landmarks.
+
+    Attributes
+    ----------
+    start, end
+        Seconds between the triggers.
+    closed
+        Whether a trigger ended it.
+    stroke_start, stroke_end
+        Seconds of the gesture itself.
+
+    """
+
+    start: float
+    end: float
+    closed: bool
+    stroke_start: float
+    stroke_end: float
+
+
+def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
+    """Return the trigger of a language's newest revision; of no language, a salute.
+
+    Raises
+    ------
+    NotFound
+        When there is no such language.
+
+    """
+    if language_id is None:
+        return SALUTE
+    return studio.language(studio.languages.get(language_id)).trigger
+
+
+def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tuple[TakeRange, ...]:
+    """Return the takes of a clip by a language's trigger; without a trigger, what is spotted.
+
+    Raises
+    ------
+    NotFound, ProblemError
+        As `Studio.recording`.
+
+    """
+    recording = studio.recording(clip_id)
+    trigger = SALUTE if state is None else studio.language(state).trigger
+    if state is not None and trigger.spots:
+        return _spot(str(studio.clips.recording(clip_id)), state.revision.document)
+    return tuple(
+        TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
+        for take in takes_in(recording, trigger=trigger)
+    )
+
+
+@lru_cache(CACHED_CLIPS)
+def _spot(recording: str, document: str) -> tuple[TakeRange, ...]:
+    """Spot a language's gestures; none where it has none that could be spotted."""
+    try:
+        spotter = Spotter(Recognizer(Language.from_json(document)))
+    except OsgError:
+        return ()
+    return tuple(
+        TakeRange(found.start, found.end, True, found.start, found.end)
+        for found in spotter.listen(Recording.load(recording).poses)
+    )

@@ -1,0 +1,114 @@
+"""Trigger listener: listens between triggers or without, as the active language asks."""
+
+from __future__ import annotations
+
+from app.recognition import PoseSequence
+from app.recognition.errors import EstimatorError
+from app.recognition.recording.segmentation import TakeState
+from app.recognition.spotting import LONGEST_MEMORY
+from app.robot.active_language import ActiveLanguage
+from app.robot.events import Event
+from app.robot.listeners.salute_listener import LandmarkListener, Listener
+from app.robot.listeners.spotting_listener import SpottingListener
+from app.robot.listeners.stream_order import StreamOrder
+
+
+class TriggerListener:
+    """Listener that changes with the language's trigger; a `LandmarkListener`.
+
+    Parameters
+    ----------
+    language
+        The language to recognise.
+    without_salutes
+        Spot gestures in continuous motion, whatever the trigger.
+    hands
+        Whether the stream shows hands, and so salutes.
+
+    Raises
+    ------
+    OsgError
+        When the language cannot be spotted without triggers; see `SpottingListener`. When it
+        needs salutes, and no hand is seen.
+
+    """
+
+    def __init__(
+        self, language: ActiveLanguage, *, without_salutes: bool = False, hands: bool = True
+    ) -> None:
+        self._always_spots = without_salutes
+        self._hands = hands
+        self._listener = self._create(language)
+        self._left: tuple[Event, ...] = ()  # of the listener before a change
+
+    @property
+    def language(self) -> ActiveLanguage:
+        """The active language."""
+        return self._listener.language
+
+    @property
+    def state(self) -> TakeState:
+        """State of the triggers."""
+        return self._listener.state
+
+    @property
+    def order(self) -> StreamOrder:
+        """What is known of the order of the frames."""
+        return self._listener.order
+
+    @property
+    def lag(self) -> float:
+        """Seconds by which a gesture may be reported after its end."""
+        return LONGEST_MEMORY if isinstance(self._listener, SpottingListener) else 0.0
+
+    def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
+        """Process the next frame; see `LandmarkListener.feed`."""
+        left, self._left = self._left, ()
+        return (*left, *self._listener.feed(moment, salute))
+
+    def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
+        """Clear the memory; an open take is rejected for `reason`."""
+        left, self._left = self._left, ()
+        return (*left, *self._listener.abandon(time, reason))
+
+    def finish(self) -> tuple[Event, ...]:
+        """End the stream and return the events that were still pending."""
+        left, self._left = self._left, ()
+        return (*left, *self._listener.finish())
+
+    def set_language(self, language: ActiveLanguage) -> None:
+        """Recognise another language from the next frame on.
+
+        Where one of the two languages has no trigger, the memory is cleared.
+
+        Raises
+        ------
+        OsgError
+            As for a new one; the previous language stays active.
+
+        """
+        self._require_hands(language)
+        if self._spots(language) == isinstance(self._listener, SpottingListener):
+            self._listener.set_language(language)
+            return
+        following = self._create(language)
+        time = self._listener.order.time
+        self._left += self._listener.abandon(time, "the language's trigger changed")
+        self._listener = following
+
+    def _spots(self, language: ActiveLanguage) -> bool:
+        return self._always_spots or language.trigger.spots
+
+    def _require_hands(self, language: ActiveLanguage) -> None:
+        if not (self._hands or self._spots(language)) and language.trigger.kind == "salute":
+            raise EstimatorError(
+                f"the language {language.name!r} waits for salutes, and without hands no salute "
+                "is seen: choose a hand model, give the language another trigger, or set "
+                "without_salutes"
+            )
+
+    def _create(self, language: ActiveLanguage) -> LandmarkListener:
+        self._require_hands(language)
+        if self._spots(language):
+            return SpottingListener(language, triggered=not self._always_spots)
+        return Listener(language)

@@ -1,0 +1,187 @@
+// The trigger of the language on display: what begins and ends a take, and the dialog that sets it.
+
+import { takesLanguage } from "../clips/salutes.js";
+import * as api from "../core/api.js";
+import { byId, h, WRITES } from "../core/dom.js";
+import { moment } from "../core/format.js";
+import { currentLanguage, selectedClip, selectedRange, update } from "../core/state.js";
+import { complain } from "../core/toasts.js";
+import { showDone } from "../core/undo.js";
+import { edit } from "./revision-edit.js";
+
+/** @import { State, TriggerDraft } from "../core/types.d.ts" */
+
+/** @typedef {{ name: string, text: string, more: string, draft: TriggerDraft | null, labels?: string[] }} Choice */
+
+const SPOTTED = new Set(["gesture", "none"]); // Kinds of triggers that are not held.
+const NO_POSES = { start: null, stop: null, start_label: "", stop_label: "" };
+
+/**
+ * What the takes of clips depend on; the page finds them anew when it changes.
+ *
+ * @param {Pick<State, "gestures">} state
+ */
+export function triggerKey({ gestures }) {
+  if (!gestures?.trigger) return "";
+  // Without a trigger, every change of the gestures may change what is spotted.
+  const spotted = SPOTTED.has(gestures.trigger.kind) ? gestures.revision : 0;
+  return JSON.stringify([takesLanguage(gestures), gestures.trigger, spotted]);
+}
+
+/** The range on display as a pose for the API; null where there is none. */
+function heldPose() {
+  const clip = selectedClip();
+  const range = selectedRange();
+  if (clip?.status !== "done" || !range) return null;
+  return { clip_id: clip.id, start: range.start, end: range.end };
+}
+
+/**
+ * What can be chosen; without a draft it needs a range of a clip first.
+ *
+ * @returns {Choice[]}
+ */
+function choices() {
+  const pose = heldPose();
+  const clip = selectedClip();
+  const where = pose
+    ? `From the range on display: ${clip?.name}, ${moment(pose.start)} \u2013 ${moment(pose.end)}.`
+    : "Choose a clip first, and the range in which the pose is held.";
+  /** @type {Choice[]} */
+  const found = [
+    {
+      name: "salute",
+      text: "A Vulcan salute",
+      more: "Its fingers must be seen.",
+      draft: { ...NO_POSES, kind: "salute" },
+    },
+    {
+      name: "pose",
+      text: "A held pose of the arms",
+      more: `No hand needs to be seen. ${where}`,
+      draft: pose && { ...NO_POSES, kind: "pose", start: pose },
+    },
+  ];
+  if (currentLanguage().trigger?.kind === "pose")
+    found.push({
+      name: "stop",
+      text: "Another pose of the arms at the end",
+      more: `The pose of now begins a take, and this one ends it. ${where}`,
+      draft: pose && { ...NO_POSES, kind: "pose", stop: pose },
+    });
+  const labels = currentLanguage().gestures.map(({ label }) => label);
+  found.push({
+    name: "gesture",
+    text: "A gesture of the language",
+    more: labels.length ? "What is shown between two of them counts." : "It has no gesture yet.",
+    draft: labels.length ? { ...NO_POSES, kind: "gesture", start_label: labels[0] } : null,
+    labels,
+  });
+  found.push({
+    name: "none",
+    text: "Nothing",
+    more: "Gestures are found anywhere, with more false alarms.",
+    draft: { ...NO_POSES, kind: "none" },
+  });
+  return found;
+}
+
+/** @param {TriggerDraft} draft */
+async function save(draft) {
+  try {
+    const { trigger_words: words } = await edit(
+      "Saving the trigger",
+      "Change of the trigger",
+      (language) => api.languages.setTrigger(language, draft),
+    );
+    byId("dialog").close();
+    update({ take: null, start: null, end: null, recognition: null });
+    showDone("Trigger saved", `Takes ${words}`);
+  } catch (error) {
+    complain(error, "Saving the trigger");
+  }
+}
+
+/**
+ * The gesture that begins and ends a take.
+ *
+ * @param {Choice} choice
+ */
+function labelChoice({ labels = [], draft }) {
+  const select = h(
+    "select",
+    { "aria-label": "Gesture that begins and ends a take" },
+    labels.map((label) => h("option", { value: label }, label)),
+  );
+  select.onchange = () => {
+    if (draft) draft.start_label = select.value;
+  };
+  return select;
+}
+
+/** Open the dialog that sets the trigger of the language on display. */
+function openTrigger() {
+  const dialog = byId("dialog");
+  const language = currentLanguage();
+  const offered = choices();
+  const submit = h("button", { type: "submit", className: "primary", ...WRITES }, "Save");
+  submit.disabled = true;
+  /** @type {Choice | null} */
+  let chosen = null;
+  const rows = offered.map((choice) => {
+    const input = h("input", { type: "radio", name: "trigger", value: choice.name });
+    input.disabled = !choice.draft;
+    input.onchange = () => {
+      chosen = choice;
+      submit.disabled = false;
+    };
+    return h(
+      "label",
+      {},
+      input,
+      h("span", {}, h("b", {}, choice.text), h("small", { className: "dim" }, choice.more)),
+      choice.labels?.length ? labelChoice(choice) : null,
+    );
+  });
+  const form = h(
+    "form",
+    { method: "dialog", className: "settings-dialog", noValidate: true },
+    h("h2", { id: "dialog-title" }, "What begins and ends a gesture"),
+    h(
+      "p",
+      { className: "dim" },
+      `Now takes lie ${language.trigger_words}. The robot does the same.`,
+    ),
+    h("fieldset", { className: "settings-profiles" }, h("legend", {}, "Trigger"), rows),
+    h(
+      "div",
+      { className: "dialog-actions" },
+      h("span", { className: "spacer" }),
+      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      submit,
+    ),
+  );
+  form.onsubmit = (event) => {
+    event.preventDefault();
+    if (chosen?.draft) save(chosen.draft);
+  };
+  dialog.replaceChildren(form);
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+}
+
+/**
+ * Show the trigger above the gestures, with a button that changes it.
+ *
+ * @param {State} state
+ */
+export function drawTrigger({ gestures }) {
+  const box = byId("trigger");
+  box.hidden = !gestures;
+  if (!gestures) return box.replaceChildren();
+  return box.replaceChildren(
+    h("span", { className: "dim" }, `Takes: ${gestures.trigger_words}. `),
+    h("button", { type: "button", className: "link", ...WRITES, onclick: openTrigger }, "Trigger"),
+  );
+}

@@ -1,0 +1,52 @@
+"""The frame pipeline of a live view, with languages of other triggers than the salute."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.api.live.watcher import Frame, Recognized, Seen, Watcher
+from app.recognition import OsgError, Recognizer
+from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import NO_HANDS
+from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
+from tests.api.live.test_socket import frames_of
+from tests.posed import BY_BELLY, posed_clip, posed_language
+
+pytestmark = [pytest.mark.usefixtures("models"), pytest.mark.slow]
+
+
+def watch(recognizer: Recognizer, clip: Path) -> list[Seen | Recognized]:
+    with closing(Watcher(create_estimator(hands=NO_HANDS), "auto", lambda: recognizer)) as watcher:
+        return [
+            answer
+            for time, jpeg in frames_of(clip)
+            for answer in watcher.look(Frame(time, jpeg, arrived=0.0))
+        ]
+
+
+@pytest.mark.parametrize(
+    ("trigger", "name"), [(BY_BELLY, "circle-by-belly-2"), (NO_TRIGGER, "circle-by-belly")]
+)
+def test_a_gesture_is_recognised_where_no_hand_is_seen(trigger: Trigger, name: str) -> None:
+    recognizer = Recognizer(replace(posed_language(), trigger=trigger))
+    answers = watch(recognizer, posed_clip(name))
+    found = [each for each in answers if isinstance(each, Recognized)]
+    assert "circle" in [each.label for each in found]
+    assert all(each.closed and each.language == "posed" for each in found)
+    seen = [each for each in answers if isinstance(each, Seen)]
+    assert any(each.held for each in seen) == (trigger == BY_BELLY)
+
+
+def test_a_language_that_is_gone_leaves_the_salute() -> None:
+    def refuse() -> Recognizer:
+        raise OsgError("there is no such language")
+
+    frame = next(frames_of(posed_clip("circle-by-belly")))
+    with closing(Watcher(create_estimator(hands=NO_HANDS), "auto", refuse)) as watcher:
+        (seen,) = watcher.look(Frame(*frame, arrived=0.0))
+    assert isinstance(seen, Seen)
+    assert not seen.held

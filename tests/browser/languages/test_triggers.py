@@ -1,0 +1,60 @@
+"""A pose of the arms as trigger: chosen from a clip without any hand, used, and undone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.accessibility import faults
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip
+from tests.posed import posed_clip, posed_recording
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        clips = [
+            add_clip(server, name=f"{name}.mp4", video=posed_clip(name), recording=recording)
+            for name in ("circle-by-belly-2", "circle-by-belly")
+            for recording in [posed_recording(name)]
+        ]
+        made = client.post("/api/v1/languages", json={"name": "by arms"}).json()
+        yield Library(clips[-1], made["id"], client)
+
+
+def test_a_gesture_is_defined_and_recognised_between_two_poses(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address | {"start": "1", "end": "2"}, scene=False)
+    expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
+    expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
+    page.get_by_role("button", name="Trigger", exact=True).click()
+    dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
+    expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
+    dialog.get_by_role("radio", name="A held pose of the arms").check()
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Save").click()
+    expect(dialog).to_be_hidden()
+    expect(page.get_by_text("left hand before the body").first).to_be_visible()
+    expect(page.get_by_role("button", name="Take 1,")).to_be_visible()
+
+    page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_label("Label").fill("circle")
+    page.get_by_role("button", name="Save gesture").click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    page.get_by_role("button", name="Show circle-by-belly-2.mp4").click()
+    expect(page.get_by_role("button", name="Take 1,")).to_be_visible()
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(page.locator("#outcome")).to_contain_text("circle")
+
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
+    expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
