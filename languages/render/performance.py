@@ -171,7 +171,7 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
     timeline.hold("salute", manner.hold)
     timeline.move("lower", 0.75 / manner.tempo, REST, REST)
     timeline.hold("rest", 0.3)
-    return _animate(timeline, manner, random)
+    return animate(timeline, manner, random)
 
 
 def move_about(manner: Manner, rate: float, seed: int) -> Performance:
@@ -205,10 +205,10 @@ def move_about(manner: Manner, rate: float, seed: int) -> Performance:
         timeline.move(name, seconds / manner.tempo, target, REST)
         timeline.hold(name, 0.6 if name in ("mask", "point") else 0.08)
     timeline.hold("rest", 0.4)
-    return _animate(timeline, manner, np.random.default_rng(seed))
+    return animate(timeline, manner, np.random.default_rng(seed))
 
 
-def _animate(timeline: Timeline, manner: Manner, random: np.random.Generator) -> Performance:
+def animate(timeline: Timeline, manner: Manner, random: np.random.Generator) -> Performance:
     """Add what nobody does on purpose: tremor of the hands, drift and sway of the body."""
     time = np.arange(len(timeline.right)) / timeline.rate
     shake = [tremor(random, time, 0.004) for _ in range(2)]

@@ -9,21 +9,24 @@ import numpy as np
 from languages.render.body import Array, Body, HandAxes, Joints, Rotations, unit
 
 
-def _fingers(*degrees: tuple[float, float, float, float]) -> Array:
+def bend_fingers(*degrees: tuple[float, float, float, float]) -> Array:
+    """Return spread and bends of thumb to little finger in radians, ``(5, 4)``."""
     bends: Array = np.radians(np.array(degrees))
     return bends
 
 
 HAND_SHAPES = {
-    "salute": _fingers((48, 0, 5, 5), (12, 0, 2, 2), (12, 0, 2, 2), (-15, 0, 2, 2), (-16, 0, 2, 2)),
-    "flat": _fingers((35, 5, 5, 5), (2, 4, 5, 3), (0, 5, 6, 3), (-2, 6, 7, 3), (-4, 8, 8, 4)),
-    "relaxed": _fingers(
+    "salute": bend_fingers(
+        (48, 0, 5, 5), (12, 0, 2, 2), (12, 0, 2, 2), (-15, 0, 2, 2), (-16, 0, 2, 2)
+    ),
+    "flat": bend_fingers((35, 5, 5, 5), (2, 4, 5, 3), (0, 5, 6, 3), (-2, 6, 7, 3), (-4, 8, 8, 4)),
+    "relaxed": bend_fingers(
         (35, 8, 10, 10), (6, 14, 20, 11), (1, 17, 23, 14), (-4, 20, 26, 14), (-9, 20, 26, 17)
     ),
-    "pointing": _fingers(
+    "pointing": bend_fingers(
         (25, 30, 30, 40), (4, 0, 3, 3), (1, 80, 92, 57), (-3, 83, 92, 57), (-7, 80, 92, 57)
     ),
-    "open": _fingers((48, 0, 5, 5), (14, 3, 4, 2), (3, 3, 4, 2), (-8, 4, 4, 2), (-20, 5, 5, 2)),
+    "open": bend_fingers((48, 0, 5, 5), (14, 3, 4, 2), (3, 3, 4, 2), (-8, 4, 4, 2), (-20, 5, 5, 2)),
 }
 """Spread and the bend of the three joints in radians, ``(5, 4)``, thumb to little finger.
 

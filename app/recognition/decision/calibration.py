@@ -32,7 +32,7 @@ from app.recognition.simulation.negatives import draw_negatives
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variant_bias import VARIANT_BIASES
 from app.recognition.simulation.variation import SPREADS, draw_variants
-from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
+from app.recognition.voters.registry import HAND_VOTERS, MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
 """Simulated takes of each gesture; their mean is accurate to a quarter of its value."""
@@ -54,6 +54,11 @@ LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: with only one bone seen, attitudes
 hardly differ."""
 
+HAND_REACH = 4.0
+"""A threshold of a hand voter in typical distances of the demonstrator's own further takes
+(`Voter.within`): none of 150 takes of divers' signs from the demonstrated view is refused, and one
+in a hundred foreign shapes accepted (`benchmarks/studies/hand-shapes.md`)."""
+
 OTHERS = 2.0
 """Ratio of squared distances of other people's takes to the demonstrator's own: 1.9 to 2.1 for
 variants, 1.9 to 2.6 for recorded takes."""
@@ -68,6 +73,11 @@ PLAUSIBLE = 0.2
 
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
+
+HAND_THRESHOLDS: Final = {
+    voter.name: float(f"{HAND_REACH * voter.within:.{DIGITS}g}") for voter in HAND_VOTERS
+}
+"""Thresholds of every held hand shape: one demonstration does not tell how steady a hand is."""
 
 RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"], CLEAR_SHARE))
 """What thresholds depend on beside the gestures; those of another rule are computed again."""
@@ -109,6 +119,8 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
+        else replace(gesture, thresholds=HAND_THRESHOLDS, rates=None)
+        if gesture.is_held
         else _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
         for index, (gesture, others) in enumerate(zip(gestures, negatives.T, strict=True))
     )

@@ -193,7 +193,7 @@ def put_in_path(key: str, value: object) -> Change:
         (
             put_in_demonstration("salient", []),
             "/gestures/1/demonstrations/1/salient",
-            "at least 1 item",
+            "no salient landmark and no held hand",
         ),
         (
             put_in_demonstration("salient", ["left_wrist", "tail"]),
