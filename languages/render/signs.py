@@ -91,6 +91,9 @@ SIGNS = {
     "three": _sign(_hand(THUMB_IN, *_straight(1, 2, 3))),
     "four": _sign(_hand(THUMB_IN, *_straight(1, 2, 3, 4))),
     "five": _sign(_hand((60, 0, 5, 5), *_straight(1, 2, 3, 4))),
+    "low on air": _sign(
+        FIST, np.array([0.9, 0.1, 0.35]), np.array([0.0, 1.0, 0.0]), np.array([0.12, -0.20, -0.12])
+    ),
     "level": _sign(FLAT, np.array([0.9, -0.4, 0.0]), PALM_DOWN),
 }
 """By name; the meanings are those of recreational divers."""

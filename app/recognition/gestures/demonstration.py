@@ -16,7 +16,7 @@ from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands
+from app.recognition.preprocessing.held_hands import comes_and_goes, find_held_hands
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -43,6 +43,9 @@ MAX_MOMENTS = 100
 With `MAX_LANDMARKS` it keeps a demonstration's file entry below 40 kB. In a gesture of ten
 seconds, ten moments a second are left, enough to follow the arm.
 """
+
+HELD_MOMENTS = 8
+"""Most moments kept of a held hand shape: nothing moves, and its file entry stays below 12 kB."""
 
 MAX_LANDMARKS = 16
 """Most landmarks kept of a demonstration: the salient ones first, then the upper body's."""
@@ -143,7 +146,8 @@ class Demonstration:
         else:
             names = find_salient_landmarks(trajectory)
         # Without a torso the unit is the extent itself, in which everything moves.
-        if held and (not names or trajectory.unit == "extent"):
+        still = not names or trajectory.unit == "extent" or comes_and_goes(trajectory)
+        if held and still:
             return cls._of_hands(label, seen, trajectory, held, diver)
         if poor := find_fault(seen, names):
             raise GestureError(
@@ -168,7 +172,8 @@ class Demonstration:
         """Create a demonstration of a held hand shape."""
         if poor := find_fault(poses, ()):
             raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor}")
-        kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, ()))
+        few = trajectory.fill_gaps().resample_in_time(min(len(trajectory), HELD_MOMENTS))
+        kept = condense(few).select(_choose_kept_landmarks(trajectory, ()))
         return cls(replace(kept, hands=held), (), draw_hands(held), {}, diver)
 
     @property

@@ -10,7 +10,12 @@ from app.recognition.poses.hand_shape import HandShape, normalize_hands
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, choose_representatives
+from app.recognition.preprocessing.salience import (
+    LEAST_DISPLACEMENT,
+    MIN_DISPLACEMENT,
+    choose_representatives,
+    measure_displacements,
+)
 
 HOLD_PERCENTILES = (20.0, 80.0)
 """The percentiles of a held hand's path taken as peak to peak: it may come and go in a fifth of the
@@ -75,15 +80,30 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
     return tuple(held)
 
 
+def comes_and_goes(trajectory: Trajectory) -> bool:
+    """Return whether a hand moves clearly at the ends of a take alone and rests in between.
+
+    It was brought to where it shows something, and taken away again.
+    """
+    moved = measure_displacements(trajectory)
+    farthest = max((moved[name] for name in choose_representatives(trajectory)), default=0.0)
+    return farthest >= MIN_DISPLACEMENT and _measure_movement(trajectory) < LEAST_DISPLACEMENT
+
+
 def _moves_clearly(trajectory: Trajectory) -> bool:
     """Return whether a hand or the head moves as in a gesture; unknown without a torso."""
-    if trajectory.unit != "torso_length":
-        return False
-    for name in choose_representatives(trajectory):
-        path = trajectory.xy[:, trajectory.landmarks.index(name)]
-        if _measure_extent(path[np.isfinite(path).all(axis=1)]) >= MIN_DISPLACEMENT:
-            return True
-    return False
+    return trajectory.unit == "torso_length" and _measure_movement(trajectory) >= MIN_DISPLACEMENT
+
+
+def _measure_movement(trajectory: Trajectory) -> float:
+    """Return how far a hand or the head moves between the ends of the take, in its unit."""
+    paths = (
+        trajectory.xy[:, trajectory.landmarks.index(name)]
+        for name in choose_representatives(trajectory)
+    )
+    return max(
+        (_measure_extent(path[np.isfinite(path).all(axis=1)]) for path in paths), default=0.0
+    )
 
 
 def _measure_extent(path: FloatArray) -> float:
