@@ -24,7 +24,7 @@ from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands
+from app.recognition.preprocessing.held_hands import find_held_hands, find_most_movement
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 
@@ -70,6 +70,12 @@ class Recognizer:
         self.vote = _VOTES[traits.name](self.language.gestures, tuning)
         self._reads_hands = traits.compares_motion and any(
             gesture.is_held for gesture in language.gestures
+        )
+        self._most_movement = find_most_movement(
+            shown
+            for gesture in language.gestures
+            if self._reads_hands and not gesture.is_held
+            for shown in gesture.trajectories
         )
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
@@ -140,7 +146,9 @@ class Recognizer:
 
     def _condense(self, poses: PoseSequence, trajectory: Trajectory) -> Trajectory:
         """Condense a query, with the hands that it holds where the language has held shapes."""
-        hands = find_held_hands(poses, trajectory) if self._reads_hands else ()
+        if not self._reads_hands:
+            return condense(trajectory)
+        hands = find_held_hands(poses, trajectory, self._most_movement)
         return condense(replace(trajectory, hands=hands) if hands else trajectory)
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:

@@ -306,6 +306,16 @@ def test_a_movement_is_read_as_without_held_shapes() -> None:
     assert np.isinf(among.distances[:, 2:]).all()
 
 
+def test_a_small_movement_stays_one_beside_held_shapes() -> None:
+    there = 0.14 * np.sin(np.linspace(0, 2 * np.pi, 40))
+    nod = hold(FLAT, moving=np.column_stack([0 * there, there]))
+    language = moving_and_held()
+    small = Gesture.from_demonstration("nod", nod, salient=["right_wrist"])
+    gestures = [small, *language.gestures]
+    assert Recognizer(language).query(nod).hands
+    assert not Recognizer(replace(language, gestures=gestures)).query(nod).hands
+
+
 def test_a_still_take_without_hands_says_what_is_missing() -> None:
     held = Language(name="held", gestures=moving_and_held().gestures[2:])
     with pytest.raises(PoseError, match="no hand is seen in this take that holds a shape"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import numpy.typing as npt
 
@@ -36,6 +38,13 @@ MOST_CHANGE = 0.5
 that opens and closes has no shape. A wobbling flat hand ("something is wrong") changes by up to
 0.48; two shapes are 0.7 and more apart."""
 
+SMALLER = 0.6
+"""Share of the smallest movement of a language below which a take is none: people's takes differ in
+size by a third of a doubling, and rarely by two."""
+
+LEAST_SWAY = 0.1
+"""Torso lengths by which a hand may always move that holds a shape: nobody hovers more steadily."""
+
 LOWEST = 0.35
 """Lowest place of a hand that shows something, torso lengths below the torso's centre: a hand that
 hangs is below the hips, at 0.5."""
@@ -44,7 +53,26 @@ _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_fi
 _INDEX, _LITTLE = (HAND_LANDMARKS.index(f"{name}_mcp") for name in ("index_finger", "pinky"))
 
 
-def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandShape, ...]:
+def find_most_movement(movements: Iterable[Trajectory]) -> float:
+    """Return how far a hand may move that holds a shape in a language, torso lengths.
+
+    Parameters
+    ----------
+    movements
+        The demonstrations of the language's movements: a small one is no held shape.
+
+    Returns
+    -------
+    `SMALLER` times the movement of the smallest, from `LEAST_SWAY` to `MIN_DISPLACEMENT`.
+
+    """
+    own = [_measure_movement(each) for each in movements if each.unit == "torso_length"]
+    return max(LEAST_SWAY, min([MIN_DISPLACEMENT, *(SMALLER * each for each in own)]))
+
+
+def find_held_hands(
+    poses: PoseSequence, trajectory: Trajectory, most: float = MIN_DISPLACEMENT
+) -> tuple[HandShape, ...]:
     """Find the hands that hold a shape, where nothing moves clearly.
 
     A hand counts that is seen in `LEAST_SEEN` of the frames, stays at one place, keeps its shape
@@ -56,13 +84,15 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
         Repaired poses of a take.
     trajectory
         The trajectory of `poses`, with as many moments or condensed.
+    most
+        Torso lengths from which a hand or the head moves clearly (`find_most_movement`).
 
     Returns
     -------
     At most two, left then right; none where a hand or the head moves clearly.
 
     """
-    if poses.hands is None or not len(poses) or _moves_clearly(trajectory):
+    if poses.hands is None or not len(poses) or _moves_clearly(trajectory, most):
         return ()
     held = []
     for index, side in enumerate(SIDES):
@@ -71,7 +101,7 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
         if seen.mean() < LEAST_SEEN or _hangs(poses, hands, seen):
             continue
         shown = hands[seen]
-        if _measure_travel(shown) >= MIN_DISPLACEMENT * PALMS_PER_TORSO:
+        if _measure_travel(shown) >= most * PALMS_PER_TORSO:
             continue
         shape = HandShape.of_frames(side, shown)
         change = np.sqrt(((normalize_hands(shown) - shape.xy) ** 2).sum(axis=2).mean(axis=1))
@@ -90,9 +120,9 @@ def comes_and_goes(trajectory: Trajectory) -> bool:
     return farthest >= MIN_DISPLACEMENT and _measure_movement(trajectory) < LEAST_DISPLACEMENT
 
 
-def _moves_clearly(trajectory: Trajectory) -> bool:
+def _moves_clearly(trajectory: Trajectory, most: float) -> bool:
     """Return whether a hand or the head moves as in a gesture; unknown without a torso."""
-    return trajectory.unit == "torso_length" and _measure_movement(trajectory) >= MIN_DISPLACEMENT
+    return trajectory.unit == "torso_length" and _measure_movement(trajectory) >= most
 
 
 def _measure_movement(trajectory: Trajectory) -> float:
