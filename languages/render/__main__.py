@@ -16,6 +16,7 @@ from languages.render.gestures import DRAWINGS
 from languages.render.performance import Performance, move_about, perform
 from languages.render.posture import hand_points, pose_body
 from languages.render.scene import Scene
+from languages.render.signs import SIGNS, hold_sign
 from languages.render.water import Bubble, breath
 
 RATE = 25
@@ -26,6 +27,8 @@ OUTPUT = Path(__file__).resolve().parents[1] / "clips"
 
 def performance_of(clip: Clip) -> Performance:
     """Compose what the diver does in a clip."""
+    if clip.sign is not None:
+        return hold_sign(SIGNS[clip.sign], clip.manner, RATE, clip.seed)
     if clip.gesture is None:
         return move_about(clip.manner, RATE, clip.seed)
     return perform(DRAWINGS[clip.gesture], clip.manner, RATE, clip.seed)

@@ -115,13 +115,15 @@ class Clip:
     name
         File name without suffix.
     gesture
-        A label of `DRAWINGS`; None for ordinary movement without a gesture.
+        A label of `DRAWINGS`; None for ordinary movement without a gesture, or a held sign.
     diver, water
         Names in `DIVERS` and `WATERS`.
     view, manner
         Where the camera is, and how the gesture is performed.
     seed
         Of everything left to chance.
+    sign
+        A name of `SIGNS`: the hand holds this sign between the salutes.
 
     """
 
@@ -132,6 +134,7 @@ class Clip:
     view: View
     manner: Manner
     seed: int
+    sign: str | None = None
 
 
 UPPER_BODY = View(1.72, aim=(0, -0.06))
