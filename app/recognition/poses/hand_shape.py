@@ -14,8 +14,15 @@ from app.recognition.poses.sequence import FloatArray
 DIGITS = 3
 """Decimals kept: a hundredth of a finger's width, a tenth of a hand model's error."""
 
+KNUCKLES_PER_PALM = 1.2
+"""Palm length over the width of the knuckles, for foreshortened palms (as in `salute`)."""
+
 MOST_FRAMES = 64
 """Frames whose median is taken, evenly chosen: more change no digit."""
+
+
+_WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
+_INDEX, _LITTLE = (HAND_LANDMARKS.index(f"{name}_mcp") for name in ("index_finger", "pinky"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +79,14 @@ class HandShape:
         # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
         return cls(side, np.round(normalize_hands(middle[None])[0], DIGITS) + 0.0)
 
+    @property
+    def palm(self) -> float:
+        """Length of the palm, wrist to middle knuckle, in sizes of the hand.
+
+        Of a foreshortened palm by the width of its knuckles.
+        """
+        return float(measure_palms(self.xy[None])[0])
+
     def mirror(self) -> HandShape:
         """Return the mirror image, which is the same shape of the other hand."""
         return HandShape(SIDES[1 - SIDES.index(self.side)], self.xy * (-1.0, 1.0) + 0.0)
@@ -80,6 +95,13 @@ class HandShape:
         """Return the shape turned in the image, clockwise."""
         cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
         return replace(self, xy=self.xy @ np.array([[cosine, sine], [-sine, cosine]]))
+
+
+def measure_palms(hands: FloatArray) -> FloatArray:
+    """Return the lengths of the palms of hands ``(T, 21, 2)``, ``(T,)`` in their unit."""
+    along = np.linalg.norm(hands[:, _MIDDLE] - hands[:, _WRIST], axis=1)
+    across = np.linalg.norm(hands[:, _INDEX] - hands[:, _LITTLE], axis=1)
+    return np.asarray(np.maximum(along, KNUCKLES_PER_PALM * across))
 
 
 def normalize_hands(hands: FloatArray) -> FloatArray:

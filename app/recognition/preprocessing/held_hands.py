@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses.frame import SIDES
-from app.recognition.poses.hand_shape import HandShape, normalize_hands
+from app.recognition.poses.hand_shape import HandShape, measure_palms, normalize_hands
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -25,9 +25,6 @@ time at either end, and no stroke of a gesture is over in that."""
 
 PALMS_PER_TORSO = 5.2
 """Torso length over palm length (wrist to middle knuckle), 52 against 10 cm (Winter 2009)."""
-
-KNUCKLES_PER_PALM = 1.2
-"""Palm length over the width of the knuckles, for foreshortened palms (as in `salute`)."""
 
 LEAST_SEEN = 0.4
 """Least share of the frames in which a held hand is seen: the hand model loses a still hand under
@@ -49,8 +46,7 @@ LOWEST = 0.35
 """Lowest place of a hand that shows something, torso lengths below the torso's centre: a hand that
 hangs is below the hips, at 0.5."""
 
-_WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
-_INDEX, _LITTLE = (HAND_LANDMARKS.index(f"{name}_mcp") for name in ("index_finger", "pinky"))
+_WRIST = HAND_LANDMARKS.index("wrist")
 
 
 def find_most_movement(movements: Iterable[Trajectory]) -> float:
@@ -146,10 +142,8 @@ def _measure_extent(path: FloatArray) -> float:
 
 def _measure_travel(hands: FloatArray) -> float:
     """Return how far a hand ``(T, 21, 2)`` moves, in palms."""
-    palm = np.linalg.norm(hands[:, _MIDDLE] - hands[:, _WRIST], axis=1)
-    across = np.linalg.norm(hands[:, _INDEX] - hands[:, _LITTLE], axis=1)
-    size = float(np.median(np.maximum(palm, KNUCKLES_PER_PALM * across)))
-    return _measure_extent(hands[:, _WRIST]) / max(size, 1e-9)
+    palm = float(np.median(measure_palms(hands)))
+    return _measure_extent(hands[:, _WRIST]) / max(palm, 1e-9)
 
 
 def _hangs(poses: PoseSequence, hands: FloatArray, seen: npt.NDArray[np.bool_]) -> bool:

@@ -6,7 +6,7 @@ import pytest
 from app.recognition.errors import PoseError
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
-from tests.recognition.held_takes import TWO
+from tests.recognition.held_takes import FIST, FLAT, TWO
 from tests.recognition.parametric_hand import hand_xy
 
 HAND = hand_xy(TWO)
@@ -38,6 +38,12 @@ def test_four_quarter_turns_are_none() -> None:
     quarter = hand.turn(90)
     assert np.allclose(quarter.xy, np.column_stack([-hand.xy[:, 1], hand.xy[:, 0]]))
     assert np.allclose(quarter.turn(270).xy, hand.xy)
+
+
+def test_the_palm_of_a_fist_is_large_beside_that_of_an_open_hand() -> None:
+    fist, flat = (HandShape.of_frames("right", hand_xy(each)[None]) for each in (FIST, FLAT))
+    assert fist.palm > 1.3 * flat.palm
+    assert flat.mirror().palm == flat.palm
 
 
 @pytest.mark.parametrize("xy", [np.zeros((21, 2)), np.full((21, 2), np.nan), np.ones((20, 2))])
