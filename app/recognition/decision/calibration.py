@@ -56,7 +56,7 @@ hardly differ."""
 
 HAND_REACH = 4.8
 """A threshold of a hand voter in typical distances of the demonstrator's own further takes
-(`Voter.within`), for a hand of `TYPICAL_PALM`: one in thirty foreign shapes is accepted
+(`Voter.within`), for a hand of `TYPICAL_PALM`: one in seventy foreign shapes is accepted
 (`benchmarks/studies/hand-shapes.md`)."""
 
 TYPICAL_PALM = 1.9
