@@ -238,14 +238,22 @@ def define_gesture(
             gesture = Gesture.from_demonstration(shown.label, poses, diver=diver)
         else:
             gesture = gesture.with_demonstration(poses, diver)
-        salient = gesture.further[-1].salient if gesture.further else gesture.salient
+        shown_last = gesture.single_demonstrations()[-1]
         people.print(
             f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
-            f"salient: {', '.join(salient)}",
+            f"{describe_shown(shown_last)}",
             markup=False,
         )
     assert gesture is not None  # an argument names one clip at least
     return gesture
+
+
+def describe_shown(gesture: Gesture) -> str:
+    """Return what a gesture of one demonstration is made of: landmarks, or held hands."""
+    if gesture.trajectory is not None and gesture.is_held:
+        sides = " and ".join(hand.side for hand in gesture.trajectory.hands)
+        return f"held hand shape: {sides} hand"
+    return f"salient: {', '.join(gesture.salient)}"
 
 
 def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:

@@ -39,7 +39,9 @@ def list_demonstrations(language: LanguageArgument) -> None:
     for gesture in Language.load(language).gestures:
         for number, shown in enumerate(gesture.single_demonstrations(), start=1):
             seconds = "" if shown.trajectory is None else f"{shown.trajectory.time[-1]:.2f}"
-            columns = (gesture.label, str(number), shown.diver, ",".join(shown.salient), seconds)
+            held = () if shown.trajectory is None else shown.trajectory.hands
+            followed = ",".join(shown.salient or (f"{hand.side}_hand" for hand in held))
+            columns = (gesture.label, str(number), shown.diver, followed, seconds)
             typer.echo("\t".join(columns))
 
 

@@ -24,6 +24,7 @@ from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.held_hands import find_held_hands, find_most_movement
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 
@@ -67,6 +68,15 @@ class Recognizer:
         self.profile: str = traits.name
         self.tuning = tuning
         self.vote = _VOTES[traits.name](self.language.gestures, tuning)
+        self._reads_hands = traits.compares_motion and any(
+            gesture.is_held for gesture in language.gestures
+        )
+        self._most_movement = find_most_movement(
+            shown
+            for gesture in language.gestures
+            if self._reads_hands and not gesture.is_held
+            for shown in gesture.trajectories
+        )
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
 
@@ -85,7 +95,8 @@ class Recognizer:
         Raises
         ------
         PoseError
-            When no landmark is seen, or none that a gesture needs moves.
+            When no landmark is seen, or none that a gesture needs moves and no hand is seen that
+            holds a shape.
 
         """
         return self.examine(poses).result
@@ -100,7 +111,8 @@ class Recognizer:
 
         """
         repair = repair_poses(poses) if self.repairs else None
-        query = condense(repair.trajectory if repair else Trajectory.from_poses(poses))
+        seen = repair.poses if repair else poses
+        query = self._condense(seen, repair.trajectory if repair else Trajectory.from_poses(poses))
         table = self.compare(query)
         result = self.decide(table)
         if repair:
@@ -130,7 +142,14 @@ class Recognizer:
 
         """
         seen = repair_poses(poses).poses if self.repairs else poses
-        return condense(Trajectory.from_poses(seen))
+        return self._condense(seen, Trajectory.from_poses(seen))
+
+    def _condense(self, poses: PoseSequence, trajectory: Trajectory) -> Trajectory:
+        """Condense a query, with the hands that it holds where the language has held shapes."""
+        if not self._reads_hands:
+            return condense(trajectory)
+        hands = find_held_hands(poses, trajectory, self._most_movement)
+        return condense(replace(trajectory, hands=hands) if hands else trajectory)
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
         """Recognise the gesture in a `query`.
@@ -153,9 +172,16 @@ class Recognizer:
 
         """
         if not np.isfinite(compared.scores).any():
+            if self._reads_hands and not self.vote.needed:
+                raise PoseError(
+                    f"nothing to compare: no hand is seen in this take that holds a shape, as the "
+                    f"gestures of {self.language.name!r} do"
+                )
+            beside = ", and no hand is seen that holds a shape" if self._reads_hands else ""
             raise PoseError(
                 f"nothing to compare: none of the landmarks that the gestures of "
                 f"{self.language.name!r} need ({', '.join(self.vote.needed)}) moves in this take"
+                f"{beside}"
             )
         return self.vote.decide(compared)
 

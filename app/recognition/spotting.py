@@ -154,7 +154,7 @@ class Spotter:
     ------
     OsgError
         When the profile does not reject, so that every movement would be a gesture, or when no
-        gesture of the language has a demonstration.
+        gesture of the language has a demonstration, or all of them are held hand shapes.
 
     """
 
@@ -166,7 +166,12 @@ class Spotter:
                 f"profile {recognizer.profile!r} rejects nothing, so every movement would be a "
                 f"gesture; use profile full to recognise without salutes"
             )
-        gestures = recognizer.language.gestures
+        gestures = [each for each in recognizer.language.gestures if not each.is_held]
+        if not gestures:
+            raise OsgError(
+                f"language {recognizer.language.name!r} has only held hand shapes, which are found "
+                f"between salutes alone; add a gesture that moves, or show signs between salutes"
+            )
         lasts = [last for each in gestures for last in _durations(each)]
         if not lasts:
             raise OsgError(

@@ -14,9 +14,11 @@ import numpy.typing as npt
 
 from app.recognition import Language, PoseSequence, Recognition, Recording
 from app.recognition.errors import PoseError
+from app.recognition.features.hand_image import draw_hands
 from app.recognition.features.trajectory_image import draw
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.held_hands import find_held_hands
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
 from app.ui.back_wall import Wall
@@ -330,8 +332,14 @@ def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> 
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
-    """Draw a take's paths of the named landmarks; None when it has no such landmark."""
+    """Draw a take's paths of the named landmarks; None when it has no such landmark.
+
+    Without names it is drawn as a held hand shape; None when it holds none.
+    """
     try:
+        if not names:
+            hands = find_held_hands(poses, Trajectory.from_poses(poses))
+            return mark_direction(draw_hands(hands), None) if hands else None
         trajectory = Trajectory.from_poses(poses).select(names)
         return mark_direction(draw(trajectory).image, trajectory)
     except PoseError:

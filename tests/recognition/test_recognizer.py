@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
@@ -22,7 +23,9 @@ from app.recognition.decision.majority_vote import MajorityVote, weigh_relative_
 from app.recognition.features.trajectory_image import Drawing, draw
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.registry import PAPER_VOTERS, VOTER_NAMES
+from tests.recognition.held_takes import FIST, FLAT, TWO, hold
+from tests.recognition.parametric_hand import Fingers
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, rest, wedge
 
 VOTERS = (
@@ -255,3 +258,74 @@ def test_where_the_votes_and_the_distances_disagree_confidence_is_the_share_of_v
     result = counted(recognizer, distances)
     assert result.label == "circle"
     assert result.confidence == pytest.approx(4 / 7 / 2)
+
+
+@lru_cache
+def moving_and_held() -> Language:
+    around = np.linspace(0, 2 * np.pi, 40)
+    circle = hold(FLAT, moving=0.4 * np.column_stack([np.cos(around), np.sin(around)]))
+    line = hold(FLAT, moving=np.column_stack([np.linspace(0, 1, 40), np.zeros(40)]))
+    return Language(
+        name="mixed",
+        gestures=[
+            Gesture.from_demonstration("circle", circle),
+            Gesture.from_demonstration("line", line),
+            Gesture.from_demonstration("stop", hold(FLAT)),
+            Gesture.from_demonstration("fist", hold(FIST)),
+            Gesture.from_demonstration("two", hold(TWO)),
+        ],
+    )
+
+
+@pytest.mark.parametrize(("label", "shape"), [("stop", FLAT), ("fist", FIST), ("two", TWO)])
+@pytest.mark.parametrize("left", [False, True])
+def test_a_held_hand_shape_is_recognised_from_one_demonstration(
+    label: str, shape: Fingers, left: bool
+) -> None:
+    result = Recognizer(moving_and_held()).recognize(hold(shape, roll=8, yaw=10, seed=3, left=left))
+    assert result.label == label
+    assert set(result.votes) == {"hand_landmarks", "finger_directions"}
+    assert sum(result.weights.values()) == pytest.approx(1)
+    assert Recognition.from_dict(result.to_dict()).votes == dict(result.votes)
+
+
+def test_a_shape_that_is_no_gesture_is_rejected() -> None:
+    result = Recognizer(moving_and_held()).recognize(hold(FLAT, roll=180))
+    assert result.label is None
+
+
+def test_a_movement_is_read_as_without_held_shapes() -> None:
+    language = moving_and_held()
+    moving = replace(language, gestures=language.gestures[:2])
+    around = np.linspace(0, 2 * np.pi, 40)
+    ellipse = hold(FIST, moving=0.4 * np.column_stack([np.cos(around), 0.8 * np.sin(around)]))
+    alone, among = (Recognizer(each).recognize(ellipse) for each in (moving, language))
+    assert among.label == alone.label == "circle"
+    assert among.confidence == alone.confidence
+    assert np.array_equal(among.distances[: len(VOTER_NAMES), :2], alone.distances)
+    assert np.isinf(among.distances[:, 2:]).all()
+
+
+def test_a_small_movement_stays_one_beside_held_shapes() -> None:
+    there = 0.14 * np.sin(np.linspace(0, 2 * np.pi, 40))
+    nod = hold(FLAT, moving=np.column_stack([0 * there, there]))
+    language = moving_and_held()
+    small = Gesture.from_demonstration("nod", nod, salient=["right_wrist"])
+    gestures = [small, *language.gestures]
+    assert Recognizer(language).query(nod).hands
+    assert not Recognizer(replace(language, gestures=gestures)).query(nod).hands
+
+
+def test_a_still_take_without_hands_says_what_is_missing() -> None:
+    held = Language(name="held", gestures=moving_and_held().gestures[2:])
+    with pytest.raises(PoseError, match="no hand is seen in this take that holds a shape"):
+        Recognizer(held).recognize(replace(hold(FLAT), hands=None))
+
+
+def test_held_shapes_survive_their_file_to_the_last_bit() -> None:
+    language = moving_and_held()
+    again = Language.from_json(language.calibrated().to_json())
+    assert again.to_json() == language.calibrated().to_json()
+    query = hold(TWO, roll=5, seed=9)
+    one, other = (Recognizer(each).recognize(query) for each in (language, again))
+    assert one.to_dict() == other.to_dict()

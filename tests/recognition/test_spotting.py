@@ -16,6 +16,7 @@ from app.recognition import (
 )
 from app.recognition.spotting import Spotted, Spotter, TriggerGate
 from app.recognition.triggers.trigger import Trigger
+from tests.recognition.held_takes import TWO, hold
 from tests.recognition.motions import (
     Movement,
     circle,
@@ -201,3 +202,9 @@ def test_a_gesture_may_last_as_long_as_any_of_its_demonstrations() -> None:
         recognizer = Recognizer(Language("one", [gesture, demonstration("zigzag")]))
         labels = [each.recognition.label for _, each in spotted(recognizer, poses)]
         assert labels == found
+
+
+def test_a_language_of_held_shapes_alone_needs_salutes() -> None:
+    held = Language("signs", [Gesture.from_demonstration("two", hold(TWO))])
+    with pytest.raises(OsgError, match="only held hand shapes, which are found between salutes"):
+        Spotter(Recognizer(held))

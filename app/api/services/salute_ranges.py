@@ -8,11 +8,11 @@ from functools import lru_cache
 import numpy as np
 
 from app.api.services.studio import Studio
+from app.recognition.poses.landmarks import WRISTS
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE, HOLD_SECONDS
 from app.recognition.recording.segmentation import takes_in
-from app.recognition.recording.trimming import WRISTS
 from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import JobStatus

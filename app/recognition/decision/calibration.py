@@ -32,7 +32,7 @@ from app.recognition.simulation.negatives import draw_negatives
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variant_bias import VARIANT_BIASES
 from app.recognition.simulation.variation import SPREADS, draw_variants
-from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
+from app.recognition.voters.registry import HAND_VOTERS, MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 TAKES = 12
 """Simulated takes of each gesture; their mean is accurate to a quarter of its value."""
@@ -54,6 +54,19 @@ LEAST_DISTANCE = 0.1
 """Least distance to a take, as a share of the typical one: with only one bone seen, attitudes
 hardly differ."""
 
+HAND_REACH = 4.8
+"""A threshold of a hand voter in typical distances of the demonstrator's own further takes
+(`Voter.within`), for a hand of `TYPICAL_PALM`: one in seventy foreign shapes is accepted
+(`benchmarks/studies/hand-shapes.md`)."""
+
+TYPICAL_PALM = 1.9
+"""Palm in sizes of the hand (`HandShape.palm`), between an open hand's 1.6 and a fist's 2.5."""
+
+PALM_EXPONENT = 1.5
+"""Exponent of the palm in thresholds: landmarks err by a share of the palm, so that a small fist
+errs by more of its size (1), and hidden fingers err by more. At equal foreign takes 76 % of those
+from other views are accepted with 0, 84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
+
 OTHERS = 2.0
 """Ratio of squared distances of other people's takes to the demonstrator's own: 1.9 to 2.1 for
 variants, 1.9 to 2.6 for recorded takes."""
@@ -68,6 +81,11 @@ PLAUSIBLE = 0.2
 
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
+
+HAND_RULE = repr(
+    (HAND_REACH, TYPICAL_PALM, PALM_EXPONENT, *(voter.within for voter in HAND_VOTERS))
+)
+"""What thresholds of held hand shapes depend on beside the hands."""
 
 RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"], CLEAR_SHARE))
 """What thresholds depend on beside the gestures; those of another rule are computed again."""
@@ -109,9 +127,18 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
+        else replace(gesture, thresholds=_choose_hand_thresholds(gesture.trajectory), rates=None)
+        if gesture.trajectory.hands
         else _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
         for index, (gesture, others) in enumerate(zip(gestures, negatives.T, strict=True))
     )
+
+
+def _choose_hand_thresholds(shown: Trajectory) -> dict[str, float]:
+    """Return the thresholds of a held hand shape by its first demonstration."""
+    palm = float(np.mean([hand.palm for hand in shown.hands]))
+    reach = HAND_REACH * (palm / TYPICAL_PALM) ** PALM_EXPONENT
+    return {voter.name: float(f"{reach * voter.within:.{DIGITS}g}") for voter in HAND_VOTERS}
 
 
 def _set_thresholds(

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
+from app.recognition.decision.hand_references import HandReferences
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     MotionReferences,
@@ -21,6 +22,7 @@ from app.recognition.decision.motion_references import (
 )
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
+    HAND_CUE_GROUP,
     build_novelty_weights,
     estimate_confidence,
     gather_thresholds,
@@ -38,12 +40,17 @@ from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.tempo import Tempo
-from app.recognition.voters.registry import PAPER_VOTERS, VOTER_NAMES, VOTERS
+from app.recognition.voters.registry import (
+    HAND_VOTER_NAMES,
+    PAPER_VOTERS,
+    VOTER_NAMES,
+    VOTERS,
+)
 
 _SHAPES = len(PAPER_VOTERS)
 _TEMPO = VOTER_NAMES.index(Tempo.name)
 _NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
-
+_ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 
 CLOSE_SCORES = 0.05
 """Tolerance in score of `FusedVote.may_win`: a new weight may select another traversal, which is
@@ -119,6 +126,7 @@ class FusedVote:
         sides, self._owners = self._shown.gestures, self._shown.owners
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
+        self._hands = HandReferences.of(sides, self._owners)
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
         # Last: weight factors must not change which directions and tempos the language needs.
@@ -128,6 +136,7 @@ class FusedVote:
         if not self._draws:
             self._weights[:_SHAPES] = 0.0
         self._thresholds = gather_thresholds(sides, VOTER_NAMES)
+        self._hand_thresholds = gather_thresholds(sides, HAND_VOTER_NAMES)
         self._simplification = tuning.simplification
         self._views = self._prepare_views()
 
@@ -147,7 +156,7 @@ class FusedVote:
         self._weights, self._between = weigh_voters(
             VOTERS,
             [*shapes, *(row[np.isfinite(row)] for row in pairs)],
-            len(self._motions.landmarks),
+            max(1, len(self._motions.landmarks)),
         )
         if len(first_rows) < len(self._motions.as_shown):
             return
@@ -247,6 +256,8 @@ class FusedVote:
         other._motions = replace(motions, gestures=np.searchsorted(sides, motions.gestures))
         other._tempo = self._tempo[sides]
         other._thresholds = self._thresholds[:, sides]
+        other._hands = self._hands.take(sides)
+        other._hand_thresholds = self._hand_thresholds[:, sides]
         other._views = other._prepare_views()
         return other
 
@@ -261,10 +272,55 @@ class FusedVote:
         gives one of them another weight: otherwise they take a quarter of the time and change no
         set's accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn`
         they are left out in any case.
+
+        A query that holds a hand shape is compared with the held shapes alone, and every other one
+        with the movements alone: the one has no movement to compare, the other no shape.
         """
+        if len(self._hands) and trajectory.hands:
+            return self._compare_hands(trajectory)
         views = self._views.list_for(trajectory.facing)
         tables = [self._compare_in(view, trajectory, drawn) for view in views]
-        return min(tables, key=lambda table: float(table.scores.min()))
+        table = min(tables, key=lambda table: float(table.scores.min()))
+        return self._add_hand_voters(table) if len(self._hands) else table
+
+    def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
+        """Compare a held hand shape with those of the language."""
+        sides = self._hands.distances(trajectory.hands)
+        shares = weigh_distances(sides, self._hands.weights, self._hands.between)
+        chosen = self._sides_nearest(shares.sum(axis=0))
+        distances = np.full((len(_ALL_NAMES), len(chosen)), np.inf)
+        contributions = np.zeros(distances.shape)
+        distances[len(VOTERS) :] = sides.take(chosen, axis=1)
+        contributions[len(VOTERS) :] = shares.take(chosen, axis=1)
+        novelty = np.full((len(CUE_GROUPS) + 1, len(chosen)), np.nan)
+        novelty[-1] = measure_group_novelties(
+            sides, self._hand_thresholds, np.ones((1, len(HAND_VOTER_NAMES)))
+        )[0, chosen]
+        return ScoreTable(
+            voters=_ALL_NAMES,
+            distances=distances,
+            contributions=contributions,
+            turned=np.zeros(len(chosen)),
+            traversals=(None,) * len(chosen),
+            mirrored=np.zeros(len(chosen), dtype=bool),
+            demonstrations=self._shown.demonstrations[chosen],
+            views=np.zeros(len(chosen), dtype=np.intp),
+            facing=trajectory.facing,
+            novelty_by_view=novelty,
+        )
+
+    def _add_hand_voters(self, table: ScoreTable) -> ScoreTable:
+        """Return the table of a movement with rows of hand voters, which compare nothing."""
+        nothing = np.full((len(HAND_VOTER_NAMES), len(self._labels)), np.inf)
+        return replace(
+            table,
+            voters=_ALL_NAMES,
+            distances=np.concatenate([table.distances, nothing]),
+            contributions=np.concatenate([table.contributions, np.zeros(nothing.shape)]),
+            novelty_by_view=np.concatenate(
+                [table.novelty_by_view, np.full_like(nothing[:1], np.nan)]
+            ),
+        )
 
     def _compare_in(self, view: View, trajectory: Trajectory, drawn: bool) -> ScoreTable:
         distances, rows = self._compare_sides(view, trajectory, drawn)
@@ -315,6 +371,8 @@ class FusedVote:
         self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
     ) -> bool:
         """Return whether a gesture comes close to the least score when a voter is reweighted."""
+        if voter in HAND_VOTER_NAMES:  # which have no weight factors
+            return False
         comparable = np.isfinite(table.scores)
         scores = table.scores
         added = table.contributions[table.voters.index(voter)]
@@ -340,16 +398,30 @@ class FusedVote:
                 float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
             ),
             profile="full",
-            voters=VOTER_NAMES,
+            voters=compared.voters,
             gestures=self._labels,
             distances=distances,
-            votes={VOTER_NAMES[voter]: self._labels[nearest_by_voter[voter]] for voter in able},
-            weights=self.weights,
+            votes={compared.voters[row]: self._labels[nearest_by_voter[row]] for row in able},
+            weights=self._weights_in(compared),
             scores=scores,
             novelty=novelty,
-            novelty_by_view=dict(zip(CUE_GROUPS, compared.novelty_by_view, strict=True)),
+            novelty_by_view=dict(
+                zip((*CUE_GROUPS, HAND_CUE_GROUP), compared.novelty_by_view, strict=False)
+            ),
             facing=compared.facing,
             views=compared.views.astype(np.float64),
+        )
+
+    def _weights_in(self, compared: ScoreTable) -> Mapping[str, float]:
+        """Return the voters' weights in a decision: of the movement, or of the hand voters."""
+        if not len(self._hands):
+            return self.weights
+        by_hand = bool(np.isfinite(compared.distances[len(VOTERS) :]).any())
+        shares = (self._hands.weights / self._hands.weights.sum()).tolist()
+        of_hand = dict(zip(HAND_VOTER_NAMES, shares, strict=True))
+        return MappingProxyType(
+            {name: weight * (not by_hand) for name, weight in self.weights.items()}
+            | {name: weight * by_hand for name, weight in of_hand.items()}
         )
 
     def _compare_sides(

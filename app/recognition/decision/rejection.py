@@ -41,6 +41,10 @@ def _group_cues(voters: Sequence[Voter]) -> Mapping[str, Mapping[str, float]]:
 CUE_GROUPS: Final[Mapping[str, Mapping[str, float]]] = _group_cues(VOTERS)
 """Weights of voters by cue group and name."""
 
+HAND_CUE_GROUP: Final = "hand"
+"""The cue group of the hand voters, in languages with held hand shapes. Clearness does not count:
+two shapes differ as much as any two, so that a foreign one is mostly clear."""
+
 SCORE_FLOOR = 0.02
 """Added to scores and novelties before the logarithm: the value of two takes by one careful person.
 """

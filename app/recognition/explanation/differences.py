@@ -26,11 +26,11 @@ from app.recognition.voters.motion.wrist_bend import WristBend
 
 Kind = Literal[
     "exchanged_sides", "direction", "hand", "side", "missing", "extra", "shape",
-    "tempo", "place", "size", "wrist", "unseen",
+    "tempo", "place", "size", "wrist", "unseen", "hand_shape",
 ]  # fmt: skip
 """Kinds: left and right exchanged by the pose model; opposite direction; other hand; mirror image;
 a part missing or added; another shape; slower or quicker; another place beside the body; larger or
-smaller; another bend of the wrist; not seen for a while."""
+smaller; another bend of the wrist; not seen for a while; a finger or the turn of a held hand."""
 
 DIFFERENT = 2 * ALIKE
 """Least path distance of a difference: twice that of two people's takes of one figure. A third of

@@ -21,6 +21,7 @@ from app.recognition.explanation.counterfactual_search import (
     find_counterfactuals,
 )
 from app.recognition.explanation.differences import Difference, find_differences
+from app.recognition.explanation.hand_differences import find_hand_differences
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import write_sentence
 from app.recognition.explanation.vote_breakdown import break_down_votes
@@ -172,6 +173,9 @@ class _Pairings:
 
     def differences(self, index: int) -> tuple[Difference, ...]:
         """Return the differences between the query and a gesture."""
+        gesture = self._gesture(index)
+        if gesture.trajectory is not None and gesture.is_held:
+            return find_hand_differences(gesture.label, self._query.hands, gesture.trajectory.hands)
         example = self._example(index)
         if example is None:
             return ()
@@ -189,6 +193,8 @@ class _Pairings:
 
     def _example(self, index: int) -> Example | None:
         gesture, traversal = self._gesture(index), self._table.traversals[index]
+        if gesture.is_held:
+            return None
         if traversal is None:
             return find_nearest_example(self._query, gesture, self._landmarks)
         mirrored = bool(self._table.mirrored[index])

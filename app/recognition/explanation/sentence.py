@@ -61,9 +61,11 @@ def _voters(analysis: Analysis, label: str) -> str:
 def _reason(analysis: Analysis) -> str:
     if analysis.fault is not None:
         return "."
+    cause = _cause(analysis)
+    if not math.isfinite(analysis.score) and cause is not None and cause.kind == "hand_shape":
+        return f" because {cause.words}."
     if not math.isfinite(analysis.score):
         return f": a keypoint that {analysis.expected!r} needs is missing or does not move."
-    cause = _cause(analysis)
     against = _describe_opposition(analysis)
     if cause is not None:
         return f" because {cause.words}" + (f" ({against})." if against else ".")

@@ -9,7 +9,7 @@ from typing import Any
 
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.gestures.profile import PROFILES
+from app.recognition.voters.registry import HAND_VOTERS, VOTERS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ def break_down_votes(
         Indices of the two gestures; without another one `against` is 0.
 
     """
-    units = {voter.name: voter.unit for voter in PROFILES[result.profile].voters}
+    units = {voter.name: voter.unit for voter in (*VOTERS, *HAND_VOTERS)}
     label = result.gestures[expected]
     given = []
     for row, voter in enumerate(result.voters):

@@ -10,10 +10,13 @@ import numpy as np
 
 from app.recognition.errors import GestureError, PoseError
 from app.recognition.features.contour import BinaryImage
+from app.recognition.features.hand_image import draw_hands
 from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Drawing, draw
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.held_hands import comes_and_goes, find_held_hands
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -41,6 +44,9 @@ With `MAX_LANDMARKS` it keeps a demonstration's file entry below 40 kB. In a ges
 seconds, ten moments a second are left, enough to follow the arm.
 """
 
+HELD_MOMENTS = 8
+"""Most moments kept of a held hand shape: nothing moves, and its file entry stays below 12 kB."""
+
 MAX_LANDMARKS = 16
 """Most landmarks kept of a demonstration: the salient ones first, then the upper body's."""
 
@@ -60,9 +66,10 @@ class Demonstration:
     trajectory
         At most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks.
     salient
-        Its salient landmarks in alphabetical order; another diver may use the other hand.
+        Its salient landmarks in alphabetical order; another diver may use the other hand. Empty
+        for a held hand shape.
     image
-        ``(224, 224)``: the salient landmarks' paths, 255 on black.
+        ``(224, 224)``: the salient landmarks' paths, or the held hand, 255 on black.
     descriptors
         Per voter's name its descriptor of the image.
     diver
@@ -117,7 +124,8 @@ class Demonstration:
         Raises
         ------
         GestureError
-            When the take is too short, nothing moves in it, or `salient` does not fit it.
+            When the take is too short, nothing moves in it and no hand shape is held, or `salient`
+            does not fit it.
 
         """
         if len(poses) < MIN_FRAMES:
@@ -130,12 +138,17 @@ class Demonstration:
             trajectory = Trajectory.from_poses(seen)
         except PoseError as error:
             raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
+        held = find_held_hands(seen, trajectory) if salient is None else ()
         if salient is not None:
             names = choose_landmarks(trajectory, salient)
         elif is_shown_by(like, trajectory):
             names = choose_landmarks(trajectory, like)
         else:
             names = find_salient_landmarks(trajectory)
+        # Without a torso the unit is the extent itself, in which everything moves.
+        still = not names or trajectory.unit == "extent" or comes_and_goes(trajectory)
+        if held and still:
+            return cls._of_hands(label, seen, trajectory, held, diver)
         if poor := find_fault(seen, names):
             raise GestureError(
                 f"the demonstration of {label!r} is too poor to use: {poor}; show the "
@@ -147,9 +160,32 @@ class Demonstration:
             raise GestureError(_explain_nothing_moves(label, trajectory, names))
         return cls(kept, names, drawing.image, describe_drawing(drawing, PAPER_VOTERS), diver)
 
+    @classmethod
+    def _of_hands(
+        cls,
+        label: str,
+        poses: PoseSequence,
+        trajectory: Trajectory,
+        held: tuple[HandShape, ...],
+        diver: str,
+    ) -> Demonstration:
+        """Create a demonstration of a held hand shape."""
+        if poor := find_fault(poses, ()):
+            raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor}")
+        few = trajectory.fill_gaps().resample_in_time(min(len(trajectory), HELD_MOMENTS))
+        kept = condense(few).select(_choose_kept_landmarks(trajectory, ()))
+        return cls(replace(kept, hands=held), (), draw_hands(held), {}, diver)
+
+    @property
+    def is_held(self) -> bool:
+        """Whether it is a held hand shape, not a movement."""
+        return bool(self.trajectory.hands)
+
     def mirror(self) -> Demonstration:
         """Return the mirror image, as if shown with the other hand."""
         trajectory = self.trajectory.compute_once("mirrored", self.trajectory.mirror)
+        if self.is_held:
+            return replace(self, trajectory=trajectory, image=draw_hands(trajectory.hands))
         salient = tuple(sorted(other_side(name) for name in self.salient))
         drawing = draw(trajectory.select(salient))
         descriptors = describe_drawing(drawing, PAPER_VOTERS)
@@ -171,10 +207,14 @@ class Demonstration:
             When it lacks one of them.
 
         """
-        return replace(self, salient=choose_landmarks(self.trajectory, salient)).redraw()
+        chosen = choose_landmarks(self.trajectory, salient)
+        moving = replace(self.trajectory, hands=()) if self.is_held else self.trajectory
+        return replace(self, salient=chosen, trajectory=moving).redraw()
 
     def redraw(self, simplification: float = SIMPLIFICATION) -> Demonstration:
         """Return the demonstration with image and descriptors recomputed."""
+        if self.is_held:
+            return replace(self, image=draw_hands(self.trajectory.hands), descriptors={})
         drawing = Drawing(self.image, self.trajectory.select(self.salient))
         if self.salient:
             drawing = draw(self.trajectory.select(self.salient), simplification)
@@ -276,6 +316,7 @@ def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence
     unit = "torso lengths" if trajectory.unit == "torso_length" else "of the largest extent"
     return (
         f"nothing moves in the demonstration of {label!r}: {most} has the largest displacement, "
-        f"{moved[most]:.2f} {unit}, and at least {LEAST_DISPLACEMENT:g} are needed: show the "
-        f"gesture larger, choose another range of the clip, or name the salient landmarks"
+        f"{moved[most]:.2f} {unit}, and at least {LEAST_DISPLACEMENT:g} are needed; nor is a hand "
+        f"seen that holds a shape: show the gesture larger, choose another range of the clip, or "
+        f"name the salient landmarks"
     )

@@ -95,10 +95,10 @@ class Gesture:
     label
         The label of recognitions.
     salient
-        The salient landmarks in alphabetical order; empty only in imported gestures, which then
-        match nothing.
+        The salient landmarks in alphabetical order; empty for a held hand shape, and in imported
+        gestures, which then match nothing.
     image
-        ``(224, 224)``: the salient landmarks' paths, 255 on black.
+        ``(224, 224)``: the salient landmarks' paths, or the held hand, 255 on black.
     trajectory
         The first demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None
         when the gesture was imported from a file that has only images.
@@ -185,7 +185,8 @@ class Gesture:
         Raises
         ------
         GestureError
-            When the demonstration is too short, nothing moves in it, or `salient` does not fit it.
+            When the demonstration is too short, nothing moves in it and no hand shape is held, or
+            `salient` does not fit it.
 
         """
         label = check_label(label)
@@ -200,6 +201,11 @@ class Gesture:
             command=command,
             diver=shown.diver,
         )
+
+    @property
+    def is_held(self) -> bool:
+        """Whether it is a held hand shape, not a movement."""
+        return self.trajectory is not None and bool(self.trajectory.hands)
 
     @property
     def drawing(self) -> Drawing:
@@ -246,6 +252,12 @@ class Gesture:
         made = Demonstration.from_poses(
             self.label, poses, salient=salient, like=self.salient, diver=diver
         )
+        if made.is_held != self.is_held:
+            first, other = ("a held hand shape", "a movement")[:: 1 if self.is_held else -1]
+            raise GestureError(
+                f"{self.label!r} is {first} and this demonstration is {other}: show it in the same "
+                f"way, or define another gesture"
+            )
         return replace(self, further=(*self.further, made))
 
     def without_demonstration(self, index: int) -> Gesture:

@@ -277,6 +277,7 @@ def _pair_findings(
     """Return the findings about confused pairs; `pairs` are sorted, the worst first."""
     language = recognizer.language
     findings: list[Finding] = []
+    held = {gesture.label for gesture in language.gestures if gesture.is_held}
     confused = [pair for pair in pairs if _confusion_rate(pair)[0] > MOST_CONFUSION]
     for pair in confused[:MOST_EXPLAINED]:
         first, second = (language.labels.index(label) for label in pair.gestures)
@@ -293,7 +294,7 @@ def _pair_findings(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
                 pair.gestures,
-                _confusion_message(pair, differences),
+                _confusion_message(pair, differences, held),
                 below_bar=True,
                 remedies=remedies,
             )
@@ -319,12 +320,15 @@ def _is_duplicate(pair: PairHealth) -> bool:
 
 
 def _confusion_message(
-    pair: PairHealth, differences: tuple[PairDifference | None, PairDifference | None]
+    pair: PairHealth,
+    differences: tuple[PairDifference | None, PairDifference | None],
+    held: Collection[str],
 ) -> str:
     first, second = pair.gestures
     if _is_duplicate(pair):
+        same = "hand shape" if pair.gestures[0] in held else "movement"
         return (
-            f"{first} and {second} are the same movement, so the robot cannot distinguish them: "
+            f"{first} and {second} are the same {same}, so the robot cannot distinguish them: "
             f"change or remove one of them"
         )
     confusion, forth = pair.confusion, pair.confusion is pair.first_as_second

@@ -13,7 +13,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.remedy import Remedy
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
-from app.recognition.recording.salute import HOLD_SECONDS
+from app.recognition.recording.salute import HOLD_SECONDS, LEAVE_SCORE, salute_score
 
 SHORTEST_SECONDS = 0.5
 """Least duration of a demonstration: a single reach takes half a second (Flash and Hogan 1985)."""
@@ -75,6 +75,9 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
     `salutes`: whether a salute ends takes, and a gesture must not resemble one.
     """
     shown, label = gesture.trajectory, (gesture.label,)
+    if shown is not None and gesture.is_held:
+        yield from _check_held_shape(gesture, shown)
+        return
     if shown is None or not gesture.salient:
         yield Finding(
             "no_demonstration",
@@ -113,6 +116,18 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
             f"{gesture.label} holds a hand up and still for {held:.1f} s: with its fingers spread "
             "that is a salute, and ends the take; keep the fist closed or the hand moving",
         )
+
+
+def _check_held_shape(gesture: Gesture, shown: Trajectory) -> Iterator[Finding]:
+    """Yield the finding about a held hand shape that would end its own take."""
+    for hand in shown.hands:
+        if salute_score(hand.xy) > LEAVE_SCORE:
+            yield Finding(
+                "salute_like",
+                (gesture.label,),
+                f"{gesture.label} looks like the salute, which ends the take: choose a shape whose "
+                "middle and ring finger are not spread apart",
+            )
 
 
 def _predict_misses(gesture: Gesture) -> str:

@@ -72,14 +72,16 @@ def check_angles(
 
     Returns
     -------
-    By the index of each gesture whose demonstration has depth, its angles in the order of
+    By the index of each movement whose demonstration has depth, its angles in the order of
     `ANGLES`; the others cannot be turned.
 
     """
     gestures = [
         index
         for index, gesture in enumerate(recognizer.language.gestures)
-        if gesture.trajectory is not None and gesture.trajectory.facing is not None
+        if gesture.trajectory is not None
+        and gesture.trajectory.facing is not None
+        and not gesture.is_held
     ]
     trials = [
         simulate_trials(

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.recognition.errors import GestureError, LanguageError
+from app.recognition.errors import GestureError, LanguageError, PoseError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
@@ -19,10 +19,12 @@ from app.recognition.gestures.switches import Switches
 from app.recognition.language.schema import (
     DemonstrationEntry,
     GestureEntry,
+    HandEntry,
     PathEntry,
     RatesEntry,
     TrajectoryEntry,
 )
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.strict_json import build_pointer
@@ -106,6 +108,8 @@ def _demonstration(entry: DemonstrationEntry, pointer: str) -> Demonstration:
     image = _image(entry.image, pointer + "/image")
     trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
     _check_salient(entry.salient, trajectory, pointer)
+    if not entry.salient and not trajectory.hands:
+        raise LanguageError("no salient landmark and no held hand", pointer + "/salient")
     return Demonstration(
         trajectory=trajectory,
         salient=tuple(entry.salient),
@@ -129,6 +133,10 @@ def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
                 z=None if depth is None else _without_nan(depth[:, index]),
             )
             for index, name in enumerate(trajectory.landmarks)
+        ],
+        hands=[
+            HandEntry(side=hand.side, x=hand.xy[:, 0].tolist(), y=hand.xy[:, 1].tolist())
+            for hand in trajectory.hands
         ],
     )
 
@@ -164,7 +172,20 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         time=np.array(entry.time),
         unit=entry.unit,
         depth=np.array(depths, dtype=np.float64).T if has_depth else None,
+        hands=_hands(entry.hands, pointer + "/hands"),
     )
+
+
+def _hands(entries: list[HandEntry], pointer: str) -> tuple[HandShape, ...]:
+    if len({entry.side for entry in entries}) < len(entries):
+        raise LanguageError(f"two {entries[0].side} hands", pointer + build_pointer(1, "side"))
+    hands = []
+    for index, entry in enumerate(entries):
+        try:
+            hands.append(HandShape(entry.side, np.column_stack([entry.x, entry.y])))
+        except PoseError as error:
+            raise LanguageError(str(error), pointer + build_pointer(index)) from error
+    return tuple(hands)
 
 
 def _check_words(entry: GestureEntry, pointer: str) -> None:
@@ -190,6 +211,11 @@ def _check_salient(salient: list[str], trajectory: Trajectory | None, pointer: s
                 f"salient landmark {name!r} has no path in the trajectory",
                 pointer + build_pointer("salient", index),
             )
+    if salient and trajectory is not None and trajectory.hands:
+        raise LanguageError(
+            "a held hand shape has no salient landmarks, a movement no held hands",
+            pointer + "/salient",
+        )
     if len(set(salient)) < len(salient):
         raise LanguageError("a landmark occurs twice", pointer + "/salient")
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from app.recognition.decision.calibration import RULE, calibrate
+from app.recognition.decision.calibration import HAND_RULE, RULE, calibrate
 from app.recognition.errors import LanguageError, OsgError
 from app.recognition.gestures.gesture import SETTINGS, Gesture
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
@@ -156,6 +156,9 @@ class Language:
                 if (shown := each.trajectory) is not None:
                     checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
                     checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
+                    for hand in shown.hands:
+                        checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
+                        checksum = crc32(HAND_RULE.encode(), checksum)
             if gesture.further:
                 checksum = crc32(repr(len(gesture.further)).encode(), checksum)
         return f"{checksum:08x}"

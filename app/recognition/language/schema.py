@@ -18,6 +18,7 @@ from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
 from app.recognition.language.grammar_schema import GrammarEntry
 from app.recognition.language.trigger_schema import TriggerEntry
+from app.recognition.poses.landmarks import HAND_LANDMARKS
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
@@ -32,11 +33,18 @@ languages have at most 20 signs."""
 MAX_FILE_BYTES = 64_000_000
 """1000 demonstrations of 40 kB, and half as much again for descriptions and commands."""
 
+MAX_HAND_COORDINATE = 5.0
+"""Of 21 points of size 1 none is farther from their centroid."""
+
 Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Landmark = Annotated[str, Field(min_length=1)]
 Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
 Diver = Annotated[str, Field(max_length=MAX_DIVER_LENGTH)]
 FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
+HandCoordinates = Annotated[
+    list[Annotated[FiniteFloat, Field(ge=-MAX_HAND_COORDINATE, le=MAX_HAND_COORDINATE)]],
+    Field(min_length=len(HAND_LANDMARKS), max_length=len(HAND_LANDMARKS)),
+]
 
 
 class _Model(BaseModel):
@@ -64,6 +72,20 @@ class PathEntry(_Model):
     ] = None
 
 
+class HandEntry(_Model):
+    """The shape of a held hand, the median of its landmarks over the demonstration."""
+
+    side: Annotated[Literal["left", "right"], Field(description="The person's own.")]
+    x: Annotated[
+        HandCoordinates,
+        Field(
+            description="Of MediaPipe's 21 hand landmarks, to the image's right; their centroid is "
+            "0, their root mean squared distance from it 1."
+        ),
+    ]
+    y: Annotated[HandCoordinates, Field(description="The same, down.")]
+
+
 class TrajectoryEntry(_Model):
     """A demonstration, relative to the torso."""
 
@@ -86,6 +108,14 @@ class TrajectoryEntry(_Model):
         ),
     ]
     paths: Annotated[list[PathEntry], Field(min_length=1)]
+    hands: Annotated[
+        list[HandEntry],
+        Field(
+            max_length=2,
+            description="The hands that hold a shape, one or both, where the gesture is a held "
+            "hand shape and has no salient landmarks. Left out in movements.",
+        ),
+    ] = []
 
 
 class RatesEntry(_Model):
@@ -105,7 +135,8 @@ EncodedImage = Annotated[
     str,
     Field(
         max_length=100_000,
-        description="224 x 224 PNG in base64: the salient landmarks' paths, white on black.",
+        description="224 x 224 PNG in base64: the salient landmarks' paths, or the held hand, "
+        "white on black.",
     ),
 ]
 
@@ -121,8 +152,8 @@ class DemonstrationEntry(_Model):
     salient: Annotated[
         list[Landmark],
         Field(
-            min_length=1,
-            description="Landmarks whose motion is the gesture in this demonstration.",
+            description="Landmarks whose motion is the gesture in this demonstration; empty where "
+            "it is a held hand shape.",
         ),
     ]
     trajectory: TrajectoryEntry
@@ -144,7 +175,10 @@ class GestureEntry(_Model):
     ]
     salient: Annotated[
         list[Landmark],
-        Field(description="Landmarks whose motion is the gesture; empty: it matches nothing."),
+        Field(
+            description="Landmarks whose motion is the gesture; empty: it is a held hand shape, or "
+            "without hands matches nothing."
+        ),
     ]
     trajectory: Annotated[
         TrajectoryEntry | None,

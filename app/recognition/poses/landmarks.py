@@ -68,6 +68,7 @@ HAND_LANDMARKS: Final = (
 """The 21 landmarks of one hand in the order of the model's output (Zhang et al. 2020)."""
 
 SHOULDERS: Final = ("left_shoulder", "right_shoulder")
+WRISTS: Final = ("left_wrist", "right_wrist")
 HIPS: Final = ("left_hip", "right_hip")
 
 TORSO: Final = "torso"

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, SHOULDERS
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -23,6 +23,10 @@ Torso: mid-shoulders to mid-hips; width: between the shoulder joints. Adult body
 (Winter 2009, table 4.1: trunk 0.288 of stature, biacromial half-width 0.129, joints lie inside)
 put the ratio at 1.3 to 1.7; it only stands in until the hips are seen.
 """
+
+
+HANDS_SHAPE = (2, len(HAND_LANDMARKS), 2)
+"""Of the hands of one frame: left and right, landmarks, x and y."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -46,6 +50,9 @@ class PoseSequence:
         ``(T, K, 3)`` metres, x to the image's right, y down, z away from the camera, from any
         origin in each frame; NaN: not known. None where the source gives none. Only depth is
         used, to turn demonstrations (`Trajectory.turn`).
+    hands
+        ``(T, 2, 21, 2)`` pixels: the person's left and right hand in the order of
+        `HAND_LANDMARKS`; NaN: not seen. None where the source sees no hands.
 
     Raises
     ------
@@ -60,6 +67,7 @@ class PoseSequence:
     time: FloatArray
     frame_size: tuple[int, int]
     world: FloatArray | None = None
+    hands: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Validate, and freeze private copies of the arrays."""
@@ -85,6 +93,7 @@ class PoseSequence:
         object.__setattr__(self, "confidence", _check_confidence(self.confidence, xy))
         object.__setattr__(self, "frame_size", _check_size(self.frame_size))
         object.__setattr__(self, "world", _check_world(self.world, xy))
+        object.__setattr__(self, "hands", _check_hands(self.hands, len(xy)))
 
     def __len__(self) -> int:
         """Count the frames, T."""
@@ -101,6 +110,7 @@ class PoseSequence:
             and np.array_equal(self.time, other.time)
             and _same_values(self.confidence, other.confidence)
             and _same_values(self.world, other.world)
+            and _same_values(self.hands, other.hands)
         )
 
     __hash__ = None  # type: ignore[assignment]  # arrays inside: equality without a hash
@@ -161,6 +171,7 @@ class PoseSequence:
             time=self.time[inside],
             confidence=None if self.confidence is None else self.confidence[inside],
             world=None if self.world is None else self.world[inside],
+            hands=None if self.hands is None else self.hands[inside],
         )
 
     def torso_centre(self) -> FloatArray | None:
@@ -246,7 +257,7 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
     ----------
     moments
         At least one part, in order, with the same landmarks and frame size. Confidence is kept
-        only if all of them have it; world landmarks of a part without them are NaN.
+        only if all of them have it; world landmarks and hands of a part without them are NaN.
 
     Raises
     ------
@@ -260,17 +271,25 @@ def join_sequences(moments: Sequence[PoseSequence]) -> PoseSequence:
         xy=np.concatenate([each.xy for each in moments]),
         confidence=np.concatenate(known) if len(known) == len(moments) else None,
         time=np.concatenate([each.time for each in moments]),
-        world=_join_worlds(moments),
+        world=_join_optional(
+            [each.world for each in moments], [(*each.xy.shape[:2], 3) for each in moments]
+        ),
+        hands=_join_optional(
+            [each.hands for each in moments], [(len(each), *HANDS_SHAPE) for each in moments]
+        ),
     )
 
 
-def _join_worlds(moments: Sequence[PoseSequence]) -> FloatArray | None:
-    if all(each.world is None for each in moments):
+def _join_optional(
+    parts: Sequence[FloatArray | None], shapes: Sequence[tuple[int, ...]]
+) -> FloatArray | None:
+    """Concatenate arrays, NaN of the given shape for those that are None; None if all are."""
+    if all(each is None for each in parts):
         return None
     return np.concatenate(
         [
-            np.full((*each.xy.shape[:2], 3), np.nan) if each.world is None else each.world
-            for each in moments
+            np.full(shape, np.nan) if each is None else each
+            for each, shape in zip(parts, shapes, strict=True)
         ]
     )
 
@@ -324,6 +343,17 @@ def _check_world(values: Any, xy: FloatArray) -> FloatArray | None:
     if np.isinf(world).any():
         raise PoseError("world holds infinite values; mark what is not known with NaN")
     return world
+
+
+def _check_hands(values: Any, frames: int) -> FloatArray | None:
+    if values is None:
+        return None
+    hands = _freeze(values, "hands")
+    if hands.shape != (frames, *HANDS_SHAPE):
+        raise PoseError(f"hands has shape {hands.shape}, expected {(frames, *HANDS_SHAPE)}")
+    if np.isinf(hands).any():
+        raise PoseError("hands holds infinite values; mark what was not seen with NaN")
+    return hands
 
 
 def _check_size(size: Any) -> tuple[int, int]:

@@ -11,6 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
 
@@ -56,6 +57,9 @@ class Trajectory:
     depth
         ``(T, K)`` in `unit`: how far each landmark is behind the torso's centre, away from the
         camera. NaN: not known. None where the recording has no depth.
+    hands
+        The hands that hold a shape, left then right (`find_held_hands`); empty where something
+        moves or no hand is seen, and in demonstrations that are a movement.
 
     """
 
@@ -64,6 +68,7 @@ class Trajectory:
     time: FloatArray
     unit: Unit
     depth: FloatArray | None = None
+    hands: tuple[HandShape, ...] = ()
 
     @classmethod
     def from_poses(cls, poses: PoseSequence) -> Trajectory:
@@ -198,7 +203,8 @@ class Trajectory:
     def mirror(self) -> Trajectory:
         """Mirror left and right: x changes its sign, landmarks swap their sides."""
         names = tuple(other_side(name) for name in self.landmarks)
-        return replace(self, landmarks=names, xy=self.xy * (-1.0, 1.0) + 0.0)
+        hands = tuple(hand.mirror() for hand in reversed(self.hands))
+        return replace(self, landmarks=names, xy=self.xy * (-1.0, 1.0) + 0.0, hands=hands)
 
     def recentre(self) -> Trajectory:
         """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""

@@ -121,9 +121,13 @@ def _exchange_sides(repair: Repair) -> Repair:
         None if values is None else swap_sides(values, poses.landmarks, sides.exchanged)
         for values in (poses.confidence, poses.world)
     )
+    hands = None if poses.hands is None else poses.hands.copy()
+    if hands is not None:  # they were told apart by the wrists
+        hands[sides.exchanged] = hands[sides.exchanged][:, ::-1]
+        hands[sides.blended] = np.nan
     return replace(
         repair,
-        poses=replace(poses, xy=xy, confidence=confidence, world=world),
+        poses=replace(poses, xy=xy, confidence=confidence, world=world, hands=hands),
         exchanged=repair.exchanged ^ sides.exchanged,
         blended=repair.blended | sides.blended,
     )

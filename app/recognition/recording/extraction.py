@@ -12,9 +12,10 @@ from app.recognition.estimation import create_estimator, finds_hands, list_landm
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection, correct_colours
 from app.recognition.poses.frame import FrameLandmarks, Hand
-from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
+from app.recognition.recording.hand_sides import place_hands
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE, best_salute
 from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
@@ -138,6 +139,7 @@ def build_frame_sequence(
         world = found.body.world
         if world is not None:
             world = world.astype(np.float32).astype(np.float64)  # as precise as `Recording.save`
+    wrists = xy[[POSE_LANDMARKS.index(name) for name in WRISTS]]
     moment = PoseSequence(
         landmarks=POSE_LANDMARKS,
         xy=xy[None],
@@ -145,6 +147,7 @@ def build_frame_sequence(
         time=np.array([time]),
         frame_size=frame_size,
         world=None if world is None else world[None],
+        hands=place_hands([found.hands], wrists[None]),
     )
     return moment if landmarks == POSE_LANDMARKS else moment.select(landmarks)
 

@@ -6,7 +6,7 @@ import os
 import tempfile
 import zipfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -14,8 +14,9 @@ import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import HAND_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.recording.hand_sides import place_hands
 
 FILE_VERSION = 1
 """Version of the file that `Recording.save` writes; increased when older readers would fail."""
@@ -28,7 +29,8 @@ class Recording:
     Attributes
     ----------
     poses
-        The body in every frame; all landmarks NaN where no person was found.
+        The body in every frame; all landmarks NaN where no person was found. They get the hands
+        by the person's side (`hand_sides`) where they have none.
     hands
         T tuples: the hands of each frame, the larger first.
     salute
@@ -61,6 +63,9 @@ class Recording:
             raise PoseError("salute scores lie outside [0, 1]")
         salute.setflags(write=False)
         object.__setattr__(self, "salute", salute)
+        if self.poses.hands is None and any(self.hands):
+            placed = place_hands(self.hands, _wrists(self.poses))
+            object.__setattr__(self, "poses", replace(self.poses, hands=placed))
 
     def save(self, path: str | Path) -> None:
         """Write a compressed NumPy archive atomically.
@@ -154,3 +159,10 @@ class Recording:
             salute=arrays["salute"],
             warnings=tuple(str(warning) for warning in arrays["warnings"]),
         )
+
+
+def _wrists(poses: PoseSequence) -> FloatArray:
+    """Return ``(T, 2, 2)`` the wrists' pixels, NaN where the set of landmarks has none."""
+    if not set(WRISTS) <= set(poses.landmarks):
+        return np.full((len(poses), 2, 2), np.nan)
+    return poses.select(WRISTS).xy

@@ -19,11 +19,9 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.landmarks import SHOULDERS
+from app.recognition.poses.landmarks import SHOULDERS, WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-
-WRISTS = ("left_wrist", "right_wrist")
 
 GRID_STEP = 1 / 60
 """Seconds between the moments at which speed is computed: finer than most cameras' frames."""

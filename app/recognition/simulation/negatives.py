@@ -25,7 +25,11 @@ def draw_negatives(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
 
     All of them are condensed, as queries are.
     """
-    shown = [gesture.trajectory for gesture in gestures if gesture.trajectory is not None]
+    shown = [
+        gesture.trajectory
+        for gesture in gestures
+        if gesture.trajectory is not None and not gesture.is_held
+    ]
     return _draw_background_motion() + tuple(map(condense, splice_all(shown)))
 
 

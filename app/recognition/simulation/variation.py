@@ -31,6 +31,7 @@ from app.recognition.features.motion import SIDES, parse_body_part
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.limb_length import limit_limbs
+from app.recognition.simulation.hand_variation import HAND_SPREADS, vary_hands
 
 Person = Literal["same", "another"]
 
@@ -152,7 +153,8 @@ def draw_variants(
     Returns
     -------
     `count` trajectories with the demonstration's landmarks, unit and number of moments, from
-    second 0 on. What does not move varies in tempo alone; a single moment does not vary.
+    second 0 on. What does not move varies in tempo alone; a single moment does not vary. Of a
+    held hand shape the hands vary (`hand_variation`).
 
     Raises
     ------
@@ -160,6 +162,9 @@ def draw_variants(
         When `count` is negative.
 
     """
+    if trajectory.hands:
+        varied = vary_hands(trajectory.hands, max(count, 0), HAND_SPREADS[person], seed=seed)
+        return tuple(replace(trajectory, hands=hands) for hands in varied)
     return vary(trajectory, count, SPREADS[person], seed=seed)
 
 

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from typing import Final
 
+from app.recognition.voters.hand.finger_directions import FingerDirections
+from app.recognition.voters.hand.hand_landmarks import HandLandmarks
+from app.recognition.voters.hand.hand_voter import HandVoter
 from app.recognition.voters.motion.arm_path import ArmPath
 from app.recognition.voters.motion.direction import Direction
 from app.recognition.voters.motion.hand_attitude import HandAttitude
@@ -49,10 +52,14 @@ MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
 """The additional voters of profile ``full``."""
 
 VOTERS: Final[tuple[Voter, ...]] = (*PAPER_VOTERS, *MOTION_VOTERS)
-"""All voters of profile ``full``."""
+"""The voters of profile ``full`` that compare movements."""
+
+HAND_VOTERS: Final[tuple[HandVoter, ...]] = (HandLandmarks(), FingerDirections())
+"""The voters of profile ``full`` that compare held hand shapes, in languages that have any."""
 
 FORMER_VOTERS: Final = frozenset({"cloud", "stroke_direction", "which_hand", "path_length"})
 """Voters of earlier versions: leaving them out changed no accuracy. Weight factors for them in
 language files are ignored."""
 
 VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in VOTERS)
+HAND_VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in HAND_VOTERS)

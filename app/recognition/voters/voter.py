@@ -9,7 +9,7 @@ import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
 
-CueGroup = Literal["movement", "place"]
+CueGroup = Literal["movement", "place", "hand"]
 """Cue groups: voters that measure the same property (`app.recognition.decision.rejection`)."""
 
 

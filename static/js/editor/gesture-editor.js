@@ -119,7 +119,7 @@ function valuesOf({ language, gesture }) {
     label,
     description,
     command: written(command),
-    salient: [...salient].sort(),
+    salient: salient.length ? [...salient].sort() : null,
     direction,
     tempo,
     mirror,

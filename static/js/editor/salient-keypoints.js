@@ -43,6 +43,8 @@ export function toggle(landmark, preview) {
  */
 function noteOn(preview, count) {
   if (!preview) return "\u2026";
+  if (preview.image && !preview.problem && !preview.salient.length)
+    return "Nothing moves: the shape of the hand is the gesture. To follow a movement instead, choose keypoints.";
   if (count) {
     const unit = preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent";
     return `Movement in ${unit}. From the line, ${(preview.threshold ?? 0).toFixed(2)}, a keypoint is proposed.`;

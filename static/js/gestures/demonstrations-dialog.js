@@ -3,13 +3,14 @@
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
-import { moment, plural, readable } from "../core/format.js";
+import { moment, plural } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
+import { isHeld, listFollowed } from "./held-shape.js";
 
 /** @import { Clip, Demonstration, Gesture, Source, Take } from "../core/types.d.ts" */
 
@@ -95,7 +96,7 @@ function origin(source) {
  * @param {Demonstration} demonstration
  */
 function figure(gesture, demonstration) {
-  const { index, diver, seconds, salient, thumbnail, source } = demonstration;
+  const { index, diver, seconds, thumbnail, source } = demonstration;
   const name = `Demonstration ${index + 1}`;
   const alone = gesture.demonstrations.length === 1;
   return h(
@@ -103,13 +104,15 @@ function figure(gesture, demonstration) {
     { className: "demonstration-card" },
     h("img", {
       src: withMarks(thumbnail),
-      alt: `${name} of ${gesture.label}, from the dot along the arrow`,
+      alt: isHeld(demonstration)
+        ? `${name} of ${gesture.label}, a hand shape`
+        : `${name} of ${gesture.label}, from the dot along the arrow`,
       width: 160,
       height: 160,
     }),
     h("b", {}, diver || name),
     h("span", { className: "num" }, seconds === null ? "only its image is known" : moment(seconds)),
-    h("span", { className: "dim" }, salient.map(readable).join(", ")),
+    h("span", { className: "dim" }, listFollowed(demonstration)),
     origin(source),
     source?.fault
       ? h(

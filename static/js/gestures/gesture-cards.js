@@ -3,13 +3,14 @@
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
-import { plural, readable } from "../core/format.js";
+import { plural } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
+import { isHeld, listFollowed } from "./held-shape.js";
 import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
 
 /** @import { Gesture, Language, Recognition, State } from "../core/types.d.ts" */
@@ -70,7 +71,9 @@ function draw(gesture, element) {
     { className: `card${mark ? ` ${mark}` : ""}` },
     h("img", {
       src: image,
-      alt: `Trajectory of ${gesture.label}, from the dot along the arrow`,
+      alt: isHeld(gesture)
+        ? `Hand shape of ${gesture.label}`
+        : `Trajectory of ${gesture.label}, from the dot along the arrow`,
       loading: "lazy",
       width: 112,
       height: 112,
@@ -79,7 +82,7 @@ function draw(gesture, element) {
       "div",
       { className: "card-text" },
       h("b", { title: gesture.label }, gesture.label),
-      h("span", {}, gesture.description || gesture.salient.map(readable).join(", ")),
+      h("span", {}, gesture.description || listFollowed(gesture)),
       h(
         "button",
         {

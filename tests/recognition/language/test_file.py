@@ -10,6 +10,7 @@ import pytest
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
 from app.recognition.language.schema import MAX_FILE_BYTES, MAX_GESTURES
+from tests.recognition.held_takes import TWO, hold
 from tests.recognition.strategies import circle, in_space, line, recording
 
 Content = dict[str, Any]
@@ -193,7 +194,7 @@ def put_in_path(key: str, value: object) -> Change:
         (
             put_in_demonstration("salient", []),
             "/gestures/1/demonstrations/1/salient",
-            "at least 1 item",
+            "no salient landmark and no held hand",
         ),
         (
             put_in_demonstration("salient", ["left_wrist", "tail"]),
@@ -316,3 +317,56 @@ def test_a_path_with_fewer_depths_than_moments_is_refused() -> None:
     written = Language("pool", [gesture]).to_json()
     shorter = resealed(written, lambda content: first(content)["trajectory"]["paths"][1]["z"].pop())
     assert refusal_of(shorter).pointer == "/gestures/0/trajectory/paths/1/z"
+
+
+def held_language() -> Language:
+    return Language(name="signs", gestures=[Gesture.from_demonstration("two", hold(TWO))])
+
+
+def test_a_held_shape_is_a_key_of_its_trajectory() -> None:
+    entry = json.loads(held_language().to_json())["gestures"][0]
+    assert entry["salient"] == []
+    (hand,) = entry["trajectory"]["hands"]
+    assert hand["side"] == "right"
+    assert len(hand["x"]) == len(hand["y"]) == 21
+
+
+def test_a_language_without_held_shapes_has_no_key_of_them(text: str) -> None:
+    assert '"hands"' not in text
+
+
+@pytest.mark.parametrize(
+    ("change", "pointer", "message"),
+    [
+        ({"side": "upper"}, "/gestures/0/trajectory/hands/0/side", "left"),
+        ({"x": [0.0] * 20}, "/gestures/0/trajectory/hands/0/x", "at least 21 items"),
+        ({"y": [9.0] * 21}, "/gestures/0/trajectory/hands/0/y/0", "less than or equal to 5"),
+        (
+            {"x": [0.0] * 21, "y": [0.0] * 21},
+            "/gestures/0/trajectory/hands/0",
+            "not all at one point",
+        ),
+    ],
+)
+def test_a_broken_hand_is_refused_with_a_pointer(
+    change: dict[str, object], pointer: str, message: str
+) -> None:
+    content = json.loads(held_language().to_json())
+    del content["sha256"]
+    content["gestures"][0]["trajectory"]["hands"][0].update(change)
+    with pytest.raises(LanguageError, match=message) as caught:
+        Language.from_json(json.dumps(content))
+    assert caught.value.pointer == pointer
+
+
+def test_two_hands_of_one_side_and_a_moving_held_shape_are_refused() -> None:
+    content = json.loads(held_language().to_json())
+    del content["sha256"]
+    trajectory = content["gestures"][0]["trajectory"]
+    trajectory["hands"] *= 2
+    with pytest.raises(LanguageError, match="two right hands"):
+        Language.from_json(json.dumps(content))
+    del trajectory["hands"][1]
+    content["gestures"][0]["salient"] = ["right_wrist"]
+    with pytest.raises(LanguageError, match="a held hand shape has no salient landmarks"):
+        Language.from_json(json.dumps(content))

@@ -59,6 +59,8 @@ the head to the knees is then about 640 high, as a clip's."""
 BORDER = 40
 """Pixels around it: a head, of which only the middle is followed, is half as high."""
 
+HELD_WORDS = "it is a held hand shape, in which nothing moves"
+
 router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
 
 
@@ -324,6 +326,8 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
 
 def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, str]:
     """Say what each switch comes to in this language."""
+    if gesture.is_held:
+        return {**dict.fromkeys(SWITCHES, HELD_WORDS), "mirror": _held_mirror_words(gesture)}
     if counting is None:
         only = "only its drawing is known, which looks the same either way"
         return dict.fromkeys(SWITCHES, only)
@@ -358,6 +362,13 @@ def _mirror_words(gesture: Gesture, counting: Sensitivity) -> str:
     if not counting.sides:
         return "its mirror image is not read as it, but left and right may have been exchanged"
     return "its mirror image, with the other hand, is not read as it"
+
+
+def _held_mirror_words(gesture: Gesture) -> str:
+    if gesture.switches.mirror == "off":
+        return "its mirror image, with the other hand, is not read as it"
+    also = "its mirror image, with the other hand, is read as it too"
+    return also if gesture.switches.mirror == "on" else f"{also}, unless it is another gesture"
 
 
 def _lay_out(trajectory: Trajectory) -> PosesView:

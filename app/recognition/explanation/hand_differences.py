@@ -1,0 +1,150 @@
+"""Hand differences: how a held hand differs from the expected shape, finger by finger.
+
+Each is tested by undoing it, as in `differences`: the finger is replaced by that of the
+demonstration, or the hand turned back, and the voters compare again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from app.recognition.explanation.differences import Difference
+from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.registry import HAND_VOTERS
+
+FINGERS = ("thumb", "index finger", "middle finger", "ring finger", "little finger")
+
+MOST_BENT = 200.0
+"""Degrees of a finger's three joints together in a fist, where its tip is farthest back."""
+
+CLEARLY_BENT = 30.0
+"""Least difference of a finger's bend in degrees: the landmarks' errors make up to 20."""
+
+CLEARLY_TURNED = 25.0
+"""Least turn of the hand in degrees that is named; the voters forgive 20."""
+
+ROUNDED = 10
+"""Degrees to which a bend or a turn is rounded: as precisely as the image shows it."""
+
+LEAST_SHARE = 0.1
+"""Least share of the distance that undoing a difference removes."""
+
+MOST_NAMED = 3
+
+FINGER_LENGTHS = (0.94, 1.04, 0.98, 0.77)
+"""Stretched fingers in palms, index to little finger (Buryanov and Kotiuk 2010)."""
+
+BONE_SHARES = np.array([0.48, 0.29, 0.23])
+"""Of a finger's length, from the knuckle on (the same)."""
+
+_WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
+
+
+def find_hand_differences(
+    label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
+) -> tuple[Difference, ...]:
+    """Find how a query's hand differs from a gesture's, the largest share first.
+
+    Parameters
+    ----------
+    label
+        The gesture's.
+    hands
+        The query's held hands; none: that is the difference.
+    shown
+        The gesture's.
+
+    """
+    if not hands:
+        return (_difference(1.0, f"no hand holds a shape in this take, and {label!r} is one"),)
+    pairs = [
+        (seen, example) for example in shown for hand in hands for seen in (hand, hand.mirror())
+    ]
+    query, example = min(pairs, key=lambda pair: measure_distance(*pair))
+    whole = measure_distance(query, example)
+    found = [
+        _difference(share, words)
+        for share, words in (*_fingers(query, example, whole, label), *_turn(query, example, whole))
+        if share >= LEAST_SHARE
+    ]
+    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+
+
+def _difference(share: float, words: str) -> Difference:
+    return Difference(
+        kind="hand_shape", share=share, landmark=None, start=None, end=None, words=words
+    )
+
+
+def measure_distance(one: HandShape, other: HandShape) -> float:
+    """Return the mean of the hand voters' distances, each over that between two shapes."""
+    return float(
+        np.mean(
+            [
+                voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
+                for voter in HAND_VOTERS
+            ]
+        )
+    )
+
+
+def measure_bends(hand: HandShape) -> FloatArray:
+    """Estimate the bend of index to little finger in degrees, the three joints together.
+
+    By how far each tip is beyond its knuckle along the palm, in palms, which a finger bent towards
+    the camera shows as one bent in the image. Returns ``(4,)``, 0 for a stretched finger.
+    """
+    axis = hand.xy[_MIDDLE] - hand.xy[_WRIST]
+    bends = np.linspace(0.0, MOST_BENT, 41)
+    # A third of the bend at each joint.
+    reach = np.cos(np.radians(bends)[:, None] * np.array([1, 2, 3]) / 3) @ BONE_SHARES
+    measured = []
+    for finger, length in enumerate(FINGER_LENGTHS, start=1):
+        finger_vector = hand.xy[4 + 4 * finger] - hand.xy[1 + 4 * finger]
+        share = float(finger_vector @ axis / max(length * (axis @ axis), 1e-9))
+        measured.append(float(np.interp(-share, -reach, bends)))
+    return np.array(measured)
+
+
+def _fingers(
+    query: HandShape, example: HandShape, whole: float, label: str
+) -> Iterator[tuple[float, str]]:
+    """Yield the share and the words of every finger that differs clearly."""
+    more = measure_bends(query) - measure_bends(example)
+    for finger, name in enumerate(FINGERS):
+        undone = query.xy.copy()
+        joints = [1 + 4 * finger + joint for joint in range(4)]
+        inner = joints[0]
+        undone[joints[1:]] = undone[inner] + example.xy[joints[1:]] - example.xy[inner]
+        left = measure_distance(HandShape(query.side, undone), example)
+        share = _share(whole, left)
+        if finger == 0:
+            yield share, f"the thumb points otherwise than in {label!r}"
+        elif abs(more[finger - 1]) >= CLEARLY_BENT:
+            degrees = _round(more[finger - 1])
+            word = "more" if more[finger - 1] > 0 else "less"
+            yield share, f"the {name} is bent {degrees} degrees {word} than in {label!r}"
+        else:
+            yield share, f"the {name} points otherwise than in {label!r}"
+
+
+def _turn(query: HandShape, example: HandShape, whole: float) -> Iterator[tuple[float, str]]:
+    """Yield the share and the words of a turn in the image."""
+    one, other = (hand.xy[_MIDDLE] - hand.xy[_WRIST] for hand in (query, example))
+    turned = np.degrees(np.arctan2(other[0] * one[1] - other[1] * one[0], one @ other))
+    if abs(turned) >= CLEARLY_TURNED:
+        way = "clockwise" if turned > 0 else "anticlockwise"
+        left = measure_distance(query.turn(-turned), example)
+        yield _share(whole, left), f"the hand is turned by {_round(turned)} degrees {way}"
+
+
+def _share(whole: float, left: float) -> float:
+    return float(np.clip(1 - left / whole, 0, 1)) if whole > 0 else 0.0
+
+
+def _round(degrees: float) -> int:
+    return ROUNDED * round(abs(degrees) / ROUNDED)

@@ -1,0 +1,155 @@
+"""Held hands: finds the hands whose shape is the gesture, in poses in which nothing else moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+from app.recognition.poses.frame import SIDES
+from app.recognition.poses.hand_shape import HandShape, measure_palms, normalize_hands
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.salience import (
+    LEAST_DISPLACEMENT,
+    MIN_DISPLACEMENT,
+    choose_representatives,
+    measure_displacements,
+)
+
+HOLD_PERCENTILES = (20.0, 80.0)
+"""The percentiles of a held hand's path taken as peak to peak: it may come and go in a fifth of the
+time at either end, and no stroke of a gesture is over in that."""
+
+PALMS_PER_TORSO = 5.2
+"""Torso length over palm length (wrist to middle knuckle), 52 against 10 cm (Winter 2009)."""
+
+LEAST_SEEN = 0.4
+"""Least share of the frames in which a held hand is seen: the hand model loses a still hand under
+water for up to half a second."""
+
+MOST_CHANGE = 0.5
+"""Largest median distance of a frame's shape from the median shape, in sizes of the hand: a hand
+that opens and closes has no shape. A wobbling flat hand ("something is wrong") changes by up to
+0.48; two shapes are 0.7 and more apart."""
+
+SMALLER = 0.6
+"""Share of the smallest movement of a language below which a take is none: people's takes differ in
+size by a third of a doubling, and rarely by two."""
+
+LEAST_SWAY = 0.1
+"""Torso lengths by which a hand may always move that holds a shape: nobody hovers more steadily."""
+
+LOWEST = 0.35
+"""Lowest place of a hand that shows something, torso lengths below the torso's centre: a hand that
+hangs is below the hips, at 0.5."""
+
+_WRIST = HAND_LANDMARKS.index("wrist")
+
+
+def find_most_movement(movements: Iterable[Trajectory]) -> float:
+    """Return how far a hand may move that holds a shape in a language, torso lengths.
+
+    Parameters
+    ----------
+    movements
+        The demonstrations of the language's movements: a small one is no held shape.
+
+    Returns
+    -------
+    `SMALLER` times the movement of the smallest, from `LEAST_SWAY` to `MIN_DISPLACEMENT`.
+
+    """
+    own = [_measure_movement(each) for each in movements if each.unit == "torso_length"]
+    return max(LEAST_SWAY, min([MIN_DISPLACEMENT, *(SMALLER * each for each in own)]))
+
+
+def find_held_hands(
+    poses: PoseSequence, trajectory: Trajectory, most: float = MIN_DISPLACEMENT
+) -> tuple[HandShape, ...]:
+    """Find the hands that hold a shape, where nothing moves clearly.
+
+    A hand counts that is seen in `LEAST_SEEN` of the frames, stays at one place, keeps its shape
+    and does not hang down.
+
+    Parameters
+    ----------
+    poses
+        Repaired poses of a take.
+    trajectory
+        The trajectory of `poses`, with as many moments or condensed.
+    most
+        Torso lengths from which a hand or the head moves clearly (`find_most_movement`).
+
+    Returns
+    -------
+    At most two, left then right; none where a hand or the head moves clearly.
+
+    """
+    if poses.hands is None or not len(poses) or _moves_clearly(trajectory, most):
+        return ()
+    held = []
+    for index, side in enumerate(SIDES):
+        hands = poses.hands[:, index]
+        seen: npt.NDArray[np.bool_] = np.asarray(np.isfinite(hands).all(axis=(1, 2)))
+        if seen.mean() < LEAST_SEEN or _hangs(poses, hands, seen):
+            continue
+        shown = hands[seen]
+        if _measure_travel(shown) >= most * PALMS_PER_TORSO:
+            continue
+        shape = HandShape.of_frames(side, shown)
+        change = np.sqrt(((normalize_hands(shown) - shape.xy) ** 2).sum(axis=2).mean(axis=1))
+        if np.median(change) <= MOST_CHANGE:
+            held.append(shape)
+    return tuple(held)
+
+
+def comes_and_goes(trajectory: Trajectory) -> bool:
+    """Return whether a hand moves clearly at the ends of a take alone and rests in between.
+
+    It was brought to where it shows something, and taken away again.
+    """
+    moved = measure_displacements(trajectory)
+    farthest = max((moved[name] for name in choose_representatives(trajectory)), default=0.0)
+    return farthest >= MIN_DISPLACEMENT and _measure_movement(trajectory) < LEAST_DISPLACEMENT
+
+
+def _moves_clearly(trajectory: Trajectory, most: float) -> bool:
+    """Return whether a hand or the head moves as in a gesture; unknown without a torso."""
+    return trajectory.unit == "torso_length" and _measure_movement(trajectory) >= most
+
+
+def _measure_movement(trajectory: Trajectory) -> float:
+    """Return how far a hand or the head moves between the ends of the take, in its unit."""
+    paths = (
+        trajectory.xy[:, trajectory.landmarks.index(name)]
+        for name in choose_representatives(trajectory)
+    )
+    return max(
+        (_measure_extent(path[np.isfinite(path).all(axis=1)]) for path in paths), default=0.0
+    )
+
+
+def _measure_extent(path: FloatArray) -> float:
+    """Return the diagonal of the box around ``(T, 2)`` between `HOLD_PERCENTILES`."""
+    if not len(path):
+        return 0.0
+    low, high = np.percentile(path, HOLD_PERCENTILES, axis=0)
+    return float(np.hypot(*(high - low)))
+
+
+def _measure_travel(hands: FloatArray) -> float:
+    """Return how far a hand ``(T, 21, 2)`` moves, in palms."""
+    palm = float(np.median(measure_palms(hands)))
+    return _measure_extent(hands[:, _WRIST]) / max(palm, 1e-9)
+
+
+def _hangs(poses: PoseSequence, hands: FloatArray, seen: npt.NDArray[np.bool_]) -> bool:
+    """Return whether a hand is below the torso; False without a torso."""
+    centre, length = poses.torso_centre(), poses.torso_length()
+    if centre is None or length is None or not seen.any():
+        return False
+    below = (hands[seen, _WRIST, 1] - centre[seen, 1]) / length
+    return bool(np.median(below) > LOWEST)

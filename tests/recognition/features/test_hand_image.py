@@ -1,0 +1,35 @@
+"""Hand images: held hands as white lines that fill the picture."""
+
+import numpy as np
+
+from app.recognition.features.hand_image import draw_hands
+from app.recognition.features.trajectory_image import MARGIN, SIZE
+from app.recognition.poses.hand_shape import HandShape
+from tests.recognition.held_takes import FIST, FLAT
+from tests.recognition.parametric_hand import hand_xy
+
+FLAT_HAND = HandShape.of_frames("right", hand_xy(FLAT)[None])
+
+
+def test_a_hand_fills_the_picture_within_the_margin() -> None:
+    image = draw_hands([FLAT_HAND])
+    assert image.shape == (SIZE, SIZE)
+    assert set(np.unique(image)) == {0, 255}
+    rows, columns = np.nonzero(image)
+    assert max(np.ptp(rows), np.ptp(columns)) >= SIZE - 2 * MARGIN - 1
+    assert rows.min() >= MARGIN // 2 <= columns.min()
+
+
+def test_another_shape_is_another_picture_and_its_mirror_image_is_mirrored() -> None:
+    image = draw_hands([FLAT_HAND])
+    assert (image != draw_hands([HandShape.of_frames("right", hand_xy(FIST)[None])])).any()
+    assert (draw_hands([FLAT_HAND.mirror()])[:, ::-1] == image).mean() > 0.95
+
+
+def test_two_hands_are_side_by_side_and_none_is_black() -> None:
+    both = draw_hands([FLAT_HAND.mirror(), FLAT_HAND])
+    middle = both[:, SIZE // 2 - 2 : SIZE // 2 + 2]
+    assert both[:, : SIZE // 2].any()
+    assert both[:, SIZE // 2 :].any()
+    assert not middle.any()
+    assert not draw_hands([]).any()

@@ -1,0 +1,98 @@
+"""Takes of held hand shapes: a still body that holds a hand of `parametric_hand`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from tests.recognition.parametric_hand import Finger, Fingers, View, hand_xy
+
+CURLED = (75.0, 85.0, 50.0)
+TORSO = 260.0
+"""Pixels."""
+PALM = 50.0
+BODY = {
+    "nose": (320, 90),
+    "left_shoulder": (390, 150),
+    "right_shoulder": (250, 150),
+    "left_elbow": (420, 260),
+    "right_elbow": (180, 240),
+    "left_wrist": (430, 390),
+    "right_wrist": (190, 150),
+    "left_hip": (365, 410),
+    "right_hip": (275, 410),
+}
+
+
+def fingers(*stretched: int) -> Fingers:
+    """Return a hand with some fingers stretched, 0 the index finger."""
+    spreads = (10.0, 2.0, -6.0, -14.0)
+    made = [
+        Finger(spread) if number in stretched else Finger(0.0, CURLED)
+        for number, spread in enumerate(spreads)
+    ]
+    return made[0], made[1], made[2], made[3]
+
+
+FLAT, FIST, TWO = fingers(0, 1, 2, 3), fingers(), fingers(0, 1)
+
+
+def hold(
+    shape: Fingers,
+    *,
+    roll: float = 0.0,
+    yaw: float = 0.0,
+    frames: int = 40,
+    seed: int = 0,
+    left: bool = False,
+    thumb: float = 40.0,
+    moving: FloatArray | None = None,
+) -> PoseSequence:
+    """Return a take in which one hand beside the face holds a shape.
+
+    Parameters
+    ----------
+    shape
+        The fingers.
+    roll, yaw
+        Degrees by which the hand is turned in the image, and about its own axis.
+    frames
+        At 25 a second.
+    seed
+        Of the landmarks' errors.
+    left
+        The left hand instead: the mirror image of everything.
+    thumb
+        Degrees between the thumb and the hand's axis.
+    moving
+        ``(frames, 2)`` torso lengths by which the hand moves.
+
+    """
+    random = np.random.default_rng(seed)
+    xy = np.full((frames, len(POSE_LANDMARKS), 2), np.nan)
+    for name, place in BODY.items():
+        xy[:, POSE_LANDMARKS.index(name)] = place
+    xy += random.normal(0, 0.5, xy.shape)
+    wrist = POSE_LANDMARKS.index("right_wrist")
+    if moving is not None:
+        xy[:, wrist] += TORSO * moving
+    hands = np.full((frames, 2, 21, 2), np.nan)
+    points = PALM * hand_xy(shape, View(roll, yaw), thumb_spread=thumb)
+    hands[:, 1] = (points - points[0])[None] + xy[:, wrist, None]
+    hands += random.normal(0, 1.0, hands.shape)
+    if left:
+        swapped = [POSE_LANDMARKS.index(_other(name)) for name in POSE_LANDMARKS]
+        xy, hands = xy[:, swapped] * (-1, 1) + (640, 0), hands[:, ::-1] * (-1, 1) + (640, 0)
+    return PoseSequence(
+        landmarks=POSE_LANDMARKS,
+        xy=xy,
+        time=np.arange(frames) / 25,
+        frame_size=(640, 480),
+        hands=hands,
+    )
+
+
+def _other(name: str) -> str:
+    swaps = {"left": "right", "right": "left"}
+    return "_".join(swaps.get(word, word) for word in name.split("_"))
