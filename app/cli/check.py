@@ -13,6 +13,7 @@ from app.cli.evaluate import Person
 from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
+from app.resources import known_signs_file
 
 HAS_ERRORS = 1
 """Exit code when the report has an error."""
@@ -37,6 +38,7 @@ def check(
             person=person.value,
             seed=seed,
             progress=lambda stage, done, total: advance(done, total or None, stage),
+            known_signs=Language.load(known_signs_file()),
         )
     if as_json:
         typer.echo(json.dumps(report.to_dict(), allow_nan=False))

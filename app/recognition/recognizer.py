@@ -24,7 +24,7 @@ from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands, find_most_movement
+from app.recognition.preprocessing.held_hands import find_held_hands
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 
@@ -70,12 +70,6 @@ class Recognizer:
         self.vote = _VOTES[traits.name](self.language.gestures, tuning)
         self._reads_hands = traits.compares_motion and any(
             gesture.is_held for gesture in language.gestures
-        )
-        self._most_movement = find_most_movement(
-            shown
-            for gesture in language.gestures
-            if self._reads_hands and not gesture.is_held
-            for shown in gesture.trajectories
         )
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
@@ -148,7 +142,7 @@ class Recognizer:
         """Condense a query, with the hands that it holds where the language has held shapes."""
         if not self._reads_hands:
             return condense(trajectory)
-        hands = find_held_hands(poses, trajectory, self._most_movement)
+        hands = find_held_hands(poses, trajectory)
         return condense(replace(trajectory, hands=hands) if hands else trajectory)
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:

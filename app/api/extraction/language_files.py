@@ -12,6 +12,7 @@ from app.api.extraction.messages import Finished, Message, Progressed
 from app.recognition import Language
 from app.recognition.health.check import check_health
 from app.recognition.language.osg_reference import from_reference, is_reference
+from app.resources import known_signs_file
 
 REPORT_EVERY = 8
 """Pieces of work, each a take or a movement of some ten milliseconds, between two reports: ten a
@@ -78,6 +79,10 @@ def check_language(file: Path, target: Path, report: Report) -> None:
         if done % REPORT_EVERY == 1:
             report(Progressed(stage=stage, done=done, total=total))
 
-    checked = check_health(Language.from_json(file.read_bytes()), progress=progress)
+    checked = check_health(
+        Language.from_json(file.read_bytes()),
+        progress=progress,
+        known_signs=Language.load(known_signs_file()),
+    )
     target.write_text(json.dumps(checked.to_dict()), encoding="utf-8")
     report(Finished(frames=0, warnings=()))

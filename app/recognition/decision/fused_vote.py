@@ -39,6 +39,7 @@ from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.registry import (
     HAND_VOTER_NAMES,
@@ -127,6 +128,11 @@ class FusedVote:
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._hands = HandReferences.of(sides, self._owners)
+        self._least_movement = find_least_movement(
+            gesture.trajectory
+            for gesture in sides
+            if gesture.trajectory is not None and not gesture.is_held and len(self._hands)
+        )
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
         # Last: weight factors must not change which directions and tempos the language needs.
@@ -273,15 +279,25 @@ class FusedVote:
         set's accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn`
         they are left out in any case.
 
-        A query that holds a hand shape is compared with the held shapes alone, and every other one
-        with the movements alone: the one has no movement to compare, the other no shape.
+        A query that holds a hand shape is compared with the held shapes, and every other one with
+        the movements. One that holds a shape and moves as little as the smallest movement may be
+        either: it is the movement if it is accepted as one, else what it is less novel as.
         """
-        if len(self._hands) and trajectory.hands:
-            return self._compare_hands(trajectory)
+        if not len(self._hands):
+            return self._compare_movements(trajectory, drawn)
+        held = self._compare_hands(trajectory) if trajectory.hands else None
+        if held is not None and measure_movement(trajectory) < self._least_movement:
+            return held
+        moved = self._add_hand_voters(self._compare_movements(trajectory, drawn))
+        if held is None or _measure_novelty(moved) <= 1:
+            return moved
+        return min(held, moved, key=_measure_novelty)
+
+    def _compare_movements(self, trajectory: Trajectory, drawn: bool) -> ScoreTable:
+        """Compare a movement with those of the language."""
         views = self._views.list_for(trajectory.facing)
         tables = [self._compare_in(view, trajectory, drawn) for view in views]
-        table = min(tables, key=lambda table: float(table.scores.min()))
-        return self._add_hand_voters(table) if len(self._hands) else table
+        return min(tables, key=lambda table: float(table.scores.min()))
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a held hand shape with those of the language."""
@@ -453,3 +469,11 @@ class FusedVote:
         order = np.argsort(-scores, kind="stable")
         chosen[self._owners[order]] = order  # the best is written last
         return chosen
+
+
+def _measure_novelty(table: ScoreTable) -> float:
+    """Return the novelty of a query as the nearest gesture, in the cue in which it is largest."""
+    scores = table.scores
+    if not np.isfinite(scores).any():
+        return np.inf
+    return float(np.nanmax(table.novelty_by_view[:, int(scores.argmin())], initial=0.0))

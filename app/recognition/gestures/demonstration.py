@@ -16,7 +16,7 @@ from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import comes_and_goes, find_held_hands
+from app.recognition.preprocessing.held_hands import find_held_hands, rests_between_ends
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -146,7 +146,7 @@ class Demonstration:
         else:
             names = find_salient_landmarks(trajectory)
         # Without a torso the unit is the extent itself, in which everything moves.
-        still = not names or trajectory.unit == "extent" or comes_and_goes(trajectory)
+        still = not names or trajectory.unit == "extent" or rests_between_ends(trajectory)
         if held and still:
             return cls._of_hands(label, seen, trajectory, held, diver)
         if poor := find_fault(seen, names):

@@ -36,11 +36,11 @@ that opens and closes has no shape. A wobbling flat hand ("something is wrong") 
 0.48; two shapes are 0.7 and more apart."""
 
 SMALLER = 0.6
-"""Share of the smallest movement of a language below which a take is none: people's takes differ in
-size by a third of a doubling, and rarely by two."""
+"""Share of the smallest movement of a language below which a take is none of them: people's takes
+differ in size by a third of a doubling, and rarely by two."""
 
 LEAST_SWAY = 0.1
-"""Torso lengths by which a hand may always move that holds a shape: nobody hovers more steadily."""
+"""Torso lengths by which every hand moves that holds a shape: nobody hovers more steadily."""
 
 LOWEST = 0.35
 """Lowest place of a hand that shows something, torso lengths below the torso's centre: a hand that
@@ -49,26 +49,25 @@ hangs is below the hips, at 0.5."""
 _WRIST = HAND_LANDMARKS.index("wrist")
 
 
-def find_most_movement(movements: Iterable[Trajectory]) -> float:
-    """Return how far a hand may move that holds a shape in a language, torso lengths.
+def find_least_movement(movements: Iterable[Trajectory]) -> float:
+    """Return how far a hand or the head moves at least in a take of a language's movements.
 
     Parameters
     ----------
     movements
-        The demonstrations of the language's movements: a small one is no held shape.
+        The demonstrations of the movements.
 
     Returns
     -------
-    `SMALLER` times the movement of the smallest, from `LEAST_SWAY` to `MIN_DISPLACEMENT`.
+    Torso lengths: `SMALLER` times the movement of the smallest, at least `LEAST_SWAY`; infinite
+    without movements.
 
     """
-    own = [_measure_movement(each) for each in movements if each.unit == "torso_length"]
-    return max(LEAST_SWAY, min([MIN_DISPLACEMENT, *(SMALLER * each for each in own)]))
+    own = [measure_movement(each) for each in movements if each.unit == "torso_length"]
+    return max(LEAST_SWAY, SMALLER * min(own, default=np.inf))
 
 
-def find_held_hands(
-    poses: PoseSequence, trajectory: Trajectory, most: float = MIN_DISPLACEMENT
-) -> tuple[HandShape, ...]:
+def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandShape, ...]:
     """Find the hands that hold a shape, where nothing moves clearly.
 
     A hand counts that is seen in `LEAST_SEEN` of the frames, stays at one place, keeps its shape
@@ -80,15 +79,13 @@ def find_held_hands(
         Repaired poses of a take.
     trajectory
         The trajectory of `poses`, with as many moments or condensed.
-    most
-        Torso lengths from which a hand or the head moves clearly (`find_most_movement`).
 
     Returns
     -------
     At most two, left then right; none where a hand or the head moves clearly.
 
     """
-    if poses.hands is None or not len(poses) or _moves_clearly(trajectory, most):
+    if poses.hands is None or not len(poses) or _moves_clearly(trajectory):
         return ()
     held = []
     for index, side in enumerate(SIDES):
@@ -97,7 +94,7 @@ def find_held_hands(
         if seen.mean() < LEAST_SEEN or _hangs(poses, hands, seen):
             continue
         shown = hands[seen]
-        if _measure_travel(shown) >= most * PALMS_PER_TORSO:
+        if _measure_travel(shown) >= MIN_DISPLACEMENT * PALMS_PER_TORSO:
             continue
         shape = HandShape.of_frames(side, shown)
         change = np.sqrt(((normalize_hands(shown) - shape.xy) ** 2).sum(axis=2).mean(axis=1))
@@ -106,22 +103,25 @@ def find_held_hands(
     return tuple(held)
 
 
-def comes_and_goes(trajectory: Trajectory) -> bool:
-    """Return whether a hand moves clearly at the ends of a take alone and rests in between.
+def rests_between_ends(trajectory: Trajectory) -> bool:
+    """Return whether hands and head rest between the ends of a take.
 
-    It was brought to where it shows something, and taken away again.
+    At the ends a hand may be brought to where it shows something, and taken away again. A movement
+    that is small as a whole does not rest before it is as still as a held hand.
     """
     moved = measure_displacements(trajectory)
     farthest = max((moved[name] for name in choose_representatives(trajectory)), default=0.0)
-    return farthest >= MIN_DISPLACEMENT and _measure_movement(trajectory) < LEAST_DISPLACEMENT
+    return measure_movement(trajectory) < (
+        LEAST_DISPLACEMENT if farthest >= MIN_DISPLACEMENT else LEAST_SWAY
+    )
 
 
-def _moves_clearly(trajectory: Trajectory, most: float) -> bool:
+def _moves_clearly(trajectory: Trajectory) -> bool:
     """Return whether a hand or the head moves as in a gesture; unknown without a torso."""
-    return trajectory.unit == "torso_length" and _measure_movement(trajectory) >= most
+    return trajectory.unit == "torso_length" and measure_movement(trajectory) >= MIN_DISPLACEMENT
 
 
-def _measure_movement(trajectory: Trajectory) -> float:
+def measure_movement(trajectory: Trajectory) -> float:
     """Return how far a hand or the head moves between the ends of the take, in its unit."""
     paths = (
         trajectory.xy[:, trajectory.landmarks.index(name)]

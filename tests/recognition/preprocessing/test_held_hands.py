@@ -7,7 +7,7 @@ import numpy as np
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import comes_and_goes, find_held_hands
+from app.recognition.preprocessing.held_hands import find_held_hands, rests_between_ends
 from tests.recognition.held_takes import FIST, FLAT, hold
 
 
@@ -31,8 +31,14 @@ def test_a_hand_may_come_and_go_at_both_ends() -> None:
     coming[:6, 1], coming[-6:, 1] = np.linspace(0.5, 0, 6), np.linspace(0, 0.5, 6)
     poses = hold(FLAT, moving=coming)
     assert len(found(poses)) == 1
-    assert comes_and_goes(Trajectory.from_poses(poses))
-    assert not comes_and_goes(Trajectory.from_poses(hold(FLAT)))
+    assert rests_between_ends(Trajectory.from_poses(poses))
+    assert rests_between_ends(Trajectory.from_poses(hold(FLAT)))
+
+
+def test_a_small_movement_does_not_rest() -> None:
+    there = 0.13 * np.sin(np.linspace(0, 2 * np.pi, 40))
+    nod = hold(FLAT, moving=np.column_stack([0 * there, there]))
+    assert not rests_between_ends(Trajectory.from_poses(nod))
 
 
 def test_a_hanging_hand_shows_nothing() -> None:
