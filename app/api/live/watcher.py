@@ -17,7 +17,8 @@ from app.api.extraction.messages import Pose, pose_in
 from app.recognition import OsgError, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import Image
 from app.recognition.recording.live_segmentation import LiveTakes, Sight
 from app.recognition.recording.segmentation import TakeState
@@ -165,7 +166,7 @@ class Watcher:
         self, estimator: PoseEstimator, water: WaterCorrection, recognizer: RecognizerSource
     ) -> None:
         self._estimator = estimator
-        self._water = water
+        self._sight = WaterSight(estimator, water)
         self._recognizer = recognizer
         self._takes: LiveTakes | None = None
         self._time = -np.inf
@@ -187,10 +188,10 @@ class Watcher:
         height, width = image.shape[:2]
         takes = self._takes
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
-            self._estimator.reset()
+            self._sight.reset()
             takes = self._takes = LiveTakes((width, height))
         self._time = frame.time
-        found = self._estimator.estimate(correct_colours(image, self._water), frame.time)
+        found = self._sight.estimate(image, frame.time)
         sight = takes.feed(frame.time, found)
         seen = Seen(
             time=frame.time,

@@ -10,7 +10,8 @@ import numpy as np
 
 from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import PoseSequence, join_sequences
@@ -55,8 +56,8 @@ def record(
     limits
         Limits of the clip's size and length.
     water
-        Whether colour and contrast are corrected before estimation: in murky frames, always, or
-        never.
+        Whether colour and contrast are corrected before estimation: as the models find most
+        (`WaterSight`), always, or never.
 
     Raises
     ------
@@ -206,11 +207,12 @@ def _record(
     observer: Observer | None,
     water: WaterCorrection,
 ) -> Recording:
-    estimator.reset()
+    sight = WaterSight(estimator, water)
+    sight.reset()
     collector = _Collector(frames.info, estimator)
     done = 0
     for frame in frames:
-        found = estimator.estimate(correct_colours(frame.image, water), frame.time)
+        found = sight.estimate(frame.image, frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)

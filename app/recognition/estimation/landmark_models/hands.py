@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
+from typing_extensions import Self
 
 from app.recognition.estimation.landmark_models.arms import REACH, region_of_wrist, wrist_distance
 from app.recognition.estimation.landmark_models.detector import Detector
@@ -147,6 +148,10 @@ class HandTracker:
         """Reset the tracking."""
         self._regions: tuple[Region, ...] = ()
         self._until_palms = 0
+
+    def renew(self) -> Self:
+        """Return a tracker with the same models that has seen nothing yet."""
+        return type(self)(self._palms, self._model, self._search)
 
     def follow(self, image: Image) -> tuple[SeenHand, ...]:
         """Return the hands in `image` by tracking and palm detection.
