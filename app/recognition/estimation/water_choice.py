@@ -75,12 +75,11 @@ class WaterChoice:
 
         """
         self._rest = max(0, self._rest - 1)
-        has_body = found.body is not None
-        if self._had_body and not has_body:
+        self._doubts = self._doubts + 1 if self._is_doubtful(found) else 0
+        if self._had_body and found.body is None:
             self._pause, self._rest = FIRST_PAUSE, min(self._rest, FIRST_PAUSE)
             self._beliefs.clear()
-        self._had_body = has_body
-        self._doubts = self._doubts + 1 if self._is_doubtful(found) else 0
+        self._had_body = found.body is not None
         if self._doubts < PATIENCE or self._rest:
             return False
         self._rest, self._pause = self._pause, min(2 * self._pause, LONGEST_PAUSE)
@@ -99,9 +98,10 @@ class WaterChoice:
         return True
 
     def _is_doubtful(self, found: FrameLandmarks) -> bool:
-        if found.body is None or found.body.score < SURE:
+        if found.body is None or (self._sought and not found.hands):
             return True
-        return self._sought and not found.hands
+        # A body that is new was looked at once and off its centre: its score says little.
+        return self._had_body and found.body.score < SURE
 
 
 def measure_belief(found: FrameLandmarks) -> float:

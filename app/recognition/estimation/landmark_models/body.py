@@ -7,7 +7,7 @@ from typing import Final
 from typing_extensions import Self
 
 from app.recognition.estimation.landmark_models.body_model import MARGIN, BodyModel, SeenBody
-from app.recognition.estimation.landmark_models.body_search import SURE, BodySearch
+from app.recognition.estimation.landmark_models.body_search import BodySearch
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
@@ -24,7 +24,7 @@ VISIBILITY_WEIGHT: Final = 0.1
 class BodyTracker:
     """Tracks the most certain person through the frames of a clip.
 
-    Detection runs only on frames where no body is tracked; where it finds nobody for sure, a
+    Detection runs only on frames where no body is tracked; where it finds nobody, a
     `BodySearch` follows, on every `SEARCH_PAUSE`-th of them. The landmarks of a frame give the
     region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
     at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
@@ -81,14 +81,13 @@ class BodyTracker:
         return seen if seen.believed else None
 
     def _find(self, image: Image) -> SeenBody | None:
-        detected = None
         for person in self._detector.detect(image)[:1]:
             region = Region.aligned(person.keypoints[0], person.keypoints[1], MARGIN)
-            detected = self._look(image, region) if region.usable else None
-        if detected is not None and detected.score >= SURE:
-            return detected
+            seen = self._look(image, region) if region.usable else None
+            if seen is not None:
+                return seen
         if self._until_search > 0:
             self._until_search -= 1
-            return detected
+            return None
         self._until_search = SEARCH_PAUSE - 1
-        return self._search.find(image) or detected
+        return self._search.find(image)

@@ -59,9 +59,9 @@ FOREARM_PAUSE: Final = 4
 """Frames between searches at the ends of forearms, which cost up to four looks an arm."""
 
 SURE: Final = 0.8
-"""Presence from which a hand needs no second opinion. Of those that the palm detector finds away
-from the body's arms most below it are none; and while a tracked hand is below it, palms are sought
-although there are two already, for one may be a phantom."""
+"""Presence from which a hand needs no second opinion. Below it most hands that are found at the end
+of a forearm, or by the palm detector away from the body's arms, are none; and while a tracked hand
+is below it, palms are sought although there are two already, for one may be a phantom."""
 
 DUPLICATE_DISTANCE: Final = 0.2
 DUPLICATE_LANDMARKS: Final = 10
@@ -263,7 +263,9 @@ class HandTracker:
                 return seen
         for region in regions_of_forearm(body, side) if with_forearm else ():
             seen = self._model.look_twice(image, region)
-            if seen is not None and wrist_distance(seen.hand, body, side) <= FOREARM_REACH:
+            if seen is None or seen.hand.score < SURE:
+                continue
+            if wrist_distance(seen.hand, body, side) <= FOREARM_REACH:
                 return seen
         return None
 
