@@ -1,7 +1,8 @@
 """Water correction: restores colour and contrast of under-water frames before estimation.
 
-Water absorbs red first and, where it is turbid, blue; particles add a uniform colour. The models
-were trained in air.
+Water absorbs red first and, where it is turbid, blue; particles add a uniform colour; light from
+above leaves divers dark. The models were trained in air. `correct_colours` decides by grey levels,
+for models that cannot be asked; `WaterSight` asks them.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 
 WaterCorrection = Literal["auto", "on", "off"]
-"""Whether frames are corrected: those that need it, all, or none."""
+"""Whether frames are corrected: as the models see most (`WaterSight`), all, or none."""
 
 Correction = Literal["none", "balanced", "lightened", "contrasted"]
 """What is done to a frame: nothing; colours balanced and stretched; that, and dark parts lightened,

@@ -25,16 +25,22 @@ FIRST_PAUSE: Final = 8
 """Frames between the first examinations, a third of a second: neighbours show the same."""
 
 LONGEST_PAUSE: Final = 256
-"""Frames between examinations once decided. An examination costs at most as much as 12 frames, so
-all of them cost a twentieth."""
+"""Frames between examinations once decided. One costs as much as about 12 frames, so all of them
+cost a twentieth."""
 
 PATIENCE: Final = 8
 """Frames in doubt, one after the other, before an examination: a hand that is hidden for a moment
 is no reason. The first frame has none before it and is examined at once."""
 
+SEARCHING_PAUSE: Final = 64
+"""The same while nobody is found: two and a half seconds until a diver in murk is seen."""
+
 MARGIN: Final = 0.1
-"""Belief by which another correction must exceed the one in use: less is noise, and a change
-restarts the tracking."""
+"""Belief by which another correction must exceed the one in use at the first examination of a
+scene: less is noise."""
+
+CHANGE_MARGIN: Final = 0.25
+"""The same later, for a change restarts the tracking: a surely believed hand more."""
 
 HAND_WEIGHT: Final = 0.25
 """Weight of a hand's belief against the body's; without a body there are no gestures."""
@@ -44,7 +50,7 @@ class WaterChoice:
     """Chooses a correction from what the models find; starts with none.
 
     The pause between examinations doubles from `FIRST_PAUSE` to `LONGEST_PAUSE`, and is short again
-    after a body was lost, as when the scene changes.
+    after a body was lost, as when the scene changes; then what was believed is forgotten too.
 
     Parameters
     ----------
@@ -82,17 +88,23 @@ class WaterChoice:
         self._had_body = found.body is not None
         if self._doubts < PATIENCE or self._rest:
             return False
-        self._rest, self._pause = self._pause, min(2 * self._pause, LONGEST_PAUSE)
+        longest = LONGEST_PAUSE if found.body else SEARCHING_PAUSE
+        self._rest, self._pause = min(self._pause, longest), min(2 * self._pause, longest)
         return True
 
     def choose(self, examined: Mapping[Correction, FrameLandmarks]) -> bool:
-        """Take in an examination, and return whether another correction is in use now."""
-        self._beliefs.append({one: measure_belief(found) for one, found in examined.items()})
-        means = {
-            one: float(np.mean([beliefs[one] for beliefs in self._beliefs])) for one in CORRECTIONS
-        }
+        """Take in an examination, and return whether another correction is in use now.
+
+        One in which nothing is found under any correction says nothing and is not counted.
+        """
+        beliefs = {one: measure_belief(found) for one, found in examined.items()}
+        if not any(beliefs.values()):
+            return False
+        self._beliefs.append(beliefs)
+        margin = MARGIN if len(self._beliefs) == 1 else CHANGE_MARGIN
+        means = {one: float(np.mean([each[one] for each in self._beliefs])) for one in CORRECTIONS}
         best = max(CORRECTIONS, key=lambda one: means[one])
-        if means[best] <= means[self.correction] + MARGIN:
+        if means[best] <= means[self.correction] + margin:
             return False
         self.correction = best
         return True

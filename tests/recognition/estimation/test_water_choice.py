@@ -10,6 +10,7 @@ from app.recognition.estimation.water_choice import (
     LONGEST_PAUSE,
     MARGIN,
     PATIENCE,
+    SEARCHING_PAUSE,
     WaterChoice,
     measure_belief,
 )
@@ -83,12 +84,32 @@ def test_one_frame_does_not_outweigh_those_before() -> None:
 
 
 def test_examinations_get_rare_while_the_doubt_stays() -> None:
-    frames = examined_frames(WaterChoice(), NOBODY, 4 * LONGEST_PAUSE)
+    frames = examined_frames(WaterChoice(), seen(0.99), 4 * LONGEST_PAUSE)
     pauses = np.diff(frames)
     assert frames[0] == 0
     assert pauses[0] == FIRST_PAUSE
     assert (np.diff(pauses) >= 0).all()
     assert pauses[-1] == LONGEST_PAUSE
+
+
+def test_while_nobody_is_found_examinations_stay_frequent() -> None:
+    frames = examined_frames(WaterChoice(), NOBODY, 4 * LONGEST_PAUSE)
+    assert np.diff(frames).max() == SEARCHING_PAUSE
+
+
+def test_later_a_change_needs_more_belief_than_at_first() -> None:
+    better = examination(none=seen(0.8), contrasted=seen(0.8 + 1.5 * MARGIN))
+    fresh, settled = WaterChoice(), WaterChoice()
+    settled.choose(examination(none=seen(0.8), contrasted=seen(0.8)))
+    assert fresh.choose(better)
+    assert not settled.choose(better)
+
+
+def test_frames_without_anybody_do_not_delay_the_choice() -> None:
+    choice = WaterChoice()
+    for _ in range(10):
+        assert not choice.choose(examination())
+    assert choice.choose(examination(balanced=seen(0.3)))
 
 
 def test_a_hand_that_is_hidden_for_a_moment_is_no_reason() -> None:
