@@ -122,7 +122,7 @@ class Settings(BaseSettings):
     """Open connections, half of them for one address; 0 allows as many as the system does."""
 
     water: WaterCorrection = "auto"
-    """Correction of colour and contrast: auto for murky frames, on for all, off for none."""
+    """Correction of colour and contrast: auto as the models see most, on always, off never."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
     """Clips extracted at the same time, each in its own process (the models use all cores); with

@@ -10,7 +10,7 @@ from app.recognition.estimation.water import WaterCorrection
 
 WaterOption = Annotated[
     WaterCorrection,
-    typer.Option(help="Correct colour and contrast: of murky frames, of all, or of none."),
+    typer.Option(help="Correct colour and contrast: as the models see most, always, or never."),
 ]
 
 EstimatorOption = Annotated[

@@ -8,7 +8,8 @@ from typing import Final
 from app.recognition.errors import OsgError
 from app.recognition.estimation import list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
@@ -98,7 +99,7 @@ class Runtime:
         self._source = source
         self._estimator = estimator
         self._listener = listener
-        self._water = water
+        self._sight = WaterSight(estimator, water)
         self._changes = changes
         self._observer = observer
         self._stopped = False
@@ -122,7 +123,7 @@ class Runtime:
         """
         yield self._build_source_opened()
         yield build_language_changed(self._time, self._listener.language)
-        self._estimator.reset()
+        self._sight.reset()
         for given in self._source:
             self._time = given.time
             yield from self._update_language()
@@ -141,7 +142,7 @@ class Runtime:
         return SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
 
     def _process_frame(self, frame: Frame) -> Iterator[Event]:
-        found = self._estimator.estimate(correct_colours(frame.image, self._water), frame.time)
+        found = self._sight.estimate(frame.image, frame.time)
         if self._observer is not None:
             self._observer(frame, found)
         height, width = frame.image.shape[:2]
@@ -159,7 +160,7 @@ class Runtime:
                 yield from self._listener.abandon(time, f"the source was lost: {reason}")
             case SourceRestored():
                 self._lost = False
-                self._estimator.reset()
+                self._sight.reset()
                 yield notice
             case SourceWarned():
                 yield notice

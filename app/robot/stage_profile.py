@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal, get_args
 
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.salute import best_salute
 from app.robot.energy import EnergyMeter
@@ -159,10 +160,9 @@ class StageProfiler:
         water: WaterCorrection = "auto",
         meter: EnergyMeter | None = None,
     ) -> None:
-        self._body = body
-        self._whole = whole
+        self._body = WaterSight(body, water)
+        self._whole = WaterSight(whole, water)
         self._listener = listener
-        self._water = water
         self._meter = meter
         self._profile = StageProfile(energy=meter.name if meter else None)
         self._last = Cost()
@@ -187,11 +187,9 @@ class StageProfiler:
 
     def _process(self, frame: Frame) -> dict[Stage, Cost]:
         """Run all stages on a frame and return the cost of each."""
-        image = correct_colours(frame.image, self._water)
-        correction = self._lap()
-        self._body.estimate(image, frame.time)
+        self._body.estimate(frame.image, frame.time)
         body = self._lap()
-        found = self._whole.estimate(image, frame.time)
+        found = self._whole.estimate(frame.image, frame.time)
         whole = self._lap()
         score = best_salute(found.hands)
         salute = self._lap()
@@ -201,7 +199,7 @@ class StageProfiler:
         recognition = self._lap()
         self._takes = sum(isinstance(event, TakeRecognized | TakeRejected) for event in events)
         return {
-            "pose": correction + body,
+            "pose": body,
             "hands": whole - body,
             "salute": salute,
             "recognition": recognition,

@@ -17,7 +17,8 @@ from app.api.extraction.messages import Pose, pose_in
 from app.recognition import OsgError, PoseSequence, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import Image
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import LiveTakes, Sight
@@ -171,7 +172,7 @@ class Watcher:
         self, estimator: PoseEstimator, water: WaterCorrection, recognizer: RecognizerSource
     ) -> None:
         self._estimator = estimator
-        self._water = water
+        self._sight = WaterSight(estimator, water)
         self._recognizer = recognizer
         self._takes: LiveTakes | None = None
         self._trigger = SALUTE
@@ -197,13 +198,13 @@ class Watcher:
         height, width = image.shape[:2]
         takes = self._takes
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
-            self._estimator.reset()
+            self._sight.reset()
             takes, self._spotter, self._asked = None, None, -np.inf
         trigger = self._find_trigger()
         if takes is None or takes.trigger != trigger:
             takes = self._takes = LiveTakes((width, height), trigger)
         self._time = frame.time
-        found = self._estimator.estimate(correct_colours(image, self._water), frame.time)
+        found = self._sight.estimate(image, frame.time)
         sight = takes.feed(frame.time, found)
         seen = Seen(
             time=frame.time,

@@ -9,7 +9,8 @@ from typing import Final
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation.estimator import check_image
-from app.recognition.estimation.landmark_models.body import POSE_SIGNATURE, BodyTracker
+from app.recognition.estimation.landmark_models.body import BodyTracker
+from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.hands import (
     HAND_SIGNATURE,
@@ -100,6 +101,19 @@ class OnnxPoseEstimator:
             followed = following.result()
         return FrameLandmarks(body, self._hands.complete(image, followed, body))
 
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        body, hands = self._body.renew().track(image, 0.0), self._hands.renew()
+        return FrameLandmarks(body, hands.complete(image, hands.follow(image), body))
+
     def reset(self) -> None:
         """Reset tracking and smoothing; call it before another clip."""
         self._body.reset()
@@ -116,7 +130,7 @@ def body_tracker(models: Path | None = None, *, threads: int, provider: Provider
     """Load MediaPipe's body models; see `OnnxPoseEstimator` for parameters and errors."""
     load = partial(_session, models, threads, provider)
     persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
-    return BodyTracker(persons, load("pose_landmark_full", POSE_SIGNATURE))
+    return BodyTracker(persons, BodyModel(load("pose_landmark_full", POSE_SIGNATURE)))
 
 
 def hand_tracker(

@@ -1,7 +1,8 @@
 """Water correction: restores colour and contrast of under-water frames before estimation.
 
-Water absorbs red first and, where it is turbid, blue; particles add a uniform colour. The models
-were trained in air.
+Water absorbs red first and, where it is turbid, blue; particles add a uniform colour; light from
+above leaves divers dark. The models were trained in air. `correct_colours` decides by grey levels,
+for models that cannot be asked; `WaterSight` asks them.
 """
 
 from __future__ import annotations
@@ -17,9 +18,22 @@ from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 
 WaterCorrection = Literal["auto", "on", "off"]
-"""Whether frames are corrected: those that need it, all, or none."""
+"""Whether frames are corrected: as the models see most (`WaterSight`), all, or none."""
+
+Correction = Literal["none", "balanced", "lightened", "contrasted"]
+"""What is done to a frame: nothing; colours balanced and stretched; that, and dark parts lightened,
+for divers against the light; and that with local contrast, for divers in haze."""
+
+CORRECTIONS: Final[tuple[Correction, ...]] = get_args(Correction)
 
 RED, GREEN, BLUE = 0, 1, 2
+
+LIGHTENING: Final = 0.5
+"""Exponent of brightness in [0, 1], a square root: a quarter becomes a half."""
+
+CONTRAST_LIMIT: Final = 2.0
+CONTRAST_TILES: Final = (8, 8)
+"""Limit and tiles of the equalisation of local contrast (CLAHE, Zuiderveld 1994)."""
 
 SAMPLING: Final = 4
 """Step in pixels, each way, with which a frame's colours are sampled."""
@@ -65,15 +79,44 @@ def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
         When `water` is none of the three, or `image` is no RGB image of 8 bits.
 
     """
+    check_water(water)
+    check_image(image)
+    needed = water == "on" or (water == "auto" and is_murky(image))
+    return apply_correction(image, "balanced" if needed else "none")
+
+
+def check_water(water: str) -> None:
+    """Check that a setting of the correction exists.
+
+    Raises
+    ------
+    EstimatorError
+        Naming those that exist.
+
+    """
     if water not in get_args(WaterCorrection):
         known = ", ".join(get_args(WaterCorrection))
         raise EstimatorError(f"unknown water correction {water!r}; there are: {known}")
+
+
+def apply_correction(image: Image, correction: Correction) -> Image:
+    """Return a corrected frame, a new image; with ``"none"`` the frame itself.
+
+    Raises
+    ------
+    EstimatorError
+        When `image` is no RGB image of 8 bits.
+
+    """
     check_image(image)
-    if water == "off" or (water == "auto" and not is_murky(image)):
+    if correction == "none":
         return image
     compensated = _compensate(image)
     table = _balance_and_stretch(_sample(compensated))
-    return np.asarray(cv2.LUT(compensated, table), np.uint8)
+    if correction in ("lightened", "contrasted"):
+        table = np.round(255 * (table / 255) ** LIGHTENING).astype(np.uint8)
+    corrected = np.asarray(cv2.LUT(compensated, table), np.uint8)
+    return _equalise(corrected) if correction == "contrasted" else corrected
 
 
 def is_murky(image: Image) -> bool:
@@ -98,6 +141,14 @@ def _compensate(image: Image) -> Image:
             gain = cv2.multiply(room, channels[GREEN], scale=lack / 255)
             channels[weak] = np.asarray(cv2.add(channels[weak], gain), np.uint8)
     return np.asarray(cv2.merge(channels), np.uint8)
+
+
+def _equalise(image: Image) -> Image:
+    """Equalise local contrast of the brightness, and leave the colours."""
+    space = cv2.cvtColor(image, cv2.COLOR_RGB2LAB)
+    equaliser = cv2.createCLAHE(CONTRAST_LIMIT, CONTRAST_TILES)
+    space[..., 0] = equaliser.apply(np.ascontiguousarray(space[..., 0]))
+    return np.asarray(cv2.cvtColor(space, cv2.COLOR_LAB2RGB), np.uint8)
 
 
 def _balance_and_stretch(pixels: FloatArray) -> Image:

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
 from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.water import WaterCorrection, correct_colours
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import PoseSequence, join_sequences
@@ -20,6 +22,10 @@ from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE, best_salute
 from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
 from app.recognition.recording.video_limits import VideoLimits
+
+FEW_HANDS: Final = 0.25
+"""Share of frames with a hand below which fingers cannot be told: a salute is held for half a
+second, and a hand found in every fourth frame is not seen to hold anything."""
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
@@ -56,8 +62,8 @@ def record(
     limits
         Limits of the clip's size and length.
     water
-        Whether colour and contrast are corrected before estimation: in murky frames, always, or
-        never.
+        Whether colour and contrast are corrected before estimation: as the models find most
+        (`WaterSight`), always, or never.
 
     Raises
     ------
@@ -189,10 +195,16 @@ class _Collector:
             found.append(f"this pose model gives no {', '.join(missing)}")
         if not self._hands_sought:
             return tuple(found)
-        if not any(self._hands):
+        with_hand = sum(map(bool, self._hands))
+        if not with_hand:
             found.append(
                 f"no hand in any of {frames} frames, so no salute can be seen; choose the "
-                "gesture's range by hand, or film from nearer"
+                "gesture's range by hand, choose a trigger of the arms, or film from nearer"
+            )
+        elif max(self._salute) <= ENTER_SCORE and with_hand < FEW_HANDS * frames:
+            found.append(
+                f"hands seen in {with_hand / frames:.0%} of {frames} frames: choose a trigger of "
+                "the arms, or film from nearer"
             )
         elif max(self._salute) <= ENTER_SCORE:
             found.append(
@@ -209,11 +221,12 @@ def _record(
     observer: Observer | None,
     water: WaterCorrection,
 ) -> Recording:
-    estimator.reset()
+    sight = WaterSight(estimator, water)
+    sight.reset()
     collector = _Collector(frames.info, estimator)
     done = 0
     for frame in frames:
-        found = estimator.estimate(correct_colours(frame.image, water), frame.time)
+        found = sight.estimate(frame.image, frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)

@@ -12,7 +12,14 @@ from hypothesis import strategies as st
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import Image
-from app.recognition.estimation.water import LUMA, correct_colours, is_murky
+from app.recognition.estimation.water import (
+    CORRECTIONS,
+    LUMA,
+    Correction,
+    apply_correction,
+    correct_colours,
+    is_murky,
+)
 
 COLOURS = st.tuples(st.integers(0, 255), st.integers(0, 255), st.integers(0, 255))
 
@@ -64,13 +71,42 @@ def test_off_never_corrects() -> None:
     assert correct_colours(murky, "off") is murky
 
 
-@given(COLOURS, st.floats(0, 1), st.tuples(st.integers(1, 9), st.integers(1, 9)))
+def test_what_is_dark_against_the_light_is_lightened() -> None:
+    back_lit = scene() // 8
+    back_lit[:48] = 240
+    diver = {one: float(apply_correction(back_lit, one)[48:].mean()) for one in CORRECTIONS}
+    assert diver["lightened"] > 2 * diver["balanced"]
+
+
+def test_local_contrast_shows_what_haze_hides() -> None:
+    """A faint pattern beside a strong one, which leaves it no room in a stretched range."""
+    hazy = np.full((96, 128, 3), 120, np.uint8)
+    hazy[:, ::2] += 4
+    hazy[:16, :16], hazy[-16:, -16:] = 0, 255
+    faint = {
+        one: float(apply_correction(hazy, one)[30:60, 40:80].std(axis=1).mean())
+        for one in CORRECTIONS
+    }
+    assert faint["contrasted"] > 1.5 * faint["lightened"]
+
+
+def test_without_a_correction_the_frame_itself_is_seen() -> None:
+    clear = scene()
+    assert apply_correction(clear, "none") is clear
+
+
+@given(
+    COLOURS,
+    st.floats(0, 1),
+    st.tuples(st.integers(1, 9), st.integers(1, 9)),
+    st.sampled_from(CORRECTIONS),
+)
 def test_any_water_gives_a_picture_of_the_same_size(
-    colour: tuple[int, int, int], murk: float, size: tuple[int, int]
+    colour: tuple[int, int, int], murk: float, size: tuple[int, int], correction: Correction
 ) -> None:
     image = in_water(scene()[: size[0], : size[1]], murk, colour)
     before = image.copy()
-    shown = correct_colours(image, "on")
+    shown = apply_correction(image, correction)
     assert shown.shape == image.shape
     assert shown.dtype == np.uint8
     np.testing.assert_array_equal(image, before)

@@ -31,9 +31,11 @@ class ScriptedEstimator:
         *,
         bodiless: frozenset[int] = frozenset(),
         saluting: frozenset[int] = frozenset(),
+        with_flat_hand: frozenset[int] = frozenset(),
         unseen: int | None = None,
     ) -> None:
         self.bodiless, self.saluting, self.unseen = bodiless, saluting, unseen
+        self.with_flat_hand = with_flat_hand
         self.times: list[float] = []
         self.closed = False
 
@@ -49,6 +51,8 @@ class ScriptedEstimator:
         if index in self.saluting:
             small, large = hand_xy(salute()), 5 * FLAT_HAND + np.arange(21)[:, None]
             hands = (Hand(small, "right", 0.9), Hand(large, "left", 0.9))
+        elif index in self.with_flat_hand:
+            hands = (Hand(FLAT_HAND, "right", 0.9),)
         return FrameLandmarks(body, hands)
 
     def reset(self) -> None:
@@ -131,6 +135,15 @@ def test_a_clip_without_anybody_is_no_silent_success(clip: Path) -> None:
     assert recording.warnings[0] == "no person in 20 of 20 frames"
     assert "no hand in any of 20 frames" in recording.warnings[1]
     assert takes_in(recording) == ()
+
+
+def test_a_clip_in_which_fingers_cannot_be_told_advises_a_trigger_of_the_arms(clip: Path) -> None:
+    few = record(clip, estimator=ScriptedEstimator(with_flat_hand=frozenset({3, 9})))
+    assert few.warnings == (
+        "hands seen in 10% of 20 frames: choose a trigger of the arms, or film from nearer",
+    )
+    many = record(clip, estimator=ScriptedEstimator(with_flat_hand=frozenset(range(20))))
+    assert "no salute in any of 20 frames" in many.warnings[0]
 
 
 @pytest.mark.withstands(row="H11")

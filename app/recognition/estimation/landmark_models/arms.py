@@ -8,7 +8,7 @@ import numpy as np
 
 from app.recognition.estimation.landmark_models.hand_regions import palm_size, up_of
 from app.recognition.estimation.landmark_models.region import Region, upright
-from app.recognition.poses.frame import Body, Hand, Side
+from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 LEAST_VISIBILITY: Final = 0.1
@@ -21,6 +21,20 @@ region, and finds twice as many at 2.0 (`benchmarks/studies/hands-and-water.md`)
 
 WRIST_SHIFT: Final = 0.1
 """Shift towards the finger tips, over the same length, as in MediaPipe Holistic."""
+
+FOREARM_VISIBILITY: Final = 0.5
+"""Least visibility of a wrist at whose forearm's end a hand is searched: a larger place needs a
+surer arm."""
+
+FOREARM_SIDES: Final = (0.6, 0.9)
+"""Sides of the regions at a forearm's end, over the body's size: a hand is 0.4 of a torso long, and
+the landmark model expects it to fill half of its region or more."""
+
+FOREARM_SHIFT: Final = 0.2
+"""Shift of these regions beyond the wrist, over the body's size: half a hand."""
+
+FOREARM_REACH: Final = 0.6
+"""As `REACH`, for hands found there: 95 % of hands on the tracked body's arms are nearer."""
 
 REACH: Final = 1.0
 """Largest distance between the pose's wrist and the hand's own, in palm sizes. Of hands on the
@@ -57,6 +71,35 @@ def region_of_wrist(body: Body, side: Side) -> Region | None:
     centre = knuckle + WRIST_SHIFT * length * up_of(rotation)
     region = Region(float(centre[0]), float(centre[1]), WRIST_SCALE * length, rotation)
     return region if region.usable else None
+
+
+def regions_of_forearm(body: Body, side: Side) -> tuple[Region, ...]:
+    """Return regions at the end of a forearm, for hands whose fingers the pose does not show.
+
+    A glove hides the fingers that `region_of_wrist` needs. The forearm's direction and the body's
+    size, the longer of torso and shoulders, say as well where a hand is and how large.
+    """
+    elbow, wrist = (POSE_LANDMARKS.index(f"{side}_{joint}") for joint in ("elbow", "wrist"))
+    if not body.visibility[wrist] >= FOREARM_VISIBILITY:
+        return ()
+    size = measure_body(body)
+    rotation = upright(body.xy[elbow], body.xy[wrist])
+    centre = body.xy[wrist] + FOREARM_SHIFT * size * up_of(rotation)
+    regions = (
+        Region(float(centre[0]), float(centre[1]), share * size, rotation)
+        for share in FOREARM_SIDES
+    )
+    return tuple(region for region in regions if region.usable)
+
+
+def measure_body(body: Body) -> float:
+    """Return the longer of torso and shoulders in pixels; one of them is long in every view."""
+    shoulders, hips = (
+        body.xy[[POSE_LANDMARKS.index(f"{side}_{joint}") for side in SIDES]]
+        for joint in ("shoulder", "hip")
+    )
+    torso = np.linalg.norm(shoulders.mean(axis=0) - hips.mean(axis=0))
+    return float(max(torso, np.linalg.norm(shoulders[0] - shoulders[1])))
 
 
 def wrist_distance(hand: Hand, body: Body, side: Side) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -101,22 +101,40 @@ class Detector:
         self._layout = layout
         self._anchors = layout.anchors()
 
-    def detect(self, image: Image) -> tuple[Detection, ...]:
-        """Return the detections in `image`, best first, in pixels of the image."""
+    def detect(
+        self, image: Image, *, turn: float = 0.0, least: float = LEAST_SCORE
+    ) -> tuple[Detection, ...]:
+        """Return the detections in `image`, best first, in pixels of the image.
+
+        Parameters
+        ----------
+        image
+            ``(height, width, 3)`` RGB.
+        turn
+            Radians, clockwise, by which the objects that are sought are turned.
+        least
+            Least score of a detection.
+
+        """
+        return self.detect_in(image, replace(Region.around(image), rotation=turn), least=least)
+
+    def detect_in(
+        self, image: Image, region: Region, *, least: float = LEAST_SCORE
+    ) -> tuple[Detection, ...]:
+        """Return the detections in a usable `region` of `image`; see `detect`."""
         size, layout = self._layout.input_size, self._layout
-        whole = Region.around(image)
-        whole.crop(image, size, ZERO_BORDER, out=self._session.pixels)
+        region.crop(image, size, ZERO_BORDER, out=self._session.pixels)
         raw, logits = self._session.run(layout.lowest)
         scores = sigmoid(logits[0, :, 0])
-        chosen = np.flatnonzero(scores >= LEAST_SCORE)
+        chosen = np.flatnonzero(scores >= least)
         if not len(chosen):
             return ()
         points = self._decode(raw[0, chosen], self._anchors[chosen])
         found = blend_overlapping(points, scores[chosen], layout.overlap)
         return tuple(
             Detection(
-                whole.to_image(detection.box, size),
-                whole.to_image(detection.keypoints, size),
+                region.to_image(detection.box, size),
+                region.to_image(detection.keypoints, size),
                 detection.score,
             )
             for detection in found

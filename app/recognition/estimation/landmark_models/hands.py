@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
+from typing_extensions import Self
 
-from app.recognition.estimation.landmark_models.arms import REACH, region_of_wrist, wrist_distance
+from app.recognition.estimation.landmark_models.arms import (
+    FOREARM_REACH,
+    REACH,
+    region_of_wrist,
+    regions_of_forearm,
+    wrist_distance,
+)
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.hand_regions import (
     box_of,
@@ -48,6 +55,15 @@ PALM_PAUSE: Final = 4
 """Frames between palm detections while a body is seen, whose arms are searched in every frame. Palm
 detection costs as much as the body model."""
 
+FOREARM_PAUSE: Final = 10
+"""Frames between searches at the ends of forearms, which cost up to four looks an arm: so at most a
+tenth of a frame's time is spent on arms without a hand."""
+
+SURE: Final = 0.8
+"""Presence from which a hand needs no second opinion. Below it most hands that are found at the end
+of a forearm, or by the palm detector away from the body's arms, are none; and while a tracked hand
+is below it, palms are sought although there are two already, for one may be a phantom."""
+
 DUPLICATE_DISTANCE: Final = 0.2
 DUPLICATE_LANDMARKS: Final = 10
 DUPLICATE_OVERLAP: Final = 0.2
@@ -69,11 +85,14 @@ class SeenHand:
         Its landmarks.
     following
         Its region in the next frame.
+    fresh
+        Whether it was not tracked from the frame before.
 
     """
 
     hand: Hand
     following: Region
+    fresh: bool = False
 
 
 class HandModel:
@@ -118,13 +137,15 @@ class HandModel:
 class HandTracker:
     """Tracks up to two hands through the frames of a clip.
 
-    Palms are detected only while fewer hands than `MOST_HANDS` are tracked; the landmarks of a
-    frame give the regions of the next. Hands are not smoothed: the model's own output is steady,
-    and fingers are fast.
+    Palms are detected only while fewer hands than `MOST_HANDS` are tracked for `SURE`; the
+    landmarks of a frame give the regions of the next. Where there are more hands than
+    `MOST_HANDS`, or two at one arm, those are kept that the model believes most. Hands are not
+    smoothed: the model's own output is steady, and fingers are fast.
 
     A palm detector sees the whole frame at 192 pixels a side, where the hands of a distant diver
     are too small. With ``search="pose"`` each arm of the body that has no hand is looked at in the
-    full frame (after MediaPipe Holistic, Grishchenko and Bazarevsky 2020), and no arm has two.
+    full frame (after MediaPipe Holistic, Grishchenko and Bazarevsky 2020), every few frames also at
+    the end of the forearm, for gloves, and no arm has two.
 
     Parameters
     ----------
@@ -145,8 +166,13 @@ class HandTracker:
 
     def reset(self) -> None:
         """Reset the tracking."""
-        self._regions: tuple[Region, ...] = ()
+        self._tracked: tuple[SeenHand, ...] = ()
         self._until_palms = 0
+        self._until_forearms = 0
+
+    def renew(self) -> Self:
+        """Return a tracker with the same models that has seen nothing yet."""
+        return type(self)(self._palms, self._model, self._search)
 
     def follow(self, image: Image) -> tuple[SeenHand, ...]:
         """Return the hands in `image` by tracking and palm detection.
@@ -154,10 +180,14 @@ class HandTracker:
         It needs no body, so it can run in parallel with the body's models.
         """
         kept: list[SeenHand] = []
-        for region in self._candidates(image):
-            seen = self._model.look(image, region)
+        for tracked in self._tracked:
+            seen = self._model.look(image, tracked.following)
             if seen is not None and not _known(seen, kept):
                 kept.append(seen)
+        for region in self._detect_palms(image):
+            seen = self._model.look(image, region)
+            if seen is not None and not _known(seen, kept):
+                kept.append(replace(seen, fresh=True))
         return tuple(kept)
 
     def complete(
@@ -178,61 +208,87 @@ class HandTracker:
         if self._search == "pose" and body is not None:
             seen = self._on_arms(image, followed, body)
         else:
-            seen, self._until_palms = followed, 0
-        self._regions = tuple(one.following for one in seen if one.following.usable)
+            seen, self._until_palms = _most_believed(followed), 0
+        self._tracked = tuple(one for one in seen if one.following.usable)
         return tuple(sorted((one.hand for one in seen), key=lambda hand: -hand.size))
 
-    def _candidates(self, image: Image) -> list[Region]:
-        regions = list(self._regions)
-        if len(regions) == MOST_HANDS:
-            return regions
+    def _detect_palms(self, image: Image) -> list[Region]:
+        """Return the regions of palms that are not tracked yet, where some may be."""
+        tracked = [one.following for one in self._tracked]
+        if sum(one.hand.score >= SURE for one in self._tracked) == MOST_HANDS:
+            return []
         if self._until_palms > 0:
             self._until_palms -= 1
-            return regions
+            return []
         self._until_palms = PALM_PAUSE - 1
-        for palm in self._palms.detect(image)[:MOST_HANDS]:
-            proposal = region_of_palm(palm)
-            known = any(proposal.overlap(region) > SAME_REGION for region in regions)
-            if proposal.usable and not known:
-                regions.append(proposal)
-        return regions[:MOST_HANDS]
+        proposals = [region_of_palm(palm) for palm in self._palms.detect(image)[:MOST_HANDS]]
+        return [
+            proposal
+            for proposal in proposals
+            if proposal.usable
+            and not any(proposal.overlap(region) > SAME_REGION for region in tracked)
+        ]
 
     def _on_arms(
         self, image: Image, followed: tuple[SeenHand, ...], body: Body
     ) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
-        A second hand at the end of one arm is dropped; hands at no arm (of others, or where the
-        pose is wrong) fill up to `MOST_HANDS`.
+        A second hand at the end of one arm is dropped, the one believed less. Hands at no arm (of
+        others, or where the pose is wrong) compete with those at the arms by belief.
         """
         arms = _arms_of(followed, body)
+        with_forearms = self._until_forearms == 0
+        self._until_forearms = (self._until_forearms or FOREARM_PAUSE) - 1
         for side in SIDES:
-            region = region_of_wrist(body, side)
-            if side in arms or region is None:
-                continue
-            seen = self._model.look_twice(image, region)
-            if seen is None or wrist_distance(seen.hand, body, side) > REACH:
-                continue
-            if not _known(seen, arms.values()):
-                arms[side] = seen
+            if side not in arms:
+                seen = self._search_arm(image, body, side, with_forearm=with_forearms)
+                if seen is not None and not _known(seen, arms.values()):
+                    arms[side] = seen
         elsewhere = (
             one
             for one in followed
             if all(wrist_distance(one.hand, body, side) > REACH for side in SIDES)
+            and (one.hand.score >= SURE or not one.fresh)
         )
-        return (*arms.values(), *elsewhere)[:MOST_HANDS]
+        return _most_believed((*arms.values(), *elsewhere))
+
+    def _search_arm(
+        self, image: Image, body: Body, side: Side, *, with_forearm: bool
+    ) -> SeenHand | None:
+        """Return the hand at the end of an arm, from the pose's fingers, or from its forearm."""
+        region = region_of_wrist(body, side)
+        if region is not None:
+            seen = self._model.look_twice(image, region)
+            if seen is not None and wrist_distance(seen.hand, body, side) <= REACH:
+                return seen
+        for region in regions_of_forearm(body, side) if with_forearm else ():
+            seen = self._model.look_twice(image, region)
+            if seen is None or seen.hand.score < SURE:
+                continue
+            if wrist_distance(seen.hand, body, side) <= FOREARM_REACH:
+                return seen
+        return None
 
 
 def _arms_of(followed: Iterable[SeenHand], body: Body) -> dict[Side, SeenHand]:
-    """Assign hands within `REACH` of a wrist to the arms, nearest first, each arm at most one."""
-    pairs = [
-        (wrist_distance(one.hand, body, side), side, one) for one in followed for side in SIDES
-    ]
+    """Assign hands to the arms, the one believed most first, each to the nearest within `REACH`."""
     arms: dict[Side, SeenHand] = {}
-    for distance, side, one in sorted(pairs, key=lambda pair: pair[0]):
-        if distance <= REACH and side not in arms and one not in arms.values():
+    for one in _by_belief(followed):
+        free = [side for side in SIDES if side not in arms]
+        distances = {side: wrist_distance(one.hand, body, side) for side in free}
+        side = min(distances, key=lambda side: distances[side], default=None)
+        if side is not None and distances[side] <= REACH:
             arms[side] = one
     return arms
+
+
+def _by_belief(seen: Iterable[SeenHand]) -> list[SeenHand]:
+    return sorted(seen, key=lambda one: -one.hand.score)
+
+
+def _most_believed(seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
+    return tuple(_by_belief(seen)[:MOST_HANDS])
 
 
 def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:

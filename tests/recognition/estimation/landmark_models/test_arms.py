@@ -9,7 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.landmark_models.arms import REACH, region_of_wrist, wrist_distance
+from app.recognition.estimation.landmark_models.arms import (
+    REACH,
+    measure_body,
+    region_of_wrist,
+    regions_of_forearm,
+    wrist_distance,
+)
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -66,3 +72,36 @@ def test_distance_to_the_wrist_is_told_in_palms(size: float) -> None:
     assert wrist_distance(hand, body, "left") == 0
     next_to_it = Hand(hand.xy + (2 * size, 0), "left", 1.0)
     assert wrist_distance(next_to_it, body, "left") > REACH
+
+
+def standing(*, wrist: tuple[float, float] = (400.0, 300.0)) -> Body:
+    """Return a body whose left forearm points from (300, 300) to `wrist`; its torso is 200 long."""
+    places = {
+        "left_shoulder": (340.0, 100.0),
+        "right_shoulder": (260.0, 100.0),
+        "left_hip": (330.0, 300.0),
+        "right_hip": (270.0, 300.0),
+        "left_elbow": (300.0, 300.0),
+        "left_wrist": wrist,
+    }
+    xy: FloatArray = np.full((len(POSE_LANDMARKS), 2), np.nan)
+    for name, place in places.items():
+        xy[POSE_LANDMARKS.index(name)] = place
+    return Body(xy, np.ones(len(POSE_LANDMARKS)), 1.0)
+
+
+def test_the_hand_in_a_glove_is_sought_beyond_the_wrist_at_the_body_s_scale() -> None:
+    regions = regions_of_forearm(standing(), "left")
+    assert [region.side for region in regions] == [120, 180]
+    for region in regions:
+        assert (region.x, region.y) == pytest.approx((440, 300))
+        assert region.rotation == pytest.approx(math.pi / 2), "fingers point on from the forearm"
+
+
+def test_a_forearm_that_was_not_seen_has_no_regions() -> None:
+    assert regions_of_forearm(standing(), "right") == ()
+    assert regions_of_forearm(body_with(flat_hand(), "left", visibility=0.4), "left") == ()
+
+
+def test_a_body_seen_from_the_side_is_as_long_as_its_torso() -> None:
+    assert measure_body(standing()) == pytest.approx(200)

@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.arms import wrist_distance
-from app.recognition.estimation.landmark_models.hands import find_duplicates
+from app.recognition.estimation.landmark_models.hand_regions import region_of_hand
+from app.recognition.estimation.landmark_models.hands import SeenHand, find_duplicates
+from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -105,6 +107,35 @@ def test_arms_whose_hands_are_hidden_get_none(
     results = [estimator.estimate(image, index / 25) for index, image in enumerate(hidden)]
     assert all(result.body is not None for result in results)
     assert [result.hands for result in results] == [()] * len(hidden)
+
+
+def test_a_hand_never_loses_its_place_to_one_believed_less(installed_models: None) -> None:
+    """Two phantoms at the arms of a phantom body, and a true hand away from them."""
+    xy: FloatArray = np.full((len(POSE_LANDMARKS), 2), np.nan)
+    phantoms = {"left": flat_hand(size=15) + (100, 100), "right": flat_hand(size=15) + (200, 100)}
+    for side, phantom in phantoms.items():
+        xy[POSE_LANDMARKS.index(f"{side}_wrist")] = phantom[0]
+    body = Body(xy, np.ones(len(POSE_LANDMARKS)), 0.6)
+    true = Hand(flat_hand() + (400, 300), "left", 0.99)
+    followed = tuple(
+        SeenHand(one, region_of_hand(one.xy))
+        for one in (*(Hand(xy, "left", 0.6) for xy in phantoms.values()), true)
+    )
+    tracker = hand_tracker(search="pose", threads=1, provider="cpu")
+    kept = tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, body)
+    assert kept[0] is true
+    assert len(kept) == 2
+
+
+def test_of_two_hands_at_one_arm_the_one_believed_more_is_kept(installed_models: None) -> None:
+    xy: FloatArray = np.full((len(POSE_LANDMARKS), 2), np.nan)
+    xy[POSE_LANDMARKS.index("left_wrist")] = 300, 300
+    body = Body(xy, np.ones(len(POSE_LANDMARKS)), 0.9)
+    nearer = Hand(flat_hand() + (300, 300), "left", 0.6)
+    surer = Hand(turned(flat_hand(), 1.0) + (330, 300), "left", 0.9)
+    followed = tuple(SeenHand(one, region_of_hand(one.xy)) for one in (nearer, surer))
+    tracker = hand_tracker(search="pose", threads=1, provider="cpu")
+    assert tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, body) == (surer,)
 
 
 def test_no_arm_has_two_hands(

@@ -9,7 +9,7 @@ import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import available_providers
-from app.recognition.estimation.landmark_models.body import POSE_SIGNATURE
+from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT
 from app.recognition.estimation.landmark_models.hands import HAND_SIGNATURE
 from app.recognition.estimation.landmark_models.onnx_session import (

@@ -1,0 +1,218 @@
+"""Water stills: how much of real divers is found in photographs from several waters.
+
+FOLDER holds ``boxes.csv`` (columns image, what, x0, y0, x1, y1: Diver, Head or Hand, and corners
+in pixels) and the photographs in ``images/``; the letters that a file's name begins with
+are its water. Each photograph is looked at by itself, with everything forgotten before.
+
+- body: photographs with a diver's box; found if the middle of shoulders and hips is in one.
+- head: photographs with a head's box; found if the nose is in one.
+- hand: boxes of hands; found if the middle of a found hand's landmarks is in it.
+- off: hands found whose middle is in no hand's box, of all hands found. Boxes are missing around
+  some hands that people see, so a part of these is right.
+
+Every share has its number and Wilson's 95 % interval. ``--part even`` takes every second photograph
+of the sorted names, on which constants are chosen, ``--part odd`` the others. ``--by-size`` prints
+rows by the height of the diver's box, as a share of the picture's, instead of by water.
+
+    python -m benchmarks.accuracy.water_stills FOLDER --water off auto
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Final, Literal, get_args
+
+import cv2
+import numpy as np
+
+from app.evaluation.proportion import Share
+from app.recognition.estimation import FrameLandmarks, create_estimator
+from app.recognition.estimation.water import WaterCorrection
+from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+
+Part = Literal["all", "even", "odd"]
+
+PARTS: Final[dict[Part, slice]] = {
+    "all": slice(None),
+    "even": slice(0, None, 2),
+    "odd": slice(1, None, 2),
+}
+
+NOTHING: Final = Share(0, 0)
+
+TORSO: Final = [
+    POSE_LANDMARKS.index(f"{side}_{joint}")
+    for side in ("left", "right")
+    for joint in ("shoulder", "hip")
+]
+NOSE: Final = POSE_LANDMARKS.index("nose")
+
+SIZES: Final = (0.0, 0.5, 0.75, 1.01)
+"""Limits of the rows by size: far, near, and as large as the picture."""
+
+
+@dataclass(frozen=True)
+class Still:
+    """A photograph and what people see in it.
+
+    Attributes
+    ----------
+    path
+        The file.
+    boxes
+        For Diver, Head and Hand the corners ``(N, 2, 2)``, (left, top) and (right, bottom).
+
+    """
+
+    path: Path
+    boxes: Mapping[str, FloatArray]
+
+    @property
+    def water(self) -> str:
+        """The letters that the file's name begins with."""
+        letters = re.match(r"[A-Za-z]*", self.path.name)
+        return letters.group() if letters else ""
+
+
+@dataclass(frozen=True)
+class Score:
+    """What was found in some photographs; see the module for what counts."""
+
+    body: Share = NOTHING
+    head: Share = NOTHING
+    hand: Share = NOTHING
+    off: Share = NOTHING
+
+    def __add__(self, other: Score) -> Score:
+        return Score(
+            *(getattr(self, part.name) + getattr(other, part.name) for part in fields(self))
+        )
+
+    def __str__(self) -> str:
+        shares: list[Share] = [getattr(self, part.name) for part in fields(self)]
+        return " | ".join(f"{share}, n = {share.asked}" for share in shares)
+
+
+def read_stills(folder: Path, part: Part = "all") -> tuple[Still, ...]:
+    """Return the photographs of a folder in the order of their names.
+
+    Raises
+    ------
+    OSError
+        When there is no ``boxes.csv``.
+
+    """
+    boxes: dict[str, dict[str, list[list[list[float]]]]] = defaultdict(lambda: defaultdict(list))
+    with (folder / "boxes.csv").open(newline="", encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            corners = [[float(row["x0"]), float(row["y0"])], [float(row["x1"]), float(row["y1"])]]
+            boxes[row["image"]][row["what"]].append(corners)
+    names = sorted(boxes)[PARTS[part]]
+    return tuple(
+        Still(
+            folder / "images" / name,
+            {what: np.array(corners) for what, corners in boxes[name].items()},
+        )
+        for name in names
+    )
+
+
+def score_still(boxes: Mapping[str, FloatArray], found: FrameLandmarks) -> Score:
+    """Compare what was found in a photograph with what people see."""
+    middles = [hand.xy.mean(axis=0) for hand in found.hands]
+    hands = boxes.get("Hand", np.empty((0, 2, 2)))
+    hits = [_holds(box[None], middles) for box in hands]
+    strays = [not _holds(hands, [middle]) for middle in middles]
+    body = found.body
+    return Score(
+        body=_one(boxes.get("Diver"), body.xy[TORSO].mean(axis=0) if body else None),
+        head=_one(boxes.get("Head"), body.xy[NOSE] if body else None),
+        hand=Share(sum(hits), len(hits)),
+        off=Share(sum(strays), len(strays)),
+    )
+
+
+def _one(boxes: FloatArray | None, point: FloatArray | None) -> Share:
+    if boxes is None:
+        return NOTHING
+    return Share(int(point is not None and _holds(boxes, [point])), 1)
+
+
+def _holds(boxes: FloatArray, points: Iterable[FloatArray]) -> bool:
+    """Return whether one of the points is in one of the boxes ``(N, 2, 2)``."""
+    return any(
+        bool(((box[0] <= point) & (point <= box[1])).all()) for box in boxes for point in points
+    )
+
+
+def size_of(still: Still, image: Image) -> str:
+    """Return the row by size that a photograph belongs to."""
+    if "Diver" not in still.boxes:
+        return "no diver's box"
+    heights = np.diff(still.boxes["Diver"][..., 1], axis=1)
+    share = float(heights.max()) / image.shape[0]
+    upper = next(limit for limit in SIZES[1:] if share < limit)
+    lower = SIZES[SIZES.index(upper) - 1]
+    return f"diver {lower:.0%} to {min(upper, 1):.0%} of the height"
+
+
+def read_photograph(path: Path) -> Image:
+    """Return a picture file as RGB.
+
+    Raises
+    ------
+    OSError
+        When it cannot be read.
+
+    """
+    image = cv2.imread(str(path))
+    if image is None:
+        raise OSError(f"{path} is no picture; JPEG and PNG are read")
+    return np.asarray(cv2.cvtColor(image, cv2.COLOR_BGR2RGB), np.uint8)
+
+
+def measure(
+    stills: Iterable[Still], sight: WaterSight, *, by_size: bool = False
+) -> Iterator[tuple[str, Score]]:
+    """Yield the row that each photograph belongs to, and its score."""
+    for still in stills:
+        image = read_photograph(still.path)
+        sight.reset()
+        row = size_of(still, image) if by_size else still.water
+        yield row, score_still(still.boxes, sight.estimate(image, 0.0))
+
+
+def main() -> None:
+    """Print a table for each setting of the correction: a row per water, and all."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.accuracy.water_stills", description=__doc__.partition("\n")[0]
+    )
+    parser.add_argument("folder", type=Path, help="holds boxes.csv and images/")
+    parser.add_argument("--water", nargs="+", default=get_args(WaterCorrection))
+    parser.add_argument("--part", choices=get_args(Part), default="all")
+    parser.add_argument("--by-size", action="store_true", help="rows by size instead of by water")
+    arguments = parser.parse_args()
+    stills = read_stills(arguments.folder, arguments.part)
+    print("correction | photographs of | body | head | hand | hands off any box")
+    with closing(create_estimator()) as estimator:
+        for water in arguments.water:
+            rows: dict[str, Score] = defaultdict(Score)
+            sight = WaterSight(estimator, water)
+            for row, score in measure(stills, sight, by_size=arguments.by_size):
+                rows[row] += score
+            for row, score in (*sorted(rows.items()), ("all", sum(rows.values(), Score()))):
+                print(f"{water} | {row} | {score}", flush=True)
+
+
+if __name__ == "__main__":
+    main()

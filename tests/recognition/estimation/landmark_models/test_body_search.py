@@ -1,0 +1,51 @@
+"""The search for a person: turned and dim ones are found, nobody is where nobody is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition.estimation import Image, OnnxPoseEstimator
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from benchmarks.accuracy.underwater import degrade
+from tests.recognition.estimation.clip_frames import clip_frames
+
+NOSE, HIP = POSE_LANDMARKS.index("nose"), POSE_LANDMARKS.index("left_hip")
+
+
+@pytest.fixture(scope="module")
+def diver(sample_clips: Path) -> Image:
+    """Return a frame of a rendered diver, upright."""
+    return next(clip_frames(sample_clips / "circle-demonstration.mp4", 1)).image
+
+
+@pytest.mark.parametrize("quarters", [1, 2, 3])
+def test_a_diver_who_is_turned_is_found(
+    estimator: OnnxPoseEstimator, diver: Image, quarters: int
+) -> None:
+    upright = estimator.examine(diver).body
+    turned = estimator.examine(np.ascontiguousarray(np.rot90(diver, quarters))).body
+    assert upright is not None
+    assert turned is not None
+    towards = upright.xy[NOSE] - upright.xy[HIP]
+    for _ in range(quarters):
+        towards = np.array([towards[1], -towards[0]])
+    shown = turned.xy[NOSE] - turned.xy[HIP]
+    assert shown @ towards > 0.8 * np.linalg.norm(shown) * np.linalg.norm(towards)
+
+
+def test_a_diver_in_murk_is_found_as_filmed(estimator: OnnxPoseEstimator, diver: Image) -> None:
+    (murky,) = degrade([diver], 0.8, far=False)
+    clear, dim = estimator.examine(diver).body, estimator.examine(murky).body
+    assert clear is not None
+    assert dim is not None
+    torso = np.linalg.norm(clear.xy[NOSE] - clear.xy[HIP])
+    assert np.linalg.norm(dim.xy[NOSE] - clear.xy[NOSE]) < torso / 4
+
+
+def test_nobody_is_found_in_noise(estimator: OnnxPoseEstimator) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (360, 640, 3), dtype=np.uint8)
+    assert estimator.examine(noise).body is None
+    assert estimator.examine(np.full((360, 640, 3), 90, np.uint8)).body is None
