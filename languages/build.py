@@ -1,4 +1,4 @@
-"""Language builder: builds the two sample languages of the paper from demonstration clips.
+"""Language builder: builds the sample languages from demonstration clips.
 
 Run ``python -m languages.build`` from the repository's root; ``make languages`` does the same.
 """
@@ -12,6 +12,7 @@ from pathlib import Path
 from app.recognition import Gesture, Language, find_takes
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import Group, OneOf, Phrase, Slot, SlotType
+from languages.render.signs import SIGNS, name_clip
 
 FOLDER = Path(__file__).resolve().parent
 CREATED = datetime(2026, 11, 21, tzinfo=UTC)
@@ -20,11 +21,17 @@ CREATED = datetime(2026, 11, 21, tzinfo=UTC)
 
 @dataclass(frozen=True)
 class Entry:
-    """One row of the paper's Table 2: what is drawn, and what it may mean to a robot."""
+    """One gesture: what is shown, what it may mean to a robot, and its clip."""
 
     label: str
     description: str
-    command: str
+    command: str | None = None
+    clip: str | None = None
+
+    @property
+    def path(self) -> Path:
+        """The demonstration clip."""
+        return FOLDER / (self.clip or f"clips/{self.label}-demonstration.mp4")
 
 
 TABLE_2 = (
@@ -38,6 +45,13 @@ TABLE_2 = (
     Entry("line", "Horizontal sweeping motion of the right hand", "Stop what you are doing"),
 )
 """Joshi and Sattar 2025, Table 2; its first three rows are Table 1."""
+
+DIVERS_SIGNS = tuple(
+    Entry(label, sign.meaning, clip=f"signs/{name_clip(label)}.mp4")
+    for label, sign in SIGNS.items()
+)
+"""Signs that recreational divers learn (see `languages.render.signs` for the source); what a robot
+should do at them is left to its owner."""
 
 PHRASES = Grammar(
     start="circle",
@@ -94,19 +108,22 @@ class Sample:
 
     name: str
     entries: tuple[Entry, ...]
+    author: str = "OSG Studio, after Joshi and Sattar 2025"
     grammar: Grammar | None = None
 
 
 LANGUAGES = {
     "osg-table-1": Sample("Table 1: three signs", TABLE_2[:3]),
-    "osg-table-2": Sample("Table 2: eight signs", TABLE_2, PHRASES),
+    "osg-table-2": Sample("Table 2: eight signs", TABLE_2, grammar=PHRASES),
+    "divers-signs": Sample(
+        f"Divers' signs: {len(DIVERS_SIGNS)} signs", DIVERS_SIGNS, "OSG Studio, after RSTC 2005"
+    ),
 }
 
 
 def make_gesture(entry: Entry) -> Gesture:
     """Make a gesture from the only closed take of its demonstration clip."""
-    clip = FOLDER / "clips" / f"{entry.label}-demonstration.mp4"
-    (take,) = [take for take in find_takes(clip) if take.closed]
+    (take,) = [take for take in find_takes(entry.path) if take.closed]
     return Gesture.from_demonstration(
         entry.label, take.poses, description=entry.description, command=entry.command
     )
@@ -114,12 +131,12 @@ def make_gesture(entry: Entry) -> Gesture:
 
 def main() -> None:
     """Write every language beside this file."""
-    gestures = {entry.label: make_gesture(entry) for entry in TABLE_2}
+    gestures = {entry: make_gesture(entry) for entry in (*TABLE_2, *DIVERS_SIGNS)}
     for stem, sample in LANGUAGES.items():
         language = Language(
             name=sample.name,
-            gestures=[gestures[entry.label] for entry in sample.entries],
-            author="OSG Studio, after Joshi and Sattar 2025",
+            gestures=[gestures[entry] for entry in sample.entries],
+            author=sample.author,
             created=CREATED,
             grammar=sample.grammar,
         )

@@ -67,7 +67,7 @@ def test_a_triangle_without_its_third_side_is_misread(
     assert Recognizer(table_2, profile).recognize(take.poses).nearest == "wedge"
 
 
-@pytest.mark.parametrize("stem", LANGUAGES)
+@pytest.mark.parametrize("stem", ["osg-table-1", "osg-table-2"])
 def test_the_shipped_file_is_what_its_clips_show(table_2: Language, stem: str) -> None:
     shipped = Language.load(FOLDER / f"{stem}.json")
     sample = LANGUAGES[stem]
