@@ -21,7 +21,7 @@ def samples_dir() -> Path:
 
 def known_signs_file() -> Path:
     """Return the language file of the signs that divers know; the health check looks for them."""
-    return samples_dir() / "divers-signs.json"
+    return samples_dir() / "signs-of-divers.json"
 
 
 def _installed_or_checked_out(in_wheel: str, in_checkout: str) -> Path:

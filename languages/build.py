@@ -115,7 +115,7 @@ class Sample:
 LANGUAGES = {
     "osg-table-1": Sample("Table 1: three signs", TABLE_2[:3]),
     "osg-table-2": Sample("Table 2: eight signs", TABLE_2, grammar=PHRASES),
-    "divers-signs": Sample(
+    "signs-of-divers": Sample(
         f"Divers' signs: {len(DIVERS_SIGNS)} signs", DIVERS_SIGNS, "OSG Studio, after RSTC 2005"
     ),
 }

@@ -18,7 +18,7 @@ as it. The rest are refused: *cold*, *go that way*, *look* and *out of air*."""
 
 @pytest.fixture(scope="module")
 def language() -> Language:
-    return Language.load(FOLDER / "divers-signs.json")
+    return Language.load(FOLDER / "signs-of-divers.json")
 
 
 @pytest.fixture(scope="module")

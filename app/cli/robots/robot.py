@@ -23,7 +23,7 @@ from app.cli.robots.ros_arguments import BEGIN
 from app.cli.robots.supervision import report_event
 from app.cli.terminal import people
 from app.recognition.errors import EstimatorError, PublishError
-from app.recognition.estimation import create_estimator, finds_hands
+from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
@@ -115,17 +115,15 @@ def robot(
         raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
         watched = opened.enter_context(WatchedLanguage(language, profile))
-        frames = opened.enter_context(closing(open_source(source)))
-        finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
-        salutes = watched.first.trigger.kind == "salute" and not without_salutes
-        if salutes and not finds_hands(finder):
+        sees_hands = hands != NO_HANDS
+        if watched.first.trigger.kind == "salute" and not (without_salutes or sees_hands):
             raise EstimatorError(
                 f"--hands {hands} finds no hand and so no salute: choose other hands, give the "
                 "language another trigger, or add --without-salutes"
             )
-        listener = create_listener(
-            watched.first, without_salutes=without_salutes, hands=finds_hands(finder)
-        )
+        listener = create_listener(watched.first, without_salutes=without_salutes, hands=sees_hands)
+        frames = opened.enter_context(closing(open_source(source)))
+        finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
         if profile_stages:
             body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
             profile_until_stopped(frames, body, finder, listener, water)

@@ -18,7 +18,7 @@ export async function reloadLanguages() {
   const wanted = [state.language, localStorage.getItem(LAST)].find((id) =>
     languages.some((each) => each.id === id),
   );
-  update({ languages, language: wanted ?? richest(languages)?.id ?? null });
+  update({ languages, language: wanted ?? firstLanguage(languages)?.id ?? null });
   await reloadLanguage();
 }
 
@@ -41,16 +41,24 @@ export const reloadOneLanguage = (id) =>
     },
   });
 
+/** What the sample clip that is misread shows, and what it is read as. */
+export const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
+
 /**
- * The language with most gestures: on a first visit it knows what every sample clip shows.
+ * Whether a language misreads the sample clip, as it knows what the sample clips show.
+ *
+ * @param {LanguageSummary} language
+ */
+export const knowsSampleClips = ({ labels }) =>
+  labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
+
+/**
+ * The language of a first visit: with it the sample clips are recognised.
  *
  * @param {LanguageSummary[]} languages
  * @returns {LanguageSummary | null}
  */
-function richest(languages) {
-  const most = Math.max(...languages.map(({ labels }) => labels.length));
-  return languages.find(({ labels }) => labels.length === most) ?? null;
-}
+const firstLanguage = (languages) => languages.find(knowsSampleClips) ?? languages[0] ?? null;
 
 /** Load the gestures of the language on display. */
 export async function reloadLanguage() {

@@ -11,7 +11,7 @@ import { drawPose, skeleton } from "../clips/skeleton.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
-import { choose } from "../languages/language-store.js";
+import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.js";
 
 /** @import { Clip, Job, LanguageSummary, Sample, State } from "../core/types.d.ts" */
 
@@ -64,9 +64,6 @@ const salutePicture = () =>
     ),
   );
 
-/** The sample that is recognised wrongly, with its expected label. */
-const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
-
 /**
  * A button that shows why the misread sample is misread; null where it, or its language, is gone.
  *
@@ -99,10 +96,8 @@ function question(samples, languages) {
  */
 function exampleOf(samples, languages) {
   const sample = samples.find(({ name }) => name === MISREAD.name);
-  /** @param {LanguageSummary} language */
-  const knows = ({ labels }) => labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
-  const language =
-    languages.find((each) => each.id === state.language && knows(each)) ?? languages.find(knows);
+  const able = languages.filter(knowsSampleClips);
+  const language = able.find(({ id }) => id === state.language) ?? able[0];
   return sample && language ? { sample, language } : null;
 }
 
