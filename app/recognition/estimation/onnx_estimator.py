@@ -111,7 +111,7 @@ class OnnxPoseEstimator:
 
         """
         check_image(image)
-        body, hands = self._body.renew().track(image, 0.0), self._hands.renew()
+        body, hands = self._body.examine(image), self._hands.renew()
         return FrameLandmarks(body, hands.complete(image, hands.follow(image), body))
 
     def reset(self) -> None:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-from typing_extensions import Self
-
 from app.recognition.estimation.landmark_models.body_model import MARGIN, BodyModel, SeenBody
 from app.recognition.estimation.landmark_models.body_search import BodySearch
 from app.recognition.estimation.landmark_models.detector import Detector
@@ -14,8 +12,9 @@ from app.recognition.estimation.landmark_models.smoothing import ExponentialFilt
 from app.recognition.poses.frame import Body, Image
 
 SEARCH_PAUSE: Final = 10
-"""Frames between searches while nobody is found. A search costs as much as five detections, so half
-as much again is spent on frames without a person, and nothing on others."""
+"""Frames in a row without a person before each search. The detector finds most people within these,
+and tracking goes on from who is found. A search costs as much as five detections, so half as much
+again is spent on frames without a person, and nothing on others."""
 
 VISIBILITY_WEIGHT: Final = 0.1
 """Weight of a new visibility in MediaPipe's smoothing, which lags by about ten frames."""
@@ -24,8 +23,8 @@ VISIBILITY_WEIGHT: Final = 0.1
 class BodyTracker:
     """Tracks the most certain person through the frames of a clip.
 
-    Detection runs only on frames where no body is tracked; where it finds nobody, a
-    `BodySearch` follows, on every `SEARCH_PAUSE`-th of them. The landmarks of a frame give the
+    Detection runs only on frames where no body is tracked; where it has found nobody in
+    `SEARCH_PAUSE` frames in a row, a `BodySearch` follows. The landmarks of a frame give the
     region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
     at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
     landmark moves fast against the size of the body.
@@ -46,16 +45,17 @@ class BodyTracker:
         self._position = OneEuroFilter(minimum_cutoff=0.05, beta=80.0)
         self._visibility = ExponentialFilter(VISIBILITY_WEIGHT)
         self._region: Region | None = None
-        self._until_search = 0
+        self._until_search = SEARCH_PAUSE
 
     def reset(self) -> None:
-        """Reset the tracking; the next frame is searched."""
+        """Reset the tracking; the next frame is the first."""
         self._lose()
-        self._until_search = 0
+        self._until_search = SEARCH_PAUSE
 
-    def renew(self) -> Self:
-        """Return a tracker with the same models that has seen nothing yet."""
-        return type(self)(self._detector, self._model)
+    def examine(self, image: Image) -> Body | None:
+        """Return the body in `image` alone, searched at once; tracking is left as it is."""
+        seen = self._detect(image) or self._search.find(image)
+        return Body(seen.xy, seen.visibility, seen.score, seen.world) if seen else None
 
     def track(self, image: Image, time: float) -> Body | None:
         """Return the body in `image`, taken at `time` seconds, or None where none is seen."""
@@ -63,6 +63,7 @@ class BodyTracker:
         if seen is None:
             self._lose()
             return None
+        self._until_search = SEARCH_PAUSE
         self._region = seen.following
         return Body(
             xy=self._position.apply(seen.xy, time, scale=1 / seen.following.side),
@@ -81,13 +82,17 @@ class BodyTracker:
         return seen if seen.believed else None
 
     def _find(self, image: Image) -> SeenBody | None:
+        seen = self._detect(image)
+        if seen is not None:
+            return seen
+        self._until_search -= 1
+        if self._until_search > 0:
+            return None
+        self._until_search = SEARCH_PAUSE
+        return self._search.find(image)
+
+    def _detect(self, image: Image) -> SeenBody | None:
         for person in self._detector.detect(image)[:1]:
             region = Region.aligned(person.keypoints[0], person.keypoints[1], MARGIN)
-            seen = self._look(image, region) if region.usable else None
-            if seen is not None:
-                return seen
-        if self._until_search > 0:
-            self._until_search -= 1
-            return None
-        self._until_search = SEARCH_PAUSE - 1
-        return self._search.find(image)
+            return self._look(image, region) if region.usable else None
+        return None

@@ -4,7 +4,8 @@ Divers swim on their sides and head down, and water takes the contrast that the 
 trained on. So its weak candidates count too, in the image turned four ways, and the landmark model
 decides among them: it is asked twice, the second time at the region that its own first answer
 gives, and a candidate is believed as far as both answers believe it. A region with nobody in it
-seldom leads to a second one that is believed.
+seldom leads to a second one that is believed. Nobody is taken whose torso leaves the image, or who
+would not fit into it: so near, the detector sees people, and the model believes hands to be bodies.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from app.recognition.estimation.landmark_models.body_model import MARGIN, BodyMo
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 TURNS: Final = (0.0, math.pi / 2, math.pi, -math.pi / 2)
 """Radians by which the image is turned: upright, on either side, head down."""
@@ -31,6 +33,13 @@ SURE: Final = 0.9
 
 MOST_CANDIDATES: Final = 3
 """Most candidates of each turn; each costs two looks."""
+
+TORSO: Final = [
+    POSE_LANDMARKS.index(f"{side}_{joint}")
+    for side in ("left", "right")
+    for joint in ("shoulder", "hip")
+]
+"""The landmarks that must be in the image."""
 
 
 class BodySearch:
@@ -70,4 +79,14 @@ class BodySearch:
         if not first.following.usable:
             return None
         second = self._model.look(image, first.following)
-        return replace(second, score=first.score * second.score) if second.believed else None
+        if not second.believed or not _fits(second, image):
+            return None
+        return replace(second, score=first.score * second.score)
+
+
+def _fits(seen: SeenBody, image: Image) -> bool:
+    """Return whether shoulders and hips are in the image, and the body is no larger than it."""
+    height, width = image.shape[:2]
+    torso = seen.xy[TORSO]
+    inside = bool(((torso >= 0) & (torso < (width, height))).all())
+    return inside and seen.following.side <= MARGIN * max(width, height)

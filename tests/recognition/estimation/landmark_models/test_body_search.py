@@ -8,6 +8,15 @@ import numpy as np
 import pytest
 
 from app.recognition.estimation import Image, OnnxPoseEstimator
+from app.recognition.estimation.landmark_models.body_model import (
+    MARGIN,
+    POSE_SIGNATURE,
+    BodyModel,
+)
+from app.recognition.estimation.landmark_models.body_search import TORSO, BodySearch
+from app.recognition.estimation.landmark_models.detector import PERSON_LAYOUT, Detector
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession
+from app.recognition.models import model_path
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from benchmarks.accuracy.underwater import degrade
 from tests.recognition.estimation.clip_frames import clip_frames
@@ -19,6 +28,18 @@ NOSE, HIP = POSE_LANDMARKS.index("nose"), POSE_LANDMARKS.index("left_hip")
 def diver(sample_clips: Path) -> Image:
     """Return a frame of a rendered diver, upright."""
     return next(clip_frames(sample_clips / "circle-demonstration.mp4", 1)).image
+
+
+@pytest.fixture(scope="module")
+def search(installed_models: None) -> BodySearch:
+    """Return a search without the detection that precedes it."""
+    persons = ModelSession(
+        model_path("pose_detection"), PERSON_LAYOUT.signature, threads=1, provider="cpu"
+    )
+    bodies = ModelSession(
+        model_path("pose_landmark_full"), POSE_SIGNATURE, threads=1, provider="cpu"
+    )
+    return BodySearch(Detector(persons, PERSON_LAYOUT), BodyModel(bodies))
 
 
 @pytest.mark.parametrize("quarters", [1, 2, 3])
@@ -49,3 +70,22 @@ def test_nobody_is_found_in_noise(estimator: OnnxPoseEstimator) -> None:
     noise = np.random.default_rng(1).integers(0, 256, (360, 640, 3), dtype=np.uint8)
     assert estimator.examine(noise).body is None
     assert estimator.examine(np.full((360, 640, 3), 90, np.uint8)).body is None
+
+
+@pytest.mark.parametrize("quarters", range(4))
+def test_nobody_searched_is_cut_or_larger_than_the_image(
+    search: BodySearch, estimator: OnnxPoseEstimator, diver: Image, quarters: int
+) -> None:
+    body = estimator.examine(diver).body
+    assert body is not None
+    (left, top), (right, bottom) = body.xy[TORSO].min(axis=0), body.xy[TORSO].max(axis=0)
+    half = diver[:, : int((left + right) / 2)]
+    near = diver[int(top) - 60 : int(bottom) + 10, int(left) - 80 : int(right) + 80]
+    for part in (half, near):
+        image = np.ascontiguousarray(np.rot90(part, quarters))
+        found = search.find(image)
+        if found is not None:
+            height, width = image.shape[:2]
+            assert (found.xy[TORSO] >= 0).all()
+            assert (found.xy[TORSO] < (width, height)).all()
+            assert found.following.side <= MARGIN * max(width, height)

@@ -1,0 +1,45 @@
+"""The body's tracker: the detector first, a search where it has found nobody for a while."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recognition.estimation import Image, OnnxPoseEstimator
+from app.recognition.estimation.landmark_models.body import SEARCH_PAUSE
+from tests.recognition.estimation.clip_frames import clip_frames
+
+
+@pytest.fixture(scope="module")
+def upright(sample_clips: Path) -> Image:
+    return next(clip_frames(sample_clips / "circle-demonstration.mp4", 1)).image
+
+
+def found(estimator: OnnxPoseEstimator, images: list[Image]) -> list[bool]:
+    return [
+        estimator.estimate(image, index / 25).body is not None for index, image in enumerate(images)
+    ]
+
+
+def test_who_only_a_search_finds_is_followed_after_a_pause(
+    estimator: OnnxPoseEstimator, upright: Image
+) -> None:
+    head_down = np.ascontiguousarray(np.rot90(upright, 2))
+    alone = [False] * (SEARCH_PAUSE - 1)
+    assert found(estimator, [head_down] * (SEARCH_PAUSE + 1)) == [*alone, True, True]
+
+
+def test_frames_with_somebody_start_the_pause_anew(
+    estimator: OnnxPoseEstimator, upright: Image
+) -> None:
+    nobody = np.full_like(upright, 90)
+    head_down = np.ascontiguousarray(np.rot90(upright, 2))
+    some = [nobody] * (SEARCH_PAUSE - 2)
+    seen = found(estimator, [*some, upright, nobody, head_down])
+    assert seen == [*[False] * len(some), True, False, False]
+
+
+def test_a_single_image_is_searched_at_once(estimator: OnnxPoseEstimator, upright: Image) -> None:
+    assert estimator.examine(np.ascontiguousarray(np.rot90(upright, 2))).body is not None
