@@ -34,7 +34,6 @@ import numpy as np
 
 from app.evaluation.proportion import Share
 from app.recognition.estimation import FrameLandmarks, create_estimator
-from app.recognition.estimation.landmark_models.body import SEARCH_PAUSE
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import Image
@@ -48,9 +47,6 @@ PARTS: Final[dict[Part, slice]] = {
     "even": slice(0, None, 2),
     "odd": slice(1, None, 2),
 }
-
-RATE: Final = 25
-"""Frames a second at which a photograph is shown."""
 
 NOTHING: Final = Share(0, 0)
 
@@ -193,15 +189,7 @@ def measure(
         image = read_photograph(still.path)
         sight.reset()
         row = size_of(still, image) if by_size else still.water
-        yield row, score_still(still.boxes, _show(image, sight))
-
-
-def _show(image: Image, sight: WaterSight) -> FrameLandmarks:
-    for frame in range(SEARCH_PAUSE):
-        found = sight.estimate(image, frame / RATE)
-        if found.body:
-            break
-    return found
+        yield row, score_still(still.boxes, sight.estimate(image, 0.0))
 
 
 def main() -> None:

@@ -48,7 +48,8 @@ class OnnxPoseEstimator:
         ``"cpu"``, or ``"cuda"``, ``"tensorrt"``, ``"coreml"`` where ONNX Runtime has them.
     hands
         ``"pose"`` searches hands at the ends of the arms, and every few frames in the whole frame;
-        ``"palm"`` only in the whole frame, as MediaPipe's hand landmarker does.
+        ``"palm"`` only in the whole frame, and bodies only where the person detector finds them, as
+        MediaPipe's landmarkers do.
 
     Raises
     ------
@@ -72,7 +73,9 @@ class OnnxPoseEstimator:
         check_provider(provider)
 
         share = max(1, threads // 2)
-        self._body = body_tracker(models, threads=share, provider=provider)
+        self._body = body_tracker(
+            models, threads=share, provider=provider, searches=hands == "pose"
+        )
         self._hands = hand_tracker(models, search=hands, threads=share, provider=provider)
         self._helper = ThreadPoolExecutor(1, "hands") if threads > 1 else None
 
@@ -126,11 +129,15 @@ class OnnxPoseEstimator:
         del self._body, self._hands
 
 
-def body_tracker(models: Path | None = None, *, threads: int, provider: Provider) -> BodyTracker:
-    """Load MediaPipe's body models; see `OnnxPoseEstimator` for parameters and errors."""
+def body_tracker(
+    models: Path | None = None, *, threads: int, provider: Provider, searches: bool = True
+) -> BodyTracker:
+    """Load MediaPipe's body models; see `OnnxPoseEstimator` and `BodyTracker`."""
     load = partial(_session, models, threads, provider)
     persons = Detector(load("pose_detection", PERSON_LAYOUT.signature), PERSON_LAYOUT)
-    return BodyTracker(persons, BodyModel(load("pose_landmark_full", POSE_SIGNATURE)))
+    return BodyTracker(
+        persons, BodyModel(load("pose_landmark_full", POSE_SIGNATURE)), searches=searches
+    )
 
 
 def hand_tracker(

@@ -12,9 +12,10 @@ from app.recognition.estimation.landmark_models.smoothing import ExponentialFilt
 from app.recognition.poses.frame import Body, Image
 
 SEARCH_PAUSE: Final = 10
-"""Frames in a row without a person before each search. The detector finds most people within these,
-and tracking goes on from who is found. A search costs as much as five detections, so half as much
-again is spent on frames without a person, and nothing on others."""
+"""Frames in a row without a person before another search; the first frame is searched at once. The
+detector finds most people within these, and tracking goes on from who is found. A search costs as
+much as five detections, so half as much again is spent on frames without a person, and nothing on
+others."""
 
 VISIBILITY_WEIGHT: Final = 0.1
 """Weight of a new visibility in MediaPipe's smoothing, which lags by about ten frames."""
@@ -23,11 +24,11 @@ VISIBILITY_WEIGHT: Final = 0.1
 class BodyTracker:
     """Tracks the most certain person through the frames of a clip.
 
-    Detection runs only on frames where no body is tracked; where it has found nobody in
-    `SEARCH_PAUSE` frames in a row, a `BodySearch` follows. The landmarks of a frame give the
-    region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
-    at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
-    landmark moves fast against the size of the body.
+    Detection runs only on frames where no body is tracked; where it finds nobody in the first
+    frame, or in `SEARCH_PAUSE` frames in a row, a `BodySearch` follows. The landmarks of a frame
+    give the region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's:
+    0.05 Hz at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94
+    when a landmark moves fast against the size of the body.
 
     Parameters
     ----------
@@ -35,26 +36,30 @@ class BodyTracker:
         Finds persons.
     model
         The pose landmark model.
+    searches
+        Whether a search follows; MediaPipe's own library has none.
 
     """
 
-    def __init__(self, detector: Detector, model: BodyModel) -> None:
+    def __init__(self, detector: Detector, model: BodyModel, *, searches: bool = True) -> None:
         self._detector = detector
         self._model = model
-        self._search = BodySearch(detector, model)
+        self._search = BodySearch(detector, model) if searches else None
         self._position = OneEuroFilter(minimum_cutoff=0.05, beta=80.0)
         self._visibility = ExponentialFilter(VISIBILITY_WEIGHT)
         self._region: Region | None = None
-        self._until_search = SEARCH_PAUSE
+        self._until_search = 1
 
     def reset(self) -> None:
         """Reset the tracking; the next frame is the first."""
         self._lose()
-        self._until_search = SEARCH_PAUSE
+        self._until_search = 1
 
     def examine(self, image: Image) -> Body | None:
         """Return the body in `image` alone, searched at once; tracking is left as it is."""
-        seen = self._detect(image) or self._search.find(image)
+        seen = self._detect(image)
+        if seen is None and self._search:
+            seen = self._search.find(image)
         return Body(seen.xy, seen.visibility, seen.score, seen.world) if seen else None
 
     def track(self, image: Image, time: float) -> Body | None:
@@ -83,7 +88,7 @@ class BodyTracker:
 
     def _find(self, image: Image) -> SeenBody | None:
         seen = self._detect(image)
-        if seen is not None:
+        if seen is not None or self._search is None:
             return seen
         self._until_search -= 1
         if self._until_search > 0:

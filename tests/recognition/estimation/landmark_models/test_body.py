@@ -23,12 +23,20 @@ def found(estimator: OnnxPoseEstimator, images: list[Image]) -> list[bool]:
     ]
 
 
-def test_who_only_a_search_finds_is_followed_after_a_pause(
+def test_the_first_frame_is_searched_at_once_and_who_is_found_is_followed(
     estimator: OnnxPoseEstimator, upright: Image
 ) -> None:
     head_down = np.ascontiguousarray(np.rot90(upright, 2))
-    alone = [False] * (SEARCH_PAUSE - 1)
-    assert found(estimator, [head_down] * (SEARCH_PAUSE + 1)) == [*alone, True, True]
+    assert found(estimator, [head_down] * 3) == [True] * 3
+
+
+def test_who_only_a_search_finds_is_found_after_a_pause(
+    estimator: OnnxPoseEstimator, upright: Image
+) -> None:
+    nobody = np.full_like(upright, 90)
+    head_down = np.ascontiguousarray(np.rot90(upright, 2))
+    seen = found(estimator, [nobody, *[head_down] * (SEARCH_PAUSE + 1)])
+    assert seen == [*[False] * SEARCH_PAUSE, True, True]
 
 
 def test_frames_with_somebody_start_the_pause_anew(
