@@ -19,8 +19,12 @@ import { isHeld, listFollowed } from "./held-shape.js";
 const MOST = 5; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
 const LONGEST_NAME = 80; // `MAX_DIVER_LENGTH` there
 
-/** @type {{ label: string, content: HTMLElement, adding: ReturnType<typeof addForm> } | null} */
-let shown = null; // the dialog on display
+/**
+ * The dialog on display.
+ *
+ * @type {{ label: string, content: HTMLElement, drawn: string, adding: ReturnType<typeof addForm> } | null}
+ */
+let shown = null;
 let followed = false;
 
 /**
@@ -239,7 +243,12 @@ function draw() {
   const gesture = state.gestures && gestureShown();
   if (!gesture) return byId("dialog").close();
   const { demonstrations } = gesture;
-  shown.content.replaceChildren(...demonstrations.map((each) => figure(gesture, each)));
+  // Only what changed is drawn anew: a link or button that has the focus stays.
+  const now = JSON.stringify(demonstrations.map((each) => [each, clipOf(each.source)?.name]));
+  if (now !== shown.drawn) {
+    shown.drawn = now;
+    shown.content.replaceChildren(...demonstrations.map((each) => figure(gesture, each)));
+  }
   shown.adding.form.hidden = demonstrations.length >= MOST;
   shown.adding.offer();
   return undefined;
@@ -254,7 +263,7 @@ export function openDemonstrations(label) {
   const dialog = byId("dialog");
   const content = h("ul", { className: "demonstration-cards", "aria-label": "Demonstrations" });
   const adding = addForm(label);
-  shown = { label, content, adding };
+  shown = { label, content, drawn: "", adding };
   dialog.replaceChildren(
     h(
       "div",
