@@ -289,7 +289,7 @@ class FusedVote:
         if held is not None and measure_movement(trajectory) < self._least_movement:
             return held
         moved = self._add_hand_voters(self._compare_movements(trajectory, drawn))
-        if held is None or _measure_novelty(moved) <= 1:
+        if held is None or not is_rejected(_measure_novelty(moved)):
             return moved
         return min(held, moved, key=_measure_novelty)
 
@@ -472,8 +472,7 @@ class FusedVote:
 
 
 def _measure_novelty(table: ScoreTable) -> float:
-    """Return the novelty of a query as the nearest gesture, in the cue in which it is largest."""
-    scores = table.scores
-    if not np.isfinite(scores).any():
+    """Return the novelty of a query as the nearest gesture; 0 without thresholds for it."""
+    if not np.isfinite(table.scores).any():
         return np.inf
-    return float(np.nanmax(table.novelty_by_view[:, int(scores.argmin())], initial=0.0))
+    return float(np.nan_to_num(table.novelty[table.scores.argmin()], posinf=np.inf))
