@@ -19,8 +19,9 @@ import typer
 from pydantic import ValidationError
 
 from app import __version__
-from app.cli.audit import audit
-from app.cli.backup import backup, restore
+from app.cli.administration.audit import audit
+from app.cli.administration.backup import backup, restore
+from app.cli.administration.tokens import tokens_command
 from app.cli.batches.folder import is_folder_of_clips
 from app.cli.batches.run import FolderBatch
 from app.cli.check import check
@@ -56,7 +57,6 @@ from app.cli.terminal import (
     show_explanation,
     show_recognition,
 )
-from app.cli.tokens import tokens_command
 from app.cli.trigger import trigger
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from pydantic import ValidationError
 
-from app.cli.data_folder import DataDir, settings_of
+from app.cli.administration.data_folder import DataDir, settings_of
 from app.cli.terminal import people
 from app.recognition.errors import OsgError
 
