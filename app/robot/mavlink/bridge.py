@@ -117,7 +117,10 @@ class MavlinkBridge:
                     self._decide_phrase(event)
 
     def close(self) -> None:
-        """Finish the order on its way, for at most as long as it may take, and disconnect."""
+        """Finish the order on its way, for at most as long as it may take, and disconnect.
+
+        What was told before is sent to the vehicle's displays first.
+        """
         self._closing.set()
         self._thread.join()
         self._link.close()
@@ -203,7 +206,7 @@ class MavlinkBridge:
             self._fault = error
 
     def _talk(self) -> None:
-        while not self._closing.is_set() or self._desk.order is not None:
+        while not self._closing.is_set() or self._desk.order is not None or self._texts:
             try:
                 messages = self._link.receive(TICK_SECONDS)
                 with self._lock:

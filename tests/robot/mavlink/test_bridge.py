@@ -263,6 +263,14 @@ def test_what_is_asked_and_done_is_spoken_back_in_fifty_characters() -> None:
     assert fit_text("é" * 30).decode() == "é" * 25
 
 
+def test_what_is_told_last_is_spoken_before_the_bridge_is_closed() -> None:
+    with diving() as diver:
+        diver.confirm("deep")
+        diver.wait_for("done")
+        diver.show("deep")
+    assert diver.vehicle.texts.count("repeat 'deep' to confirm: depth 5 m") == 2
+
+
 @pytest.mark.parametrize("metres", [2, 50])
 def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> None:
     go = Phrase("go", (OneOf(("circle",)), Slot("metres", "number")), {}, "go to {metres}")

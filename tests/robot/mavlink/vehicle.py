@@ -65,7 +65,7 @@ class Ardusub:
         self._thread.start()
 
     def close(self) -> None:
-        """Switch it off."""
+        """Switch it off, once it has heard what was sent to it before."""
         self._closing.set()
         self._thread.join()
         self._connection.close()
@@ -79,9 +79,11 @@ class Ardusub:
 
     def _run(self) -> None:
         beat = 0.0
-        while not self._closing.is_set():
+        while True:
             message = self._connection.recv_msg()
             if message is None:
+                if self._closing.is_set():
+                    return
                 self._connection.select(BEAT_SECONDS / 2)
             elif self._chance.random() >= self.loss:
                 self._hear(message)
