@@ -68,7 +68,9 @@ def test_the_same_take_twice_changes_no_distance() -> None:
         ],
     )
     query = recording(wedge, jitter=0.02, seed=4)
-    np.testing.assert_array_equal(
+    # Not bit by bit: how many templates are compared at a time decides how some processors round.
+    np.testing.assert_allclose(
         Recognizer(one, "paper").recognize(query).distances,
         Recognizer(twice, "paper").recognize(query).distances,
+        rtol=1e-12,
     )
