@@ -59,6 +59,14 @@ addEventListener("securitypolicyviolation", (event) => {
 OpenPage = Callable[..., Page]
 
 
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Try a failed test of this folder once more, and tell it in the summary.
+
+    A browser on a loaded machine sometimes misses a step; what is broken fails again.
+    """
+    item.add_marker(pytest.mark.flaky(reruns=1))
+
+
 # Not for the whole session: Playwright keeps an event loop running in this thread, and no test of
 # another package could start its own.
 @pytest.fixture(scope="package")
