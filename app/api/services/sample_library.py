@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from app.api.services.language_documents import draft_of
@@ -63,7 +64,7 @@ class Samples:
         found = {}
         for path in sorted(self._folder.glob("*.json")):
             try:
-                found[path.stem] = Language.from_json(path.read_bytes())
+                found[path.stem] = _read_language(path, path.stat().st_mtime_ns)
             except (LanguageError, OSError):
                 # A server without one of its samples is still of use.
                 logger.exception("the sample language %s cannot be read", path.name)
@@ -80,3 +81,11 @@ class Samples:
         for name, language in self.languages().items():
             if name not in seeded:
                 self.add(name, language, languages)
+
+
+# Every page asks for the samples, and reading them takes a second of the processor's time.
+@lru_cache(maxsize=64)
+def _read_language(path: Path, modified: int) -> Language:
+    """Read a language file; `modified`, in nanoseconds, tells a later version of it."""
+    del modified
+    return Language.from_json(path.read_bytes())
