@@ -39,8 +39,8 @@ from app.api.middleware.strict_bodies import StrictBodies
 from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics
-from app.api.routes import events, health
-from app.api.routes.administration import audit, session
+from app.api.routes import events, server_state
+from app.api.routes.administration import audit, sign_in
 from app.api.routes.administration import metrics as metrics_routes
 from app.api.routes.clips import (
     clips,
@@ -135,7 +135,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
     """
     every, api = APIRouter(), APIRouter(prefix=API)
     for router in (
-        health.router,
+        server_state.router,
         clips.router,
         resumable_uploads.router,
         timelines.router,
@@ -160,7 +160,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         sample_clips.router,
         sample_languages.router,
         events.router,
-        session.router,
+        sign_in.router,
         audit.router,
         workspaces.router,
         playback_socket.router,
@@ -168,7 +168,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
     ):
         api.include_router(router)
     every.include_router(api)
-    every.include_router(health.router, include_in_schema=False)
+    every.include_router(server_state.router, include_in_schema=False)
     every.include_router(metrics_routes.router)
     every.include_router(relay.router)
     return tuple(every.routes)

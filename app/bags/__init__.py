@@ -1,4 +1,4 @@
-"""Dive recordings: reads rosbag2 folders and files, writes sessions as MCAP.
+"""Dive recordings: reads rosbag2 folders and files, writes bags as MCAP.
 
 A recording is read in place. An image topic becomes a clip by way of the same models as a video
 file, and a topic of recorded keypoints becomes one without them.

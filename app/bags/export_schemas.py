@@ -1,4 +1,4 @@
-"""JSON Schemas of the messages in a session's MCAP.
+"""JSON Schemas of the messages in an exported bag.
 
 Foxglove knows its own messages by their names (https://docs.foxglove.dev/docs/sdk/schemas); of its
 fields those are given here that are written. The others are ours. All are written out in full,

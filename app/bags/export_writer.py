@@ -1,4 +1,4 @@
-"""A session as MCAP: what was seen and recognised in a clip, for tools that know nothing of us.
+"""A bag as MCAP: what was seen and recognised in a clip, for tools that know nothing of us.
 
 Time is the clip's: its first frame is at 0 s, which players show as the beginning of 1970.
 """
@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from app import __version__
-from app.bags import foxglove_overlay, session_schemas
+from app.bags import export_schemas, foxglove_overlay
 from app.bags.bag import INSTALL
 from app.bags.video_writer import packets
 from app.recognition.decision.result import Recognition
@@ -29,15 +29,15 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 
 Progress = Callable[[int, int], None]
 
-CHANNELS: dict[str, session_schemas.Schema] = {
-    "/video": session_schemas.VIDEO,
-    "/pose": session_schemas.ANNOTATIONS,
-    "/label": session_schemas.ANNOTATIONS,
-    "/keypoints": session_schemas.KEYPOINTS,
-    "/salute": session_schemas.SALUTE,
-    "/takes": session_schemas.TAKE,
-    "/recognitions": session_schemas.RECOGNITION,
-    "/log": session_schemas.LOG,
+CHANNELS: dict[str, export_schemas.Schema] = {
+    "/video": export_schemas.VIDEO,
+    "/pose": export_schemas.ANNOTATIONS,
+    "/label": export_schemas.ANNOTATIONS,
+    "/keypoints": export_schemas.KEYPOINTS,
+    "/salute": export_schemas.SALUTE,
+    "/takes": export_schemas.TAKE,
+    "/recognitions": export_schemas.RECOGNITION,
+    "/log": export_schemas.LOG,
 }
 """Topic and schema. A take and a recognition are logged when they end."""
 
@@ -84,7 +84,7 @@ class _Event:
     content: dict[str, Any]
 
 
-def write_session(
+def write_bag(
     target: Path,
     recording: Recording,
     recognitions: Sequence[NamedRecognition] = (),

@@ -24,7 +24,7 @@ QUALITY = {"crf": "18", "preset": "veryfast", "bf": "0"}
 step do it exactly. The landmarks come from the recording's own pictures, not from this copy."""
 
 STREAM_QUALITY = "23"
-"""x264's own default: the copy in a session is to be looked at, not to be measured in."""
+"""x264's own default: the copy in a bag is to be looked at, not to be measured in."""
 
 KEY_FRAMES = "50"
 """Frames from one that stands alone to the next: a player that jumps decodes two seconds at most,

@@ -43,7 +43,7 @@ from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.evaluate import evaluate
 from app.cli.extract import extract
 from app.cli.language_code import code
-from app.cli.mcap_file import name_recognitions, save_session
+from app.cli.mcap_file import name_recognitions, save_bag
 from app.cli.phrase import phrase
 from app.cli.recognition_report import build_report
 from app.cli.robots.robot import robot
@@ -249,7 +249,7 @@ def recognize(
         recording, results = recognize_clip(path, span, reading, recognizer, spotter)
         if mcap is not None:
             named = name_recognitions(loaded, expected, results)
-            save_session(mcap, path, topic, recording, named, loaded.trigger)
+            save_bag(mcap, path, topic, recording, named, loaded.trigger)
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results:
             explain_absence(path, recording, recognizer, without_salutes=spots)

@@ -19,8 +19,8 @@ from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
 from app.recognition.errors import OsgError
 
 if TYPE_CHECKING:
-    from app.api.extraction.footage import Extracted, Footage, FootageProgress
-    from app.api.extraction.worker_processes import Workers
+    from app.api.workers.footage import Extracted, Footage, FootageProgress
+    from app.api.workers.worker_processes import Workers
 
 SOME_FAILED = 1
 """Exit code when a clip could not be read; the others are done."""
@@ -50,8 +50,8 @@ def extract(
 ) -> None:
     """Find the landmarks of all clips of a folder, once; what was done before is skipped."""
     settings = settings_of(None)
-    from app.api.extraction.footage import Footage
-    from app.api.extraction.worker_processes import Workers
+    from app.api.workers.footage import Footage
+    from app.api.workers.worker_processes import Workers
 
     clips = list(_clips(folder.absolute()))
     if not clips:

@@ -9,14 +9,14 @@ from pathlib import Path
 from rich.filesize import decimal
 
 from app.bags import bag_and_topic
-from app.bags.session_writer import NamedRecognition, write_session
+from app.bags.export_writer import NamedRecognition, write_bag
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import ReadOptions, source_of
 from app.recognition import Language, Recognition, Recording, Take
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 
-def save_session(
+def save_bag(
     target: Path,
     clip: Path,
     topic: str | None,
@@ -50,7 +50,7 @@ def save_session(
         source = source_of(path, options.topic)
         video = source.playable_video(path, options, Path(made, "video"))
         with progress_bar(target.name) as advance:
-            write_session(
+            write_bag(
                 partial,
                 recording,
                 recognitions,

@@ -1,7 +1,7 @@
 """Robot events: one frozen dataclass for each kind of event that the runtime emits, in order.
 
-The fields are also the keys of the JSON line of an event: `app.robot.messages` derives the JSON
-models and the published JSON Schema from the annotations and from the first line of each docstring.
+The fields are also the keys of the JSON line of an event: `app.robot.event_messages` derives the
+JSON models and the published JSON Schema from the annotations and the first line of each docstring.
 Every `time` is in seconds of the source's clock, of the frame after which the event was known.
 """
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from statistics import median
 from time import perf_counter
 
-from app.api.extraction.footage import Footage
-from app.api.extraction.worker_processes import Workers
+from app.api.workers.footage import Footage
+from app.api.workers.worker_processes import Workers
 from app.resources import samples_dir
 from app.settings import Settings
 

@@ -21,7 +21,7 @@ def workers_of(parent: int, command: str = "record") -> list[int]:
             status = (entry / "stat").read_text().rpartition(")")[2].split()
         except OSError:
             continue
-        is_worker = b"app.api.extraction.worker" in words and command.encode() in words
+        is_worker = b"app.api.workers.worker" in words and command.encode() in words
         if is_worker and int(status[1]) == parent and status[0] != "Z":
             found.append(int(entry.name))
     return found

@@ -20,7 +20,7 @@ from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import Running, running, until
-from tests.api.workers import linux, workers_of
+from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.recognition.damaged_clips import write_clip
 

@@ -11,11 +11,11 @@ import av
 import numpy as np
 import pytest
 
-from app.bags.session_writer import CHANNELS, NamedRecognition, write_session
+from app.bags.export_writer import CHANNELS, NamedRecognition, write_bag
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
 from app.recognition.errors import BagError
 from tests.api.recordings import recording_of
-from tests.bags.sessions import checked
+from tests.bags.exports import checked
 from tests.posed import BY_BELLY, posed_recording
 from tests.recognition.damaged_clips import write_clip
 
@@ -51,7 +51,7 @@ def test_everything_of_the_session_is_in_it_at_its_time(
         times=recording.poses.time.tolist(),
     )
     path = tmp_path / "session.mcap"
-    write_session(path, recording, recognitions, video=video, name="dive.mp4")
+    write_bag(path, recording, recognitions, video=video, name="dive.mp4")
     found = checked(path)
     assert set(found) == set(CHANNELS) - {"/log"}
     nanoseconds = [round(time * 1e9) for time in recording.poses.time]
@@ -87,7 +87,7 @@ def test_the_video_is_a_stream_of_single_frames_that_any_decoder_reads(
 ) -> None:
     video = write_clip(tmp_path / "clip.mp4", frames=60, size=(66, 50), codec="mpeg4")
     path = tmp_path / "session.mcap"
-    write_session(path, recording, video=video)
+    write_bag(path, recording, video=video)
     messages = checked(path)["/video"]
     codec = av.CodecContext.create("h264", "r")
     assert isinstance(codec, av.VideoCodecContext)
@@ -113,7 +113,7 @@ def test_warnings_are_logged_and_nobody_in_view_is_told(tmp_path: Path) -> None:
     )
     path = tmp_path / "session.mcap"
     done: list[tuple[int, int]] = []
-    write_session(path, empty, progress=lambda *steps: done.append(steps))
+    write_bag(path, empty, progress=lambda *steps: done.append(steps))
     found = checked(path)
     ((time, log),) = found["/log"]
     assert (time, log["message"], log["level"]) == (0, "no person in any frame", 3)
@@ -127,13 +127,13 @@ def test_without_what_writes_mcap_the_command_to_install_it_is_told(
 ) -> None:
     monkeypatch.setitem(sys.modules, "mcap.writer", None)
     with pytest.raises(BagError, match="pip install"):
-        write_session(tmp_path / "session.mcap", recording)
+        write_bag(tmp_path / "session.mcap", recording)
     assert not (tmp_path / "session.mcap").exists()
 
 
 def test_takes_lie_between_the_triggers_of_the_language(tmp_path: Path) -> None:
     file = tmp_path / "session.mcap"
-    write_session(file, posed_recording("circle-by-belly"), trigger=BY_BELLY)
+    write_bag(file, posed_recording("circle-by-belly"), trigger=BY_BELLY)
     found = checked(file)
     (take,) = takes_in(posed_recording("circle-by-belly"), trigger=BY_BELLY)
     assert [content["start"] for _, content in found["/takes"]] == pytest.approx([take.start])

@@ -21,7 +21,7 @@ from tests.bags.bag_files import (
     write_bag,
     zipped,
 )
-from tests.bags.sessions import checked
+from tests.bags.exports import checked
 from tests.command_line import OsgStudio
 from tests.documented import documented
 from tests.recognition.damaged_clips import picture

@@ -29,7 +29,7 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.messages import (
+from app.robot.event_messages import (
     MESSAGES,
     SCHEMA_FILE,
     format_line,

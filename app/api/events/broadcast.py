@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 from uuid import uuid4
 
-from app.store.messages import Messages
+from app.store.server_messages import Messages
 
 Result = TypeVar("Result")
 
@@ -83,7 +83,7 @@ class Subscription:
 
 
 Join = Callable[[Callable[[str], None], Callable[[], None]], Messages]
-"""Opens the messages of all servers, see `app.store.messages.open_messages`."""
+"""Opens the messages of all servers, see `app.store.server_messages.open_messages`."""
 
 
 class Broadcast:

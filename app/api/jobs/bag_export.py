@@ -1,4 +1,4 @@
-"""Session export job: writes a clip and its recognitions as MCAP in a worker process."""
+"""Bag export job: writes a clip and its recognitions as MCAP in a worker process."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from pathlib import Path
 from typing import Literal
 
 from app.api.events.broadcast import Event
-from app.api.extraction.clip_files import ClipFiles
-from app.api.extraction.messages import Failed, Finished, Progressed
-from app.api.extraction.session_request import SessionRequest
-from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
+from app.api.workers.bag_export_request import BagExportRequest
+from app.api.workers.clip_files import ClipFiles
+from app.api.workers.worker_messages import Failed, Finished, Progressed
+from app.api.workers.worker_processes import Workers
 
 
-class SessionExportJob:
-    """Writes one session; every export is a job and a file of its own.
+class BagExportJob:
+    """Writes one bag; every export is a job and a file of its own.
 
     Parameters
     ----------
     clip_id
         The clip, for the events.
     request
-        The content of the session.
+        The content of the bag.
     target
         The file to write.
     files
@@ -37,7 +37,7 @@ class SessionExportJob:
     def __init__(
         self,
         clip_id: str,
-        request: SessionRequest,
+        request: BagExportRequest,
         target: Path,
         files: ClipFiles,
         workers: Workers,
@@ -66,9 +66,7 @@ class SessionExportJob:
     async def run(self, report: Report) -> Finished | Failed:
         """Write the file, and return how that ended."""
         request = self._request.model_dump_json().encode()
-        async with aclosing(
-            self._workers.write_session(request, self._target, self._files)
-        ) as steps:
+        async with aclosing(self._workers.write_bag(request, self._target, self._files)) as steps:
             async for step in steps:
                 if not isinstance(step, Progressed):
                     return step

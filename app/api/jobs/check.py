@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 from app.api.events.broadcast import Event
-from app.api.extraction.messages import Failed, Progressed
-from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
+from app.api.workers.worker_messages import Failed, Progressed
+from app.api.workers.worker_processes import Workers
 
 CACHED_REPORTS = 64
 """Reports kept ready: one of twenty gestures is about a hundred kilobytes of Python objects."""

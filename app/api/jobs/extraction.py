@@ -8,12 +8,12 @@ from dataclasses import asdict
 from typing import Literal
 
 from app.api.events.broadcast import Event
-from app.api.extraction.clip_files import ClipFiles
-from app.api.extraction.messages import Failed, Finished, Progressed
-from app.api.extraction.worker_processes import Workers
 from app.api.jobs.job import Progress, Report
 from app.api.jobs.persistence import persist
 from app.api.jobs.time_left import TimeLeft
+from app.api.workers.clip_files import ClipFiles
+from app.api.workers.worker_messages import Failed, Finished, Progressed
+from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions, source_named
 from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound
 

@@ -9,12 +9,12 @@ from contextlib import suppress
 from starlette.concurrency import run_in_threadpool
 
 from app.api.events.broadcast import Broadcast
-from app.api.extraction.worker_processes import Workers
 from app.api.jobs.extraction import ExtractionJob, job_event
 from app.api.jobs.fair_queue import FairQueue
 from app.api.jobs.job import JobCancelled
 from app.api.jobs.persistence import persist
 from app.api.jobs.runner import JobRunner
+from app.api.workers.worker_processes import Workers
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 
 RENEW_SECONDS = 10.0

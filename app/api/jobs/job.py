@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
 from app.api.events.broadcast import Event
-from app.api.extraction.messages import Pose
+from app.api.workers.worker_messages import Pose
 
 Result = TypeVar("Result", covariant=True)
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from app.api.events.broadcast import Broadcast
-from app.api.extraction.messages import Failed
 from app.api.jobs.job import Job, JobCancelled, Progress
 from app.api.observation.logs import FIELDS, job_id
 from app.api.observation.metrics import Metrics
+from app.api.workers.worker_messages import Failed
 
 Result = TypeVar("Result")
 

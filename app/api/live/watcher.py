@@ -13,7 +13,7 @@ import av
 import numpy as np
 from pydantic import BaseModel
 
-from app.api.extraction.messages import Pose, pose_in
+from app.api.workers.worker_messages import Pose, pose_in
 from app.recognition import OsgError, PoseSequence, Recognition, Recognizer, Take
 from app.recognition.errors import VideoError
 from app.recognition.estimation.estimator import PoseEstimator

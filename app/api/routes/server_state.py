@@ -1,4 +1,4 @@
-"""Route of the health check: version and state of the model files."""
+"""Route of the server's state: version and state of the model files."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from fastapi import APIRouter
 
 from app import __version__
 from app.api.http.problems import problem_responses
-from app.api.http.schemas.health import Health
+from app.api.http.schemas.server_state import Health
 from app.recognition.models import installed_models
 
 router = APIRouter(tags=["health"])

@@ -10,7 +10,7 @@ import numpy as np
 
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
 from app.api.services.clip_ranges import demonstration_in, surroundings_in
-from app.api.services.clip_views import shows_pictures
+from app.api.services.clip_responses import shows_pictures
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer

@@ -18,7 +18,6 @@ from starlette.requests import HTTPConnection
 
 from app.api.events.broadcast import Broadcast
 from app.api.events.broadcast import Event as BroadcastEvent
-from app.api.extraction.worker_processes import Workers
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.job import progress_of
@@ -26,6 +25,7 @@ from app.api.jobs.runner import JobRunner
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.sample_library import Samples
+from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
 from app.settings import Settings
@@ -45,8 +45,8 @@ from app.store import (
     UploadStore,
     identity_of,
 )
-from app.store.messages import open_messages
 from app.store.models import now
+from app.store.server_messages import open_messages
 
 CACHED_LANGUAGES = 16
 """Languages and recognisers kept ready; each takes a few megabytes."""

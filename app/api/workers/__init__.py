@@ -1,1 +1,1 @@
-"""Worker processes that read clips: a file that crashes a decoder ends its own job only."""
+"""Worker processes of jobs, on this machine or a cluster: a crash ends the job of one file only."""

@@ -1,4 +1,4 @@
-"""Request for a session export: what the server passes to the worker that writes MCAP."""
+"""Request for a bag export: what the server passes to the worker that writes MCAP."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from app.bags.session_writer import NamedRecognition
+from app.bags.export_writer import NamedRecognition
 from app.recognition import Recognition
 from app.recognition.language.trigger_schema import TriggerEntry
 
 
-class SessionRecognition(BaseModel):
+class ExportedRecognition(BaseModel):
     """A recognition to write; `result` is `Recognition.to_dict`."""
 
     start: float
@@ -33,9 +33,9 @@ class SessionRecognition(BaseModel):
         )
 
 
-class SessionRequest(BaseModel):
-    """The content of a session, besides the clip's own files; `trigger` cuts its takes."""
+class BagExportRequest(BaseModel):
+    """The content of a bag export, besides the clip's own files; `trigger` cuts its takes."""
 
     clip: str
-    recognitions: list[SessionRecognition]
+    recognitions: list[ExportedRecognition]
     trigger: TriggerEntry | None = None

@@ -10,7 +10,7 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
 from uuid import uuid4
 
-from app.api.extraction.executor import ExecutorLost, Lines
+from app.api.workers.executor import ExecutorLost, Lines
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -50,7 +50,7 @@ class DaskCluster:
     @asynccontextmanager
     async def start(self, arguments: Sequence[str]) -> AsyncIterator[Lines]:
         """Run a process on a machine that has a place; see `Executor`."""
-        from app.api.extraction.dask_task import end_worker, run_worker
+        from app.api.workers.dask_task import end_worker, run_worker
 
         client, task = await self._connected(), f"osg-{uuid4().hex}"
         queue = self._lines[task] = asyncio.Queue()
@@ -118,14 +118,14 @@ class _TaskLines:
 
     async def wait_for_start(self) -> None:
         """Wait until the task has a place and begins."""
-        from app.api.extraction.dask_task import STARTED
+        from app.api.workers.dask_task import STARTED
 
         while (await self._next())[0] != STARTED:
             pass
 
     async def readline(self) -> bytes:
         """Return the next line; see `Lines`."""
-        from app.api.extraction.dask_task import ENDED, LINE
+        from app.api.workers.dask_task import ENDED, LINE
 
         while True:
             kind, line = await self._next()
@@ -136,7 +136,7 @@ class _TaskLines:
             # Begun again on another machine: what it tells is told again.
 
     async def _next(self) -> tuple[str, str]:
-        from app.api.extraction.dask_task import ENDED
+        from app.api.workers.dask_task import ENDED
 
         while True:
             with contextlib.suppress(TimeoutError):

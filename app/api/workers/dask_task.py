@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from distributed import get_worker
 
-from app.api.extraction.executor import COMMAND, PACKAGE_PARENT
+from app.api.workers.executor import COMMAND, PACKAGE_PARENT
 
 STARTED, LINE, ENDED = "started", "line", "ended"
 """What a message is about."""

@@ -11,7 +11,7 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from pathlib import Path
 from typing import Final, Protocol
 
-COMMAND: Final = ("-m", "app.api.extraction.worker")
+COMMAND: Final = ("-m", "app.api.workers.worker")
 """Arguments of Python that start a worker process."""
 
 PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]

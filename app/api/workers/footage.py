@@ -9,8 +9,8 @@ from contextlib import aclosing
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.api.extraction.messages import Failed, Progressed
-from app.api.extraction.worker_processes import Workers
+from app.api.workers.worker_messages import Failed, Progressed
+from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions, source_of
 from app.evaluation.kept_recordings import kept_recording
 from app.recognition.errors import OsgError

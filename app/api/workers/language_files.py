@@ -8,7 +8,7 @@ from pathlib import Path
 
 from pydantic import BaseModel
 
-from app.api.extraction.messages import Finished, Message, Progressed
+from app.api.workers.worker_messages import Finished, Message, Progressed
 from app.recognition import Language
 from app.recognition.health.check import check_health
 from app.recognition.language.osg_reference import from_reference, is_reference

@@ -1,4 +1,4 @@
-"""Worker process: ``python -m app.api.extraction.worker COMMAND ...``, see `_arguments`.
+"""Worker process: ``python -m app.api.workers.worker COMMAND ...``, see `_arguments`.
 
 It opens one clip or language file, writes one JSON object per line to stdout (see `messages`), and
 ends as soon as its stdin is closed, which happens when the server dies.
@@ -20,9 +20,11 @@ from pathlib import Path
 
 import cv2
 
-from app.api.extraction.clip_files import ClipFiles
-from app.api.extraction.language_files import check_language, import_language
-from app.api.extraction.messages import (
+from app.api.workers.bag_export_request import BagExportRequest
+from app.api.workers.clip_files import ClipFiles
+from app.api.workers.language_files import check_language, import_language
+from app.api.workers.pictures import Poster, Thumbnails, write_poster
+from app.api.workers.worker_messages import (
     Failed,
     Finished,
     Message,
@@ -32,9 +34,7 @@ from app.api.extraction.messages import (
     dump,
     pose_in,
 )
-from app.api.extraction.pictures import Poster, Thumbnails, write_poster
-from app.api.extraction.session_request import SessionRequest
-from app.bags.session_writer import write_session as write_mcap
+from app.bags.export_writer import write_bag as write_mcap
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, UnsupportedFile, source_named
 from app.recognition.errors import LanguageError, ModelError, OsgError, VideoError
 from app.recognition.estimation import create_estimator
@@ -106,10 +106,10 @@ def find_landmarks(
     steps.save(found.recording, target)
 
 
-def write_session(request: Path, session: Path, files: ClipFiles, report: Report) -> None:
-    """Write a clip's session as MCAP, with the recognitions that the request names."""
+def write_bag(request: Path, bag: Path, files: ClipFiles, report: Report) -> None:
+    """Write a clip and the recognitions that the request names as MCAP."""
     video: Path | None = None
-    wanted = SessionRequest.model_validate_json(request.read_bytes())
+    wanted = BagExportRequest.model_validate_json(request.read_bytes())
     reported = 0.0
 
     def progress(done: int, total: int) -> None:
@@ -124,7 +124,7 @@ def write_session(request: Path, session: Path, files: ClipFiles, report: Report
         video = files.video
     named = [each.named() for each in wanted.recognitions]
     write_mcap(
-        session,
+        bag,
         recording,
         named,
         video=video,
@@ -293,7 +293,7 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
                 chosen.source, chosen.file, chosen.options, chosen.target, chosen.threads, report
             )
         case "session":
-            write_session(chosen.request, chosen.file, _files(chosen), report)
+            write_bag(chosen.request, chosen.file, _files(chosen), report)
         case "import":
             import_language(chosen.file, chosen.target, chosen.name, report)
         case "check":

@@ -10,17 +10,17 @@ from collections.abc import AsyncGenerator, Iterator
 from contextlib import aclosing
 from pathlib import Path
 
-from app.api.extraction.clip_files import ClipFiles
-from app.api.extraction.executor import Executor, ExecutorLost, Lines, LocalProcesses
-from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.api.observation.metrics import Metrics
+from app.api.workers.clip_files import ClipFiles
+from app.api.workers.executor import Executor, ExecutorLost, Lines, LocalProcesses
+from app.api.workers.worker_messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
 from app.settings import DASK, Settings
 
 Step = Progressed | Finished | Failed
 
 MOST_SHORT_WORKERS = 2
-"""Processes that probe files or write sessions at the same time: a hundred uploads must not be as
+"""Processes that probe files or write bags at the same time: a hundred uploads must not be as
 many processes."""
 
 MOST_CHECKS = 2
@@ -118,14 +118,14 @@ class Workers:
             async for step in steps:
                 yield step
 
-    async def write_session(
-        self, request: bytes, session: Path, files: ClipFiles
+    async def write_bag(
+        self, request: bytes, bag: Path, files: ClipFiles
     ) -> AsyncGenerator[Step, None]:
-        """Write a clip's session as MCAP; `request` is a `SessionRequest` as JSON."""
-        with _scratch_folder(session.parent) as folder:
+        """Write a clip and its recognitions as MCAP; `request`: a `BagExportRequest` as JSON."""
+        with _scratch_folder(bag.parent) as folder:
             wanted = folder / "request.json"
             await asyncio.to_thread(wanted.write_bytes, request)
-            command = ["session", str(wanted), str(session), *files.arguments]
+            command = ["session", str(wanted), str(bag), *files.arguments]
             messages = self._run(command, folder, self._settings.worker_silence_seconds)
             async with self._short, aclosing(_steps(messages)) as steps:
                 async for step in steps:
@@ -243,7 +243,7 @@ def _failure(refusal: Refusal) -> Failed:
 def _executor_of(settings: Settings, here: LocalProcesses) -> Executor:
     if settings.executor is None:
         return here
-    from app.api.extraction.dask_cluster import DaskCluster
+    from app.api.workers.dask_cluster import DaskCluster
 
     return DaskCluster(settings.executor.removeprefix(DASK))
 

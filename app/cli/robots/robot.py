@@ -37,7 +37,7 @@ from app.robot import (
     create_listener,
     open_source,
 )
-from app.robot.messages import format_line
+from app.robot.event_messages import format_line
 from app.robot.publishing.publisher import Network, Publisher, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES

@@ -33,7 +33,7 @@ from app.recognition.decision.rejection import (
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
-from app.recognition.decision.views import View, Views
+from app.recognition.decision.virtual_views import View, Views
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning

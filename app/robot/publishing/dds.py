@@ -20,6 +20,7 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
+from app.robot.event_messages import format_line
 from app.robot.events import (
     Event,
     LanguageChanged,
@@ -28,7 +29,6 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.messages import format_line
 from app.robot.publishing.dds_messages import GestureRecognition, Header, Phrase, String, Time
 
 NAMESPACE: Final = "osg"

@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from app import __version__
 from app.recognition.errors import PublishError
+from app.robot.event_messages import to_message
 from app.robot.events import (
     Event,
     Heartbeat,
@@ -21,7 +22,6 @@ from app.robot.events import (
     SourceOpened,
     SourceRestored,
 )
-from app.robot.messages import to_message
 
 MOST_EVENTS: Final = 50
 """Events that the page shows; older ones are in the log."""

@@ -1,1 +1,1 @@
-"""Tests of `app.api.extraction`."""
+"""Tests of `app.api.workers`."""

@@ -17,8 +17,8 @@ import pytest
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.routes.clips.test_extraction_jobs import JOBS
 from tests.api.running import assert_problem, until
+from tests.api.running_workers import alive, linux, workers_of
 from tests.api.serving import SERVE, served
-from tests.api.workers import alive, linux, workers_of
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line, square, wedge

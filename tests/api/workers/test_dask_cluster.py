@@ -14,7 +14,7 @@ from app.recognition import Recording
 from app.settings import Settings
 from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, until
-from tests.api.workers import linux, workers_of
+from tests.api.running_workers import linux, workers_of
 from tests.dask_cluster import Cluster, dask_cluster
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool

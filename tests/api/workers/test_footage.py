@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.api.extraction.footage import Extracted, Footage, FootageProgress
-from app.api.extraction.worker_processes import Workers
+from app.api.workers.footage import Extracted, Footage, FootageProgress
+from app.api.workers.worker_processes import Workers
 from app.recognition import Recording
 from app.settings import Settings
 from tests.api.running import until

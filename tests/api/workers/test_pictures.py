@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from app.api.extraction.pictures import (
+from app.api.workers.pictures import (
     POSTER_WIDTH,
     THUMBNAIL_HEIGHT,
     Thumbnails,

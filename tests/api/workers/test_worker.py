@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.api.extraction.messages import pose_in
+from app.api.workers.worker_messages import pose_in
 from app.recognition import Recording
 from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.slow
 
-COMMAND = [sys.executable, "-m", "app.api.extraction.worker"]
+COMMAND = [sys.executable, "-m", "app.api.workers.worker"]
 
 
 def answers(*arguments: str | Path) -> list[dict[str, Any]]:

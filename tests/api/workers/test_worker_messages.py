@@ -2,7 +2,15 @@
 
 import pytest
 
-from app.api.extraction.messages import Failed, Finished, Message, Probed, Progressed, dump, parse
+from app.api.workers.worker_messages import (
+    Failed,
+    Finished,
+    Message,
+    Probed,
+    Progressed,
+    dump,
+    parse,
+)
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ from tests.bags.bag_files import (
     write_bag,
     zipped,
 )
-from tests.bags.sessions import checked
+from tests.bags.exports import checked
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop

@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from app.cli.application import command_line
 from app.cli.robots.ros_arguments import split_ros_arguments
-from app.robot.messages import read_schema
+from app.robot.event_messages import read_schema
 from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT

@@ -14,7 +14,7 @@ from osg_interfaces.msg import GestureRecognition, Phrase
 from std_msgs.msg import String
 
 from app.robot import PhraseHeard, TakeRecognized, TakeRejected
-from app.robot.messages import MESSAGES, format_line
+from app.robot.event_messages import MESSAGES, format_line
 from osg_ros.topics.stamps import to_nanoseconds
 from tests.robot.publishing_robot import list_round_events
 from tests.ros2 import workspace

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.api.extraction.messages import TopicSeen
+from app.api.workers.worker_messages import TopicSeen
 from app.store import JobStatus
 
 

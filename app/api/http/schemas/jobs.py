@@ -6,7 +6,7 @@ from datetime import datetime
 
 from pydantic import BaseModel, Field
 
-from app.api.extraction.messages import Pose
+from app.api.workers.worker_messages import Pose
 from app.store import JobStatus
 
 

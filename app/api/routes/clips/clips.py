@@ -22,8 +22,8 @@ from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import require_quota, turn_of
+from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
-from app.api.services.clip_views import view_clip
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
 from app.store import ClipStore, ClipWithJob, JobStatus

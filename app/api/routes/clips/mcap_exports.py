@@ -1,4 +1,4 @@
-"""Route of the session export: a clip and its recognitions as one MCAP file."""
+"""Route of the bag export: a clip and its recognitions as one MCAP file."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.messages import Failed
-from app.api.extraction.session_request import SessionRecognition, SessionRequest
 from app.api.http.problems import ProblemError, problem_responses
+from app.api.jobs.bag_export import BagExportJob
 from app.api.jobs.extraction import files_of
 from app.api.jobs.job import JobCancelled
-from app.api.jobs.session_export import SessionExportJob
 from app.api.middleware.shutdown import stopping
 from app.api.services.studio import CurrentStudio, Studio
+from app.api.workers.bag_export_request import BagExportRequest, ExportedRecognition
+from app.api.workers.worker_messages import Failed
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.triggers.trigger import SALUTE
 
@@ -26,7 +26,7 @@ MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""
 
 MOST_RECOGNITIONS = 500
-"""In one session, the newest: as many as `GET /recognitions` lists."""
+"""In one bag, the newest: as many as `GET /recognitions` lists."""
 
 router = APIRouter(prefix="/clips", tags=["clips"])
 
@@ -50,10 +50,10 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
     try:
         files = files_of(studio.clips, clip_id)
         ended = await studio.runner.run(
-            SessionExportJob(clip_id, request, target, files, studio.workers)
+            BagExportJob(clip_id, request, target, files, studio.workers)
         )
         if isinstance(ended, Failed):
-            raise ProblemError(503, ended.code, f"the session cannot be written: {ended.detail}")
+            raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
     except JobCancelled as error:
         target.unlink(missing_ok=True)
         raise stopping() from error
@@ -70,8 +70,8 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
     )
 
 
-def _request(studio: Studio, clip_id: str) -> SessionRequest:
-    """Collect the content of a clip's session."""
+def _request(studio: Studio, clip_id: str) -> BagExportRequest:
+    """Collect the content of a clip's bag."""
     studio.recording(clip_id)  # raises while its poses are not found
     clip = studio.clips.get(clip_id).clip
     records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
@@ -82,11 +82,11 @@ def _request(studio: Studio, clip_id: str) -> SessionRequest:
         if last is None
         else studio.language(studio.languages.get(last.language_id, last.revision)).trigger
     )
-    return SessionRequest(
+    return BagExportRequest(
         clip=clip.name,
         trigger=trigger_to_entry(trigger),
         recognitions=[
-            SessionRecognition(
+            ExportedRecognition(
                 start=record.start,
                 end=record.end,
                 language=studio.languages.get(record.language_id, record.revision).revision.name,

@@ -26,7 +26,7 @@ from app.api.services.gesture_edits import (
     require_free,
 )
 from app.api.services.language_documents import edit_document
-from app.api.services.language_views import announce
+from app.api.services.language_responses import announce
 from app.api.services.studio import CurrentStudio
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError

@@ -8,7 +8,6 @@ from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
-from app.api.extraction.messages import Failed
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
@@ -16,6 +15,7 @@ from app.api.jobs.check import CheckJob
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
 from app.api.services.studio import CurrentStudio, Studio
+from app.api.workers.worker_messages import Failed
 from app.store import LanguageState
 
 router = APIRouter(prefix="/languages", tags=["languages"])

@@ -10,8 +10,6 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
-from app.api.extraction.language_files import ImportedLanguage, read_language
-from app.api.extraction.messages import Failed
 from app.api.http.connection import while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision, revision_tag
@@ -19,8 +17,10 @@ from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name
 from app.api.ingest.multipart import receive_body
 from app.api.services.language_documents import LONGEST_NAME
-from app.api.services.language_views import announce
+from app.api.services.language_responses import announce
 from app.api.services.studio import CurrentStudio, Studio
+from app.api.workers.language_files import ImportedLanguage, read_language
+from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.requirements import find_requirements
 from app.recognition.language.schema import FORMAT, VERSION

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 from app.api.http.problems import problem_responses
 from app.api.services.stored_recognitions import load_recognition, load_situation
 from app.api.services.studio import CurrentStudio
-from app.api.viser_workspaces.views import ViewRequest, view_of
+from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.charts import data_url
 from app.ui.recognition_page import analysis_page

@@ -7,7 +7,7 @@ from fastapi import APIRouter, Response
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.samples import SampleChoice, SampleLanguageView
-from app.api.services.language_views import announce
+from app.api.services.language_responses import announce
 from app.api.services.studio import CurrentStudio
 
 router = APIRouter(prefix="/samples/languages", tags=["samples"])

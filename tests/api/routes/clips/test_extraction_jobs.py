@@ -14,7 +14,7 @@ import pytest
 from app.settings import Settings
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import assert_problem, running, until
-from tests.api.workers import alive, linux, workers_of
+from tests.api.running_workers import alive, linux, workers_of
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
 

@@ -13,7 +13,7 @@ from tests.api.languages import LANGUAGES
 from tests.api.recordings import recording_of
 from tests.api.running import assert_problem
 from tests.bags.bag_files import file_of, published_rows, write_bag
-from tests.bags.sessions import checked
+from tests.bags.exports import checked
 
 pytestmark = pytest.mark.slow
 
