@@ -5,7 +5,7 @@ import { BUSY } from "../clips/busy.js";
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
-import { addToTestSet, removeTake } from "../languages/test-set.js";
+import { addToTestSet, putIntoTestSet, removeTake, runWithNews } from "../languages/test-set.js";
 import { addFiles } from "../upload/upload-list.js";
 
 /** @import { Clip, LabelledTake, PendingClip } from "../core/types.d.ts" */
@@ -130,14 +130,41 @@ export async function workOff() {
     const { clip } = each;
     const expected = meantBy(each);
     try {
-      await addToTestSet([{ clip_id: clip, expected }]);
+      await putIntoTestSet([{ clip_id: clip, expected }]);
+      const kept = state.pending.find(isSame(each));
+      // Before it is recognised, so that it never stands in two rows.
+      forget(clip);
+      if (!kept)
+        await removeClip(clip); // Left out in the meantime.
+      else if (meantBy(kept) !== expected)
+        await putIntoTestSet([{ clip_id: clip, expected: meantBy(kept) }]);
+      await runWithNews();
     } catch (error) {
       if (api.isAway(error)) break; // It is kept for when the server is back.
       complain(error, `Testing ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
+      forget(clip);
     }
-    forget(clip);
   }
   working = false;
+}
+
+/**
+ * @param {PendingClip} pending
+ * @returns {(other: PendingClip) => boolean}
+ */
+const isSame =
+  ({ clip, language }) =>
+  (other) =>
+    other.clip === clip && other.language === language;
+
+/**
+ * Remove the takes of a clip from the test set.
+ *
+ * @param {string} clip
+ */
+async function removeClip(clip) {
+  for (const take of (state.testSet?.takes ?? []).filter(({ clip_id }) => clip_id === clip))
+    await removeTake(take.id);
 }
 
 function ready() {

@@ -41,7 +41,7 @@ export function runTestSet() {
 }
 
 /** Run after a change of the takes, of which a run that is under way does not know. */
-async function runWithNews() {
+export async function runWithNews() {
   await running;
   await runTestSet();
 }
@@ -62,13 +62,24 @@ async function runNow() {
 export const cancelTestRun = () =>
   attempt("Cancelling", () => api.testSets.cancel(state.language ?? ""));
 
+/** @typedef {{ clip_id: string, expected: string, start?: number, end?: number }} LabelledRange */
+
+/**
+ * Add takes, or give those that are there another label; they are not recognised yet.
+ *
+ * @param {LabelledRange[]} takes
+ */
+export async function putIntoTestSet(takes) {
+  show(await api.testSets.add(state.language ?? "", takes));
+}
+
 /**
  * Add takes, or give those that are there another label, and recognise them.
  *
- * @param {{ clip_id: string, expected: string, start?: number, end?: number }[]} takes
+ * @param {LabelledRange[]} takes
  */
 export async function addToTestSet(takes) {
-  show(await api.testSets.add(state.language ?? "", takes));
+  await putIntoTestSet(takes);
   await runWithNews();
 }
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.api.running import Running
 from tests.browser.accessibility import faults
@@ -215,6 +215,43 @@ def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
         expect(section).to_contain_text("since the revision before: 1 take worse")
         expect(section.get_by_role("row").filter(has_text="other way.mp4")).to_contain_text("worse")
         assert faults(page) == []
+
+
+@pytest.mark.parametrize("change", ["left out", "labelled"])
+def test_a_change_while_a_clip_is_added_to_the_test_holds(
+    open_page: OpenPage, server: Running, library: Library, change: str
+) -> None:
+    name = f"{change} in haste.mp4"
+    clip = add_clip(server, "line", name=name)
+    page = open_page(health_of(library), scene=False)
+    held: list[Route] = []
+
+    def hold_first(route: Route) -> None:
+        if clip in (route.request.post_data or "") and not held:
+            held.append(route)
+        else:
+            route.fallback()
+
+    page.route("**/test-set", hold_first)
+    page.get_by_text("Choose from the").click()
+    page.get_by_role("checkbox", name=name).check()
+    page.get_by_role("button", name="Test the chosen clips").click()
+    shows = page.get_by_label(f"What {name} shows")
+    with page.expect_request(lambda request: clip in (request.post_data or "")):
+        shows.select_option("circle")
+    row = page.get_by_role("row").filter(has_text=name)
+    if change == "left out":
+        page.get_by_role("button", name=f"Leave {name} out of the test").click()
+    else:
+        shows.select_option("line")
+    if change == "left out":
+        with page.expect_response(lambda answer: answer.request.method == "DELETE"):
+            held[0].continue_()
+        expect(shows).to_have_count(0)
+    else:
+        held[0].continue_()
+        expect(row).to_contain_text("right: line")
+        expect(shows).to_have_value("line")
 
 
 def test_a_dropped_clip_is_labelled_by_its_name(
