@@ -67,6 +67,16 @@ def pytest_itemcollected(item: pytest.Item) -> None:
     item.add_marker(pytest.mark.flaky(reruns=1))
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Function) -> None:
+    """Begin a second try with a server of its own, on which nothing of the first is left."""
+    if getattr(item, "execution_count", 1) > 1:
+        for definitions in item._fixtureinfo.name2fixturedefs.values():
+            for fixture in definitions:
+                if fixture.scope == "module":
+                    fixture.finish(item._request)  # type: ignore[arg-type]  # passed on alone
+
+
 # Not for the whole session: Playwright keeps an event loop running in this thread, and no test of
 # another package could start its own.
 @pytest.fixture(scope="package")
