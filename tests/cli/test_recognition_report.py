@@ -36,8 +36,7 @@ def test_the_schema_is_one() -> None:
     ("clip", "options"),
     [
         ("line-test-1", []),
-        ("line-test-1", ["--profile", "paper"]),
-        ("line-test-1", ["--expected", "circle"]),
+        ("line-test-1", ["--profile", "paper", "--expected", "circle"]),
         ("ordinary-movement", ["--without-salutes"]),
     ],
 )

@@ -36,10 +36,10 @@ FIRST_SIGHT_TOLERANCE = 1e-4
 COUNT_TOLERANCE = 0.01
 """Share of the detections by which the two may differ."""
 
-STRETCH, STRETCHES, APART = 5, 4, 3
+STRETCH, STRETCHES, APART = 5, 2, 3
 """Frames until everything tracked is forgotten, how often, and how many frames apart they lie."""
 
-TRACKED_FRAMES = 40
+TRACKED_FRAMES = 24
 """Frames per clip of the comparison without forgetting."""
 
 NOISE_MARGIN = 2.0
