@@ -42,7 +42,7 @@ test: $(VENV)/.development models  ## Check and test everything
 
 # For every change: style, types, layers, the page, and the tests that take no video, browser or process
 # of their own.
-check: $(VENV)/.development models  ## Check the source and run the quick tests, in about two minutes
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in two to three minutes
 	@$(MAKE) --jobs 2 lint quick
 
 quick: $(VENV)/.development $(PAGE_TOOLS) models

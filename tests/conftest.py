@@ -25,6 +25,12 @@ PROCESSORS = ("avx2", "avx512")
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
 
 
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Count what runs on PostgreSQL, a process of its own, among the slow tests."""
+    if "postgresql" in item.name:
+        item.add_marker("slow")
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Begin with the files that take long, so that no worker is left alone with one in the end.
 

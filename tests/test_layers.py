@@ -94,6 +94,7 @@ def test_the_command_line_starts_without_the_web_app_and_what_options_want() -> 
     assert "recognize" in finished.stdout
 
 
+@pytest.mark.slow
 def test_recognising_does_not_load_the_model_converter() -> None:
     # onnx and its protobuf cost a robot 60 MB and a second, and are used once, at installation.
     finished = run_without({"onnx"}, "import app.recognition")

@@ -66,6 +66,7 @@ def events(server: Running) -> Iterator[Iterator[tuple[str, dict[str, Any]]]]:
         yield read()
 
 
+@pytest.mark.slow
 def test_a_change_on_one_server_reaches_the_pages_and_lists_of_the_other(
     servers: tuple[Running, Running],
 ) -> None:

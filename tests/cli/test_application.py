@@ -29,6 +29,7 @@ def a_language(labels: Sequence[str] = ("sign",)) -> Language:
     return Language(name="pool", gestures=gestures)
 
 
+@pytest.mark.slow
 def test_version_is_printed_by_the_installed_command() -> None:
     run = subprocess.run(
         [sys.executable, "-m", "app", "--version"], capture_output=True, text=True, check=True
@@ -145,6 +146,7 @@ def test_exported_models_install_elsewhere_without_network(
     assert {line.split("\t")[1] for line in osg_studio("models").out.splitlines()} == {"ok"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_a_shell_completes_commands_and_options(shell: str) -> None:
     # Otherwise the shell is looked for among the parents of the process, which tests may lack.

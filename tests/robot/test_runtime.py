@@ -45,6 +45,7 @@ def estimator(installed_models: None) -> Iterator[PoseEstimator]:
         yield opened
 
 
+@pytest.mark.slow
 def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "dive.mp4", frames=6)
     looked_at: list[float] = []
@@ -67,6 +68,7 @@ def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: 
     ]
 
 
+@pytest.mark.slow
 def test_a_damaged_clip_is_looked_at_as_far_as_it_goes_and_told(
     estimator: PoseEstimator, tmp_path: Path
 ) -> None:

@@ -33,6 +33,7 @@ def test_a_profile_of_nothing_is_empty() -> None:
     assert StageProfile().joules_per_frame("grab") is None
 
 
+@pytest.mark.slow
 def test_every_frame_passes_every_stage(installed_models: None, tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "dive.mp4", frames=WARM_UP + 5)
     counters = tmp_path / "intel-rapl:0"

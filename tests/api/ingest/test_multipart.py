@@ -88,12 +88,14 @@ def test_a_body_that_is_no_form_is_415(client: httpx.Client, small_clip: Path) -
     assert_problem(answer, 415, "unsupported_media_type")
 
 
+@pytest.mark.slow
 def test_small_fields_beside_the_file_are_ignored(client: httpx.Client, small_clip: Path) -> None:
     files = {"file": ("dive.mp4", small_clip.read_bytes())}
     answer = client.post(CLIPS, files=files, data={"note": "first dive"})
     assert answer.status_code == 202
 
 
+@pytest.mark.slow
 @pytest.mark.withstands(row="H06")
 def test_a_name_that_looks_like_a_path_is_only_shown(
     client: httpx.Client, settings: Settings, small_clip: Path

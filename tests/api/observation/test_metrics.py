@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from tests.api.running import Running, until
@@ -36,6 +37,7 @@ def test_requests_are_counted_by_route_and_never_by_what_a_client_invents(
     assert counts["osg_request_seconds_count", ("GET", "other")] == 3
 
 
+@pytest.mark.slow
 def test_jobs_queue_disk_and_connections_are_told(
     client: httpx.Client, server: Running, small_clip: Path
 ) -> None:

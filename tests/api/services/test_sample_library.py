@@ -44,6 +44,7 @@ def test_samples_are_brought_once_and_later_ones_are_added(
         assert [language["name"] for language in client.get(LANGUAGES).json()] == ["Table 2"]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("samples")
 def test_a_sample_clip_is_added_like_an_upload(settings: Settings) -> None:
     with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:

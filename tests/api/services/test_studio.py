@@ -27,6 +27,7 @@ def test_a_second_server_on_one_sqlite_file_is_refused(tmp_path: Path) -> None:
     check_store(two)
 
 
+@pytest.mark.slow
 def test_several_servers_share_one_postgresql(tmp_path: Path, postgres: Cluster) -> None:
     url = postgres.new_database()
     one, two = (

@@ -88,6 +88,7 @@ def soft_edges(strokes: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     return np.where(strokes, 255, np.where(np.roll(strokes, 1, axis=0), 20, 0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("paint", [red_on_white, green_on_black, grey_on_black, soft_edges])
 def test_strokes_are_found_whatever_their_colour_and_background(
     language: Language, paint: Callable[[np.ndarray[Any, Any]], Any]

@@ -53,6 +53,7 @@ def test_the_licence_goes_with_the_models(exported: Path) -> None:
     assert "Apache License" in (exported / "LICENSE.mediapipe.txt").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_robot_installs_an_export_without_the_converters_libraries(
     exported: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -60,6 +61,7 @@ def test_a_robot_installs_an_export_without_the_converters_libraries(
     assert output_of_robot(exported) == str(tmp_path / "pose_detection.onnx")
 
 
+@pytest.mark.slow
 def test_converting_without_the_libraries_says_which_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -139,6 +139,7 @@ def test_changes_are_noted_by_name_and_refusals_are_not(
         assert len(admin.get(f"{API}/audit", params={"limit": 1}).json()) == 1
 
 
+@pytest.mark.slow
 def test_an_upload_in_parts_is_noted_once(client: httpx.Client, small_clip: Path) -> None:
     content = small_clip.read_bytes()
     headers = TUS | {"Upload-Length": str(len(content))}
@@ -158,6 +159,7 @@ def upload(client: httpx.Client, clip: Path) -> httpx.Response:
     return client.post(CLIPS, files={"file": ("dive.mp4", clip.read_bytes())})
 
 
+@pytest.mark.slow
 def test_a_quota_of_clips_is_kept_and_deleting_makes_room(
     guarded: Running, tokens: TokenFile, small_clip: Path
 ) -> None:
@@ -175,6 +177,7 @@ def test_a_quota_of_clips_is_kept_and_deleting_makes_room(
         assert upload(admin, small_clip).status_code == 202
 
 
+@pytest.mark.slow
 def test_uploads_at_the_same_time_share_one_quota(
     guarded: Running, tokens: TokenFile, small_clip: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -194,6 +197,7 @@ def test_uploads_at_the_same_time_share_one_quota(
         assert len(editor.get(CLIPS).json()) == 1
 
 
+@pytest.mark.slow
 def test_a_quota_of_bytes_counts_what_is_kept_and_what_is_under_way(
     guarded: Running, tokens: TokenFile, small_clip: Path
 ) -> None:
@@ -213,6 +217,7 @@ def test_a_quota_of_bytes_counts_what_is_kept_and_what_is_under_way(
         assert upload(editor, small_clip).status_code == 202
 
 
+@pytest.mark.slow
 def test_a_quota_of_the_settings_is_for_every_name(settings: Settings, small_clip: Path) -> None:
     limited = settings.model_copy(update={"quota_clips": 1})
     tokens = TokenFile(settings.tokens)

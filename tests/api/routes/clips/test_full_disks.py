@@ -45,6 +45,7 @@ def fill(disk: Path, left: int) -> Path:
     return ballast
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("left", [0, 8 * 1024, 64 * 1024])
 @pytest.mark.withstands(row="H22")
 def test_a_full_disk_costs_no_byte_of_an_upload(
@@ -82,6 +83,7 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
         assert opened.execute("PRAGMA quick_check").fetchone() == ("ok",)
 
 
+@pytest.mark.slow
 @pytest.mark.withstands(row="H22")
 def test_a_full_database_costs_no_byte_of_an_upload(
     settings: Settings, small_clip: Path, monkeypatch: pytest.MonkeyPatch

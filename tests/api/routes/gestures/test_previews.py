@@ -110,6 +110,7 @@ def test_a_new_gesture_needs_a_demonstration(client: httpx.Client, language_id: 
     assert_problem(preview(client, language_id, "none"), 404, "not_found")
 
 
+@pytest.mark.slow
 def test_the_outlook_is_that_of_the_health_report(client: httpx.Client) -> None:
     language_id = imported(client)
     seen = outlook(client, language_id, "circle").json()

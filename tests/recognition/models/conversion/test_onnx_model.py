@@ -80,6 +80,7 @@ def test_a_diver_gives_the_same_numbers(shared_data: Path, name: ModelName) -> N
     assert_equal(run_onnx(model_path(name).read_bytes(), image), original_results(name, image))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("installed_models_dir")
 def test_the_persons_mask_is_left_out_with_all_that_only_it_needs(schemas: Schemas) -> None:
     original = tflite_of("pose_landmark_full")
