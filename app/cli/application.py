@@ -279,7 +279,7 @@ def show_results(
         typer.echo(json.dumps(report, allow_nan=False))
         return
     for (take, result), explanation in zip_longest(results, explanations):
-        show_recognition(take, result)
+        show_recognition(take, result, recognizer.language.trigger)
         if explanation is not None:
             show_explanation(explanation)
 

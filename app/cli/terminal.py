@@ -17,18 +17,19 @@ from rich.text import Text
 from app.recognition import Recognition, Take
 from app.recognition.explanation.differences import Difference
 from app.recognition.explanation.explanation import Explanation
+from app.recognition.triggers.trigger import Trigger
 
 people = Console(stderr=True)
 """Console for text for people; stdout is for data."""
 
 
-def show_recognition(take: Take, result: Recognition) -> None:
-    """Print the label on stdout and the vote table on stderr."""
+def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
+    """Print the label on stdout and the vote table on stderr; `trigger` ends the takes."""
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
     if not take.closed:
         people.print(
-            f"the take from {take.start:.2f} s has no second salute: its end is set to "
-            f"{take.end:.2f} s"
+            f"the take from {take.start:.2f} s has no second {trigger.noun}: its end is set "
+            f"to {take.end:.2f} s"
         )
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")

@@ -9,6 +9,7 @@ import viser
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.wording import humanize
+from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui import charts
 from app.ui.style import PANEL_STYLE, SHEET_HIDDEN
 
@@ -43,7 +44,7 @@ class Inspector:
         self._panel = gui.add_panel(visible=False)
         with self._panel.add_tab("Tracks", viser.Icon.CHART_LINE):
             self._tracks = gui.add_html("")
-            self._salute = gui.add_html("")
+            self._trigger = gui.add_html("")
         self._panel.dock_right()
         self._style = gui.add_html(SHEET_HIDDEN)
         self._panel.set_width(PANEL_WIDTH)
@@ -55,9 +56,13 @@ class Inspector:
         self._style.content = "" if visible else SHEET_HIDDEN
 
     def show_tracks(
-        self, trajectory: Trajectory | None, start: float, salute: tuple[FloatArray, FloatArray]
+        self,
+        trajectory: Trajectory | None,
+        start: float,
+        held: tuple[FloatArray, FloatArray],
+        trigger: Trigger,
     ) -> None:
-        """Plot the salient landmarks' paths and the salute's confidence.
+        """Plot the salient landmarks' paths and the confidence of the trigger.
 
         Parameters
         ----------
@@ -65,8 +70,10 @@ class Inspector:
             Of the salient landmarks; None when nothing moves.
         start
             Seconds in the clip at which it begins.
-        salute
+        held
             Times in seconds and confidence in [0, 1] of the frames on display.
+        trigger
+            What begins and ends a take; without a held one there is nothing to plot.
 
         """
         self._tracks.content = (
@@ -74,13 +81,21 @@ class Inspector:
             if trajectory is None
             else "".join(_path_chart(trajectory, name, start) for name in trajectory.landmarks)
         )
-        self._salute.content = charts.line_chart(
-            "Vulcan salute, confidence",
-            salute[0],
-            [charts.Curve("above 0.5 opens or closes a take", salute[1], "var(--osg-x)")],
-            bounds=(0.0, 1.0),
-            height=56,
-        )
+        self._trigger.content = "" if trigger.spots else draw_trigger(*held, trigger)
+
+
+def draw_trigger(time: FloatArray, held: FloatArray, trigger: Trigger) -> str:
+    """Draw the confidence in [0, 1] of what is held before and after a gesture, as SVG.
+
+    `time` is in seconds of the clip, `(T,)` like `held`.
+    """
+    return charts.line_chart(
+        f"{'Vulcan salute' if trigger == SALUTE else trigger.noun.capitalize()}, confidence",
+        time,
+        [charts.Curve("above 0.5 opens or closes a take", held, "var(--osg-x)")],
+        bounds=(0.0, 1.0),
+        height=56,
+    )
 
 
 def _path_chart(trajectory: Trajectory, landmark: str, start: float) -> str:

@@ -21,6 +21,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_held_hands
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
+from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui.back_wall import Wall
 from app.ui.camera import CUBE, FLAT, CameraPose, ease
 from app.ui.direction_marks import mark_direction, mark_gesture
@@ -74,6 +75,11 @@ class WorkspaceView:
     language: Language | None = None
     salient: tuple[str, ...] | None = None
 
+    @property
+    def trigger(self) -> Trigger:
+        """What begins and ends a take: the language's trigger, a salute without one."""
+        return SALUTE if self.language is None else self.language.trigger
+
 
 @dataclass(frozen=True, eq=False)
 class Range:
@@ -85,14 +91,14 @@ class Range:
         Their poses; at least one frame.
     first
         Index of the first one in the recording.
-    salute
-        ``(T,)`` the salute's confidence.
+    held
+        ``(T,)`` confidence in [0, 1] that what begins or ends a take is held.
 
     """
 
     poses: PoseSequence
     first: int
-    salute: FloatArray
+    held: FloatArray
 
     @classmethod
     def of(cls, view: WorkspaceView) -> Range:
@@ -115,7 +121,8 @@ class Range:
             )
         frames = slice(int(inside[0]), int(inside[-1]) + 1)
         cut = poses.between(float(poses.time[frames][0]), float(poses.time[frames][-1]))
-        return cls(cut, frames.start, np.asarray(view.recording.salute, np.float64)[frames])
+        held = np.maximum(*view.trigger.score(poses, view.recording.salute))
+        return cls(cut, frames.start, np.asarray(held, np.float64)[frames])
 
 
 class Workspace:
@@ -230,7 +237,7 @@ class Workspace:
         self.playback.load(
             view.recording.poses.time.tolist(), first + initial_frame(len(times)), (first, last)
         )
-        self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.salute))
+        self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.held), view.trigger)
         if before is None or _pictures_of(before) != _pictures_of(view):
             self._decode(view, first, last)
 
@@ -347,8 +354,8 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 
 
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
-    """Return what of a view decides which frames and trails are shown."""
-    return view.video, view.start, view.end, view.salient
+    """Return what of a view decides which frames, trails and curves are shown."""
+    return view.video, view.start, view.end, view.salient, view.trigger
 
 
 def _pictures_of(view: WorkspaceView) -> tuple[object, ...]:

@@ -38,7 +38,7 @@ def test_a_view_shows_the_frames_of_its_range(tmp_path: Path) -> None:
     assert shown.poses.time[0] >= view.start
     assert shown.poses.time[-1] <= view.end
     assert time[shown.first] == shown.poses.time[0]
-    assert len(shown.salute) == len(shown.poses)
+    assert len(shown.held) == len(shown.poses)
     assert len(Range.of(replace(view, start=None, end=None)).poses) == len(time)
 
 

@@ -25,6 +25,13 @@ const HELD = { salute: "Vulcan salute", pose: "arm pose", gesture: "gesture", no
 export const heldName = (language) => HELD[language?.trigger?.kind ?? "salute"];
 
 /**
+ * What ends a take, as the noun of a sentence: "salute", "arm pose" or "gesture".
+ *
+ * @param {Language | null} language
+ */
+export const endName = (language) => heldName(language).replace("Vulcan ", "");
+
+/**
  * The salutes of which a range contains a part: `[start, end]` in seconds of the clip.
  *
  * @param {{ time: number[], salute: number[] }} timeline

@@ -5,7 +5,7 @@ import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
-import { heldName, salutesIn, saluteWarning, takesLanguage } from "../clips/salutes.js";
+import { endName, heldName, salutesIn, saluteWarning, takesLanguage } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
@@ -89,7 +89,12 @@ export function take({ language, gesture, drawn, pick }) {
       "label",
       { className: "check" },
       transit,
-      h("span", {}, "Leave out the hand\u2019s transit from and to the salute", transitText),
+      h(
+        "span",
+        {},
+        `Leave out the hand\u2019s transit from and to the ${endName(state.gestures)}`,
+        transitText,
+      ),
     ),
   );
   const note = h("p", { className: "dim" });

@@ -1,6 +1,6 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
-import { takesLanguage } from "../clips/salutes.js";
+import { endName, takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
@@ -42,7 +42,7 @@ export const withMarks = (thumbnail) =>
  */
 export const shortFault = ({ salutes, fault }) =>
   salutes
-    ? `contains ${plural(salutes, "salute")}`
+    ? `contains ${plural(salutes, endName(currentLanguage()))}`
     : fault?.startsWith("is cut short")
       ? "cut short"
       : "contains rest";

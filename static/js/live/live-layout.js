@@ -15,7 +15,12 @@ const choice = (id, text) => h("button", { type: "button", id, "aria-pressed": "
  * @param {boolean} checked
  */
 const check = (id, text, title, checked) =>
-  h("label", { className: "check", title }, h("input", { type: "checkbox", id, checked }), text);
+  h(
+    "label",
+    { className: "check", title },
+    h("input", { type: "checkbox", id, checked }),
+    h("span", { id: `${id}-text` }, text),
+  );
 
 const STEPS = [
   ["salute", "Salute"],
@@ -66,7 +71,7 @@ function controls() {
     check(
       "live-autostop",
       "Stop after the closing salute",
-      "Ends a recording after the closing salute, without a click",
+      "Ends a recording when a take ends, without a click",
       true,
     ),
     h("span", { className: "spacer" }),
@@ -104,8 +109,8 @@ export function panel() {
         h("p", { id: "live-instruction", role: "status" }),
         h(
           "label",
-          { className: "live-salute" },
-          "Salute",
+          { className: "live-salute", id: "live-meter" },
+          h("span", { id: "live-held" }, "Salute"),
           h("meter", { id: "live-salute", min: 0, max: 1, low: SALUTE, value: 0 }),
         ),
       ),

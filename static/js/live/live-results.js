@@ -2,6 +2,8 @@
 
 import { byId, h } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
+import { endName } from "../clips/salutes.js";
+import { state } from "../core/state.js";
 import { go } from "../core/views.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
@@ -47,7 +49,7 @@ function entry(result, clip, clock) {
       "span",
       {},
       clip ? moment(result.start) : clock,
-      result.closed ? "" : ", no closing salute",
+      result.closed ? "" : `, no closing ${endName(state.gestures)}`,
       " \u00b7 ",
       text,
     ),

@@ -2,13 +2,19 @@
 
 import { byId, h } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
+import { endName } from "../clips/salutes.js";
 import { state as page } from "../core/state.js";
 
 /** @import { Seen } from "./live-messages.d.ts" */
 
-const WITH_TRIGGER = "Show a gesture as the language\u2019s trigger asks.";
-
 const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
+
+const HOW_TO = {
+  salute: "Hold a Vulcan salute, show the gesture, salute again.",
+  pose: "Hold the pose of the arms, show the gesture, hold the closing pose.",
+  gesture: "Show the gesture that begins a take, then gestures, then the one that ends it.",
+  none: "Show a gesture, with rest before and after it.",
+};
 
 /** @type {[string, string]} */
 const NOBODY = ["", "Nobody is in the picture."];
@@ -50,6 +56,16 @@ function situation({ pose, salute, held, state }) {
   return pose ? ["", "Waiting for a Vulcan salute."] : NOBODY;
 }
 
+/** Name what begins and ends a take by the language's trigger; no steps where nothing is held. */
+export function nameTrigger() {
+  const kind = page.gestures?.trigger?.kind ?? "salute";
+  const held = kind === "salute" ? "Salute" : "Pose";
+  for (const id of ["live-step-salute", "live-step-closing", "live-held"])
+    byId(id).textContent = held;
+  byId("live-autostop-text").textContent = `Stop after the closing ${endName(page.gestures)}`;
+  byId("live-steps").hidden = byId("live-meter").hidden = kind === "gesture" || kind === "none";
+}
+
 /**
  * Show where the diver is between the salutes; null while nothing is watched.
  *
@@ -58,12 +74,7 @@ function situation({ pose, salute, held, state }) {
 export function drawState(answer) {
   const [step, text] = answer
     ? situation(answer)
-    : [
-        "",
-        page.gestures?.trigger
-          ? WITH_TRIGGER
-          : "Hold a Vulcan salute, show the gesture, salute again.",
-      ];
+    : ["", HOW_TO[page.gestures?.trigger?.kind ?? "salute"]];
   const words = byId("live-instruction");
   if (words.textContent !== text) words.textContent = text;
   for (const each of byId("live-steps").children) {

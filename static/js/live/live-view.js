@@ -11,7 +11,7 @@ import { countDown, record } from "./camera-recording.js";
 import { panel } from "./live-layout.js";
 import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
 import { openLink } from "./live-socket.js";
-import { drawSpeed, drawState } from "./live-status.js";
+import { drawSpeed, drawState, nameTrigger } from "./live-status.js";
 import { drawSeen, overlay } from "./pose-overlay.js";
 import {
   CAMERA_LOST,
@@ -30,6 +30,15 @@ import {
 /** @import { Listening, Recognized, Seen, Trouble } from "./live-messages.d.ts" */
 
 const COUNT = 3; // s: from the button to where the diver stands.
+const FIRST = "Nothing recognised yet. What is recognised appears here.";
+
+const BETWEEN = {
+  salute: "Between two salutes",
+  pose: "Between two poses of the arms",
+  gesture: "Between the gestures that begin and end a take",
+  none: "Anywhere",
+};
+
 const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
 const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
 
@@ -190,7 +199,7 @@ function listening({ language, gestures, problem: trouble }) {
   const text = trouble
     ? `Takes are found, but none is recognised: ${trouble}.`
     : language
-      ? `${state.gestures?.trigger ? "By its trigger" : "Between two salutes"}: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
+      ? `${BETWEEN[state.gestures?.trigger?.kind ?? "salute"]}: any of ${gestures === 1 ? "one gesture" : `${gestures} gestures`} of \u201c${language}\u201d.`
       : "Takes are found, but no language is chosen to recognise them.";
   byId("live-language").textContent = text;
 }
@@ -329,7 +338,7 @@ function wire() {
       recognition: null,
     });
   };
-  byId("live-clear").onclick = () => clearResults("Show a gesture between two salutes.");
+  byId("live-clear").onclick = () => clearResults(FIRST);
 }
 
 const when = () => state.view === "live";
@@ -351,10 +360,14 @@ bind({
  */
 export function open(section) {
   section.append(...panel());
-  clearResults("Show a gesture between two salutes.");
+  clearResults(FIRST);
   wire();
   follow(["clips", "clip", "source"], drawClipChoice);
   follow(["language"], ({ language }) => link?.listen(language));
+  follow(["gestures"], () => {
+    nameTrigger();
+    if (!link) drawState(null);
+  });
   follow(["view"], ({ view }) => {
     if (view !== "live") stop();
   });

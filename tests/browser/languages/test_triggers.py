@@ -54,6 +54,12 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(page.locator("#outcome")).to_contain_text("circle")
 
+    live = open_page({"view": "live", "language": library.language}, scene=False)
+    expect(live.get_by_text("Hold the pose of the arms, show the gesture")).to_be_visible()
+    expect(live.locator("#live-steps")).to_have_text("PoseGesturePose")
+    expect(live.get_by_text("Stop after the closing arm pose")).to_have_count(1)
+    assert faults(live) == []
+
     page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
     expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
