@@ -37,6 +37,28 @@ function heldPose() {
 }
 
 /**
+ * A gesture of the language as trigger, with those of now chosen.
+ *
+ * @returns {Choice}
+ */
+function gestureChoice() {
+  const { gestures, trigger } = currentLanguage();
+  const labels = gestures.map(({ label }) => label);
+  const { start_label: begins = "", stop_label: ends = "" } = trigger ?? {};
+  const chosen = {
+    start_label: begins || labels[0],
+    stop_label: ends === begins ? "" : ends,
+  };
+  return {
+    name: "gesture",
+    text: "A gesture of the language",
+    more: labels.length ? "What is shown between two of them counts." : "It has no gesture yet.",
+    draft: labels.length ? { ...NO_POSES, ...chosen, kind: "gesture" } : null,
+    labels,
+  };
+}
+
+/**
  * What can be chosen; without a draft it needs a range of a clip first.
  *
  * @returns {Choice[]}
@@ -69,14 +91,7 @@ function choices() {
       more: `The pose of now begins a take, and this one ends it. ${where}`,
       draft: pose && { ...NO_POSES, kind: "pose", stop: pose },
     });
-  const labels = currentLanguage().gestures.map(({ label }) => label);
-  found.push({
-    name: "gesture",
-    text: "A gesture of the language",
-    more: labels.length ? "What is shown between two of them counts." : "It has no gesture yet.",
-    draft: labels.length ? { ...NO_POSES, kind: "gesture", start_label: labels[0] } : null,
-    labels,
-  });
+  found.push(gestureChoice());
   found.push({
     name: "none",
     text: "Nothing",
@@ -103,20 +118,36 @@ async function save(draft) {
 }
 
 /**
- * The gesture that begins and ends a take.
+ * The gestures that begin and end a take; the same one unless another is chosen.
  *
  * @param {Choice} choice
  */
 function labelChoice({ labels = [], draft }) {
-  const select = h(
-    "select",
-    { "aria-label": "Gesture that begins and ends a take" },
-    labels.map((label) => h("option", { value: label }, label)),
-  );
-  select.onchange = () => {
-    if (draft) draft.start_label = select.value;
+  /** @param {"start_label" | "stop_label"} end */
+  const choose = (end) => {
+    const same = end === "stop_label" ? [h("option", { value: "" }, "the same")] : [];
+    const select = h(
+      "select",
+      {
+        "aria-label":
+          end === "start_label" ? "Gesture that begins a take" : "Gesture that ends a take",
+      },
+      same,
+      labels.map((label) => h("option", { value: label, selected: label === draft?.[end] }, label)),
+    );
+    select.onchange = () => {
+      if (draft) draft[end] = select.value;
+    };
+    return select;
   };
-  return select;
+  return h(
+    "span",
+    { className: "trigger-gestures" },
+    "begins ",
+    choose("start_label"),
+    " ends ",
+    choose("stop_label"),
+  );
 }
 
 /** Open the dialog that sets the trigger of the language on display. */

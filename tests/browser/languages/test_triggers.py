@@ -11,7 +11,7 @@ from playwright.sync_api import expect
 from tests.api.running import Running
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, add_clip
+from tests.browser.library import Library, add_clip, library_of
 from tests.posed import posed_clip, posed_recording
 
 pytestmark = pytest.mark.slow
@@ -64,3 +64,23 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
     page.keyboard.press("Control+z")
     expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
     expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
+
+
+def test_one_gesture_begins_takes_and_another_one_ends_them(
+    open_page: OpenPage, server: Running
+) -> None:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        library = library_of(server, client, "by gestures")
+        page = open_page(library.address, scene=False)
+        page.get_by_role("button", name="Trigger", exact=True).click()
+        dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
+        dialog.get_by_role("radio", name="A gesture of the language").check()
+        dialog.get_by_label("Gesture that begins a take").select_option("line")
+        dialog.get_by_label("Gesture that ends a take").select_option("circle")
+        assert faults(page) == []
+        dialog.get_by_role("button", name="Save").click()
+        expect(dialog).to_be_hidden()
+        expect(page.get_by_text("between the gestures 'line' and 'circle'").first).to_be_visible()
+        page.get_by_role("button", name="Trigger", exact=True).click()
+        expect(dialog.get_by_label("Gesture that begins a take")).to_have_value("line")
+        expect(dialog.get_by_label("Gesture that ends a take")).to_have_value("circle")
