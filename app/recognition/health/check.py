@@ -34,7 +34,11 @@ from app.recognition.health.report import (
 )
 from app.recognition.health.second_divers import advise_second_divers
 from app.recognition.health.simulated_trials import SimulatedTrials
-from app.recognition.health.trigger_health import check_trigger, list_trigger_findings
+from app.recognition.health.trigger_health import (
+    check_trigger,
+    check_trigger_gestures,
+    list_trigger_findings,
+)
 from app.recognition.health.viewing_angles import check_angles, find_blind_angles
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
@@ -144,7 +148,11 @@ def check_health(
     if known_signs is not None:
         compare = _count_steps(progress, "known signs", len(gestures))
         findings += find_known_signs(language, known_signs, compare)
-    trigger = check_trigger(language.trigger, seed=seed)
+    trigger = (
+        check_trigger_gestures(language, [each.missed for each in gestures], read)
+        if language.trigger.kind == "gesture"
+        else check_trigger(language.trigger, seed=seed)
+    )
     findings += list_trigger_findings(language.trigger, trigger, language.gestures)
     findings += _profile_findings(language)
     compared = neighbours.shape[1] - 1

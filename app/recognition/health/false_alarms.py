@@ -23,12 +23,15 @@ class FalseAlarm:
         Index of the nearest gesture; None where no landmark that a gesture needs moves.
     taken
         Whether it was recognised as that gesture.
+    seconds
+        Duration of the movement.
 
     """
 
     kind: str
     nearest: int | None
     taken: bool
+    seconds: float
 
 
 def find_false_alarms(
@@ -44,12 +47,13 @@ def find_false_alarms(
     """
     found = []
     for movement in simulate_background_motion(count, seed=seed):
+        seconds = float(movement.trajectory.time[-1])
         try:
             result = recognizer.recognize_trajectory(condense(movement.trajectory))
         except PoseError:  # no landmark that a gesture needs moves
-            found.append(FalseAlarm(movement.kind, None, taken=False))
+            found.append(FalseAlarm(movement.kind, None, False, seconds))
         else:
             nearest = recognizer.language.labels.index(result.nearest)
-            found.append(FalseAlarm(movement.kind, nearest, result.label is not None))
+            found.append(FalseAlarm(movement.kind, nearest, result.label is not None, seconds))
         advance()
     return tuple(found)

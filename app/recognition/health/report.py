@@ -163,7 +163,7 @@ class HealthReport:
     neighbours
         Number of nearest gestures that each one is compared with; None: with all of them.
     trigger
-        Rates of the trigger where that is a pose of the arms.
+        Rates of the trigger where that is a pose of the arms or a gesture.
 
     """
 

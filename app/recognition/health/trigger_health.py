@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.false_alarms import FalseAlarm
 from app.recognition.health.finding import Finding
+from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.salute import ENTER_SCORE, HeldTrigger
@@ -45,7 +48,8 @@ class TriggerHealth:
     words
         The trigger, for people.
     missed
-        Rate of other people whose pose is not seen; of two poses, of the worse one.
+        Rate of other people whose pose is not seen, or whose gesture is not recognised; of two, of
+        the worse one.
     false_per_hour
         Times that ordinary movement begins a take, in an hour of arms that move all the time.
     set_off_by
@@ -89,6 +93,37 @@ def check_trigger(trigger: Trigger, *, seed: int = 0) -> TriggerHealth | None:
     )
 
 
+def check_trigger_gestures(
+    language: Language, missed: Sequence[RateEstimate | None], alarms: Sequence[FalseAlarm]
+) -> TriggerHealth | None:
+    """Estimate the rates of a trigger from those of its gestures; None unless it is gestures.
+
+    Parameters
+    ----------
+    language
+        The language of G gestures.
+    missed
+        By gesture the rate of its takes that are not recognised as it; None where unknown.
+    alarms
+        Ordinary movements, and what they were recognised as.
+
+    """
+    trigger = language.trigger
+    ends = [language.labels.index(label) for label in trigger.labels]
+    rates = [rate for index in ends if (rate := missed[index]) is not None]
+    if not rates or not alarms:
+        return None
+    begins = language.labels.index(trigger.start_label)
+    begun = Counter(alarm.kind for alarm in alarms if alarm.taken and alarm.nearest == begins)
+    seconds = sum(alarm.seconds for alarm in alarms)
+    return TriggerHealth(
+        words=trigger.words,
+        missed=max(rates, key=lambda each: each.rate),
+        false_per_hour=begun.total() * SECONDS_AN_HOUR / seconds,
+        set_off_by=tuple(kind for kind, _ in begun.most_common()),
+    )
+
+
 def list_trigger_findings(
     trigger: Trigger, health: TriggerHealth | None, gestures: Sequence[Gesture]
 ) -> Iterator[Finding]:
@@ -99,18 +134,23 @@ def list_trigger_findings(
             "is recognised as a gesture more often than between triggers"
         )
         yield Finding("untriggered", (), message)
-    if health is None or trigger.start is None:
+    if health is None:
         return
+    posed = trigger.kind == "pose"
     if health.missed.rate > MOST_MISSED:
         message = (
             f"the trigger's pose is not seen of {health.missed.rate:.0%} of other people: choose "
             "one with the hands farther from where they usually are"
+            if posed
+            else f"the trigger's gesture is not recognised in {health.missed.rate:.0%} of takes: "
+            "choose another gesture, or add a second diver's demonstration of it"
         )
         yield Finding("trigger_missed", (), message, below_bar=True)
     if health.false_per_hour > MOST_AN_HOUR:
         message = (
-            f"ordinary movement holds the trigger's pose about {health.false_per_hour:.0f} times "
-            f"in an hour of moving arms: {', '.join(health.set_off_by)}"
+            f"ordinary movement {'holds' if posed else 'is read as'} the trigger's {trigger.noun} "
+            f"about {health.false_per_hour:.0f} times in an hour of moving arms: "
+            f"{', '.join(health.set_off_by)}"
         )
         yield Finding("trigger_accidental", (), message)
     poses = [pose for pose in (trigger.start, trigger.stop) if pose is not None]

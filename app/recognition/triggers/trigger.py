@@ -105,8 +105,8 @@ class Trigger:
 
     @property
     def noun(self) -> str:
-        """What a diver holds, such as "salute"."""
-        return "pose of the arms" if self.kind == "pose" else "salute"
+        """What a diver shows before and after a gesture: "salute" without another trigger."""
+        return {"pose": "pose of the arms", "gesture": "gesture"}.get(self.kind, "salute")
 
     @property
     def landmarks(self) -> tuple[str, ...]:

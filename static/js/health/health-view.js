@@ -265,14 +265,14 @@ const reportOf = ({ gestures, health }) =>
   health && health.id === gestures?.id ? health.report : null;
 
 /**
- * The rates of a trigger of the arms as a further sentence; empty for another trigger.
+ * The rates of a trigger as a further sentence; empty for salutes and without a trigger.
  *
  * @param {HealthReport} report
  */
 function triggerText({ trigger }) {
   if (!trigger) return "";
   const { missed, false_per_hour: often } = trigger;
-  return `. The trigger\u2019s pose is missed in ${percent(missed.rate)} of trials, and set off ${Math.round(often)} times in an hour of moving arms`;
+  return `. The trigger is missed in ${percent(missed.rate)} of trials, and set off ${Math.round(often)} times in an hour of moving arms`;
 }
 
 /** Go to the test with clips, which stands below the report. */

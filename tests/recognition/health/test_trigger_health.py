@@ -6,7 +6,13 @@ import numpy as np
 
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
-from app.recognition.health.trigger_health import check_trigger, list_trigger_findings
+from app.recognition.health.false_alarms import FalseAlarm
+from app.recognition.health.trigger_health import (
+    check_trigger,
+    check_trigger_gestures,
+    list_trigger_findings,
+)
+from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.triggers.arm_pose import ArmPose
 from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
 from tests.posed import BY_BELLY, head_pose, posed_language, posed_recording
@@ -52,7 +58,35 @@ def test_a_gesture_that_holds_the_pose_would_end_its_take() -> None:
     assert codes(BY_HEAD, apart) == []
 
 
-def test_only_poses_have_rates() -> None:
+def test_a_trigger_of_gestures_has_the_rates_of_these() -> None:
+    trigger = Trigger("gesture", start_label="circle", stop_label="wedge")
+    report = check_health(replace(posed_language(), trigger=trigger), takes=10)
+    rates = {each.label: each.missed for each in report.gestures}
+    assert report.trigger is not None
+    assert report.trigger.words == trigger.words
+    assert report.trigger.missed in rates.values()
+    assert report.trigger.missed.rate == max(each.rate for each in rates.values() if each)
+    circle = next(each for each in report.gestures if each.label == "circle")
+    assert set(report.trigger.set_off_by) == set(circle.set_off_by)
+    assert (report.trigger.false_per_hour > 0) is bool(circle.set_off_by)
+
+
+def test_a_gesture_that_is_missed_or_made_by_chance_is_a_bad_trigger() -> None:
+    language = replace(posed_language(), trigger=Trigger("gesture", start_label="circle"))
+    missed = [RateEstimate.of_count(3, 10), None]
+    alarms = [FalseAlarm("checking a gauge", 0, True, 10.0), FalseAlarm("waving", 1, True, 10.0)]
+    health = check_trigger_gestures(language, missed, alarms)
+    assert health is not None
+    assert health.false_per_hour == 180
+    assert health.set_off_by == ("checking a gauge",)
+    found = list(list_trigger_findings(language.trigger, health, language.gestures))
+    assert [each.code for each in found] == ["trigger_missed", "trigger_accidental"]
+    assert found[0].message.startswith("the trigger's gesture is not recognised in 30% of takes")
+    assert check_trigger_gestures(language, [None, None], alarms) is None
+    assert check_trigger_gestures(posed_language(), missed, alarms) is None
+
+
+def test_a_salute_has_no_rates() -> None:
     assert check_trigger(SALUTE) is None
     assert codes(SALUTE) == []
     assert codes(NO_TRIGGER) == ["untriggered"]
