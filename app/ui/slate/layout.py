@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil
 from typing import Final
 
@@ -11,9 +11,12 @@ import cv2
 import numpy as np
 
 from app.recognition import Gesture, Language
+from app.recognition.features.hand_image import APART
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.language.file import seal
 from app.recognition.language.short_code import short_code
+from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
 from app.recognition.triggers.arm_pose import ArmPose
@@ -59,6 +62,21 @@ HAND: Final[tuple[tuple[Point, Point], ...]] = (
 PALM: Final[tuple[Point, ...]] = (
     (0.29, 0.55), (0.71, 0.55), (0.73, 0.82), (0.64, 1.0), (0.38, 1.0), (0.28, 0.82),
 )  # fmt: skip
+
+
+HAND_SHARE = 0.7
+"""Share of a figure that held hands fill."""
+
+FINGER_WIDTH = 0.3
+"""Width of a finger in sizes of its hand, so that fingers side by side stay apart."""
+
+KNUCKLES: Final = ("index_finger", "middle_finger", "ring_finger", "pinky")
+
+PALM_OUTLINE: Final = tuple(
+    HAND_LANDMARKS.index(name)
+    for name in ("wrist", "thumb_cmc", *(f"{each}_mcp" for each in KNUCKLES))
+)
+"""Landmarks around the palm, the wrist first."""
 
 
 def lay_out(language: Language) -> Page:
@@ -156,7 +174,10 @@ def _foot(language: Language) -> Iterator[Part]:
     room = width - 2 * MARGIN
     yield Words(text, (MARGIN, height - MARGIN + 1), fit_size(text, 3.2, room), grey=True)
     hands = "R right hand   L left hand"
-    if any(_initial(name) in "RL" for each in language.gestures for name in each.salient):
+    held = any(gesture.is_held for gesture in language.gestures)
+    if held:
+        hands += "   A hand with its fingers is held still for a second."
+    if held or any(_initial(name) in "RL" for each in language.gestures for name in each.salient):
         yield Words(hands, (MARGIN, height - MARGIN - 4), 3.2, grey=True)
 
 
@@ -217,6 +238,9 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
     """Yield the strokes of a gesture in a square, with start dots and arrows."""
     corners = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0))
     yield Path(tuple((left + side * x, top + side * y) for x, y in corners), 0.2)
+    if gesture.trajectory is not None and gesture.is_held:
+        yield from _hands(gesture.trajectory.hands, left, top, side)
+        return
     paths = _paths(gesture)
     if not paths:
         yield from _outline(gesture, left, top, side)
@@ -233,6 +257,23 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
             yield Path(tuple((float(x), float(y)) for x, y in path), width)
             yield from _arrows(path, side)
         yield from _start(name, path[0], side)
+
+
+def _hands(hands: Sequence[HandShape], left: float, top: float, side: float) -> Iterator[Part]:
+    """Yield held hands: palm, fingers and initial; of two, the right hand on the left."""
+    order = sorted(hands, key=lambda hand: hand.side == "left")
+    places = [hand.xy + (APART * index, 0.0) for index, hand in enumerate(order)]
+    every = np.concatenate(places)
+    low, high = every.min(axis=0), every.max(axis=0)
+    scale = HAND_SHARE * side / float((high - low).max())
+    middle, centre = (low + high) / 2, np.array([left + side / 2, top + side / 2])
+    for hand, place in zip(order, places, strict=True):
+        drawn = [(float(x), float(y)) for x, y in (place - middle) * scale + centre]
+        yield Shape(tuple(drawn[index] for index in PALM_OUTLINE))
+        for finger in range(5):
+            joints = [drawn[index] for index in range(1 + 4 * finger, 5 + 4 * finger)]
+            yield Path(tuple(joints), FINGER_WIDTH * scale)
+        yield from _start(hand.side, np.array(drawn[PALM_OUTLINE[0]]), side)
 
 
 def _outline(gesture: Gesture, left: float, top: float, side: float) -> Iterator[Part]:

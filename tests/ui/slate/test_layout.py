@@ -59,6 +59,26 @@ def test_another_trigger_stands_in_the_place_of_the_salute() -> None:
             assert 0 < part.centre[1] < height
 
 
+def test_a_held_hand_is_drawn_with_its_fingers_within_its_square() -> None:
+    signs = Language.load(ROOT / "languages" / "signs-of-divers.json")
+    (two_hands,) = (each for each in signs.gestures if each.label == "cold")
+    page = lay_out(Language("pool", [two_hands]))
+    paths = [part for part in page.parts if isinstance(part, Path)]
+    (frame,) = (part for part in paths if len(part.points) == 5)
+    fingers = [part for part in paths if len(part.points) == 4]
+    assert len(fingers) == 10
+    left, top = frame.points[0]
+    right, bottom = frame.points[2]
+    for finger in fingers:
+        assert all(left < x < right and top < y < bottom for x, y in finger.points)
+    assert [part.text for part in page.parts if isinstance(part, Words) and part.white] == [
+        "R",
+        "L",
+    ]
+    assert any("held still" in text for text in words_of(page))
+    assert not any("held still" in text for text in words_of(lay_out(TABLE_2)))
+
+
 def test_every_stroke_has_a_start_dot_with_its_hand_and_arrows() -> None:
     (sweep,) = (each for each in TABLE_2.gestures if each.label == "sweep")
     page = lay_out(Language("pool", [sweep]))
