@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib.util import find_spec
 from ipaddress import ip_address
 from pathlib import Path
@@ -15,6 +16,9 @@ from app import resources
 from app.recognition.estimation.water import WaterCorrection
 
 MEBIBYTE = 1024 * 1024
+
+S3 = "s3://"
+"""Beginning of the address of a bucket."""
 
 DASK = "dask://"
 """Beginning of the address of a Dask scheduler."""
@@ -40,6 +44,11 @@ def _absolute(path: Path) -> Path:
     return path.expanduser().absolute()
 
 
+S3_ADDRESS = r"^s3://[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/\S*)?$"
+
+S3Address = Annotated[str, Field(pattern=S3_ADDRESS)]
+"""A bucket, and what the names of our objects in it begin with."""
+
 Place = Annotated[Path, AfterValidator(_absolute)]
 """A folder as an absolute path, because worker processes have another working directory."""
 
@@ -58,9 +67,10 @@ class Settings(BaseSettings):
     """SQLAlchemy URL of the database: ``None`` is SQLite inside `data_dir`, for one server;
     ``postgresql+psycopg://USER@HOST/NAME`` is for several."""
 
-    storage: Place | None = None
-    """Folder of the clips' files; ``None`` is ``clips`` in `data_dir`. Several servers on one
-    database share it."""
+    storage: Annotated[S3Address | Place | None, Field(union_mode="left_to_right")] = None
+    """Where the clips' files are, for several servers on one database: a folder that they share, or
+    ``s3://BUCKET/PREFIX``, of which each keeps a copy in its `data_dir`. ``None`` is ``clips`` in
+    `data_dir`."""
 
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
@@ -164,8 +174,13 @@ class Settings(BaseSettings):
 
     @property
     def clips(self) -> Path:
-        """Folder of the clips' files."""
-        return self.storage or self.data_dir / "clips"
+        """Folder of the clips' files on this machine."""
+        return self.storage if isinstance(self.storage, Path) else self.data_dir / "clips"
+
+    @property
+    def objects(self) -> str | None:
+        """Address of the object store of the clips' files; None where their folder is all."""
+        return self.storage if isinstance(self.storage, str) else None
 
     @property
     def database(self) -> str:
@@ -187,6 +202,20 @@ class Settings(BaseSettings):
             raise ValueError(
                 "OSG_EXECUTOR names a Dask cluster, and Dask is not installed here; "
                 'install it with: pip install "osg-studio[dask]"'
+            )
+        return value
+
+    @field_validator("storage", mode="before")
+    @classmethod
+    def _object_store_is_usable(cls, value: object) -> object:
+        if not isinstance(value, str) or not value.startswith(S3):
+            return value
+        if not re.fullmatch(S3_ADDRESS, value):
+            raise ValueError(f"OSG_STORAGE={value!r} names no bucket; give s3://BUCKET/PREFIX")
+        if find_spec("boto3") is None:
+            raise ValueError(
+                "OSG_STORAGE names an object store, and its library is not installed here; "
+                'install it with: pip install "osg-studio[s3]"'
             )
         return value
 

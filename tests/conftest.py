@@ -13,6 +13,7 @@ from app.recognition.errors import ModelError
 from app.recognition.models import ModelName, model_path
 from tests.command_line import OsgStudio
 from tests.postgres import Cluster, postgres_cluster
+from tests.s3 import S3Server, s3_server
 from tests.short_clips import thinned
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -114,3 +115,10 @@ def postgres() -> Iterator[Cluster]:
     """Return a PostgreSQL server; skip where none is installed."""
     with postgres_cluster() as cluster:
         yield cluster
+
+
+@pytest.fixture
+def s3(monkeypatch: pytest.MonkeyPatch) -> Iterator[S3Server]:
+    """Return an S3 server with an empty bucket, as the environment names it; skip without moto."""
+    with s3_server(monkeypatch) as server:
+        yield server

@@ -94,3 +94,19 @@ def test_an_executor_needs_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
         Settings(executor="dask://scheduler:8786")
     with pytest.raises(ValidationError, match="executor"):
         Settings(executor="tcp://scheduler")
+
+
+def test_an_object_store_needs_its_extra_and_a_bucket(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    for wrong in ("s3://", "s3://UPPER", "s3:///prefix", "s3://dives/a b"):
+        with pytest.raises(ValidationError, match="names no bucket"):
+            Settings.model_validate({"storage": wrong})
+    monkeypatch.setattr("app.settings.find_spec", lambda name: object())
+    settings = Settings(storage="s3://dives/pool", data_dir=tmp_path)
+    assert (settings.objects, settings.clips) == ("s3://dives/pool", tmp_path / "clips")
+    monkeypatch.setattr("app.settings.find_spec", lambda name: None)
+    with pytest.raises(ValidationError, match=r'pip install "osg-studio\[s3\]"'):
+        Settings(storage="s3://dives")
+    shared = Settings(storage=tmp_path)
+    assert (shared.objects, shared.clips) == (None, tmp_path)

@@ -23,6 +23,7 @@ from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.models import VIDEO, JobStatus
+from app.store.objects import ObjectStore, SharedFolder
 
 FORMAT = "osg-studio/backup"
 VERSION = 1
@@ -33,7 +34,13 @@ _CLIP_FILE = re.compile(r"clips/[0-9a-f]{32}/[a-z]{1,16}(\.[a-z]{1,5})?")
 _PIECE = 1024 * 1024
 
 
-def write_backup(data_dir: Path, target: Path) -> int:
+def write_backup(
+    data_dir: Path,
+    target: Path,
+    *,
+    clips: Path | None = None,
+    objects: ObjectStore | None = None,
+) -> int:
     """Write a backup of a data folder, also of one that a server uses.
 
     Parameters
@@ -42,6 +49,10 @@ def write_backup(data_dir: Path, target: Path) -> int:
         The folder; its database must be SQLite.
     target
         The file to write; one that exists is replaced once the new one is complete.
+    clips
+        Folder of the clips' files, by default the one in `data_dir`.
+    objects
+        Has the files that are not in that folder.
 
     Returns
     -------
@@ -51,8 +62,11 @@ def write_backup(data_dir: Path, target: Path) -> int:
     ------
     OsgError
         When there is no database, it is damaged, or a file of a clip is missing.
+    StoreUnavailable
+        When the object store does not answer.
 
     """
+    source = _ClipFiles(clips or data_dir / "clips", objects or SharedFolder())
     database = data_dir / DATABASE
     if not database.is_file():
         raise OsgError(f"{data_dir} holds no {DATABASE}; give the data folder with --data-dir")
@@ -61,14 +75,15 @@ def write_backup(data_dir: Path, target: Path) -> int:
         with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
             snapshot = Path(scratch) / DATABASE
             _copy_database(database, snapshot)
-            clips = _files_by_clip(snapshot)
+            kept = _files_by_clip(snapshot)
             # Videos and recordings are compressed already.
             with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
                 digests = {DATABASE: _add(archive, DATABASE, snapshot)}
-                for clip_id, names in clips.items():
+                for clip_id, names in kept.items():
                     for name in names:
                         place = f"clips/{clip_id}/{name}"
-                        digests[place] = _add(archive, place, data_dir / place)
+                        with source.open(clip_id, name, Path(scratch)) as path:
+                            digests[place] = _add(archive, place, path)
                 manifest = {"format": FORMAT, "version": VERSION, "files": digests}
                 archive.writestr(MANIFEST, json.dumps(manifest))
         publish(partial, target)
@@ -79,14 +94,21 @@ def write_backup(data_dir: Path, target: Path) -> int:
         ) from error
     finally:
         partial.unlink(missing_ok=True)
-    return len(clips)
+    return len(kept)
 
 
-def restore_backup(source: Path, data_dir: Path) -> int:
+def restore_backup(
+    source: Path,
+    data_dir: Path,
+    *,
+    clips: Path | None = None,
+    objects: ObjectStore | None = None,
+) -> int:
     """Restore a backup into a data folder that holds no database.
 
     Every file is verified before the database appears, so that a restore that is broken off leaves
-    an empty folder to a server, and can be repeated.
+    an empty folder to a server, and can be repeated. `clips` and `objects` are as of a backup; what
+    an object store has is replaced.
 
     Returns
     -------
@@ -96,12 +118,15 @@ def restore_backup(source: Path, data_dir: Path) -> int:
     ------
     OsgError
         When the file is no backup, is damaged, or the folder holds a database.
+    StoreUnavailable
+        When the object store does not answer.
 
     """
+    objects = objects or SharedFolder()
     if (data_dir / DATABASE).exists():
         raise OsgError(f"{data_dir} holds a database already; restore into an empty folder")
     data_dir.mkdir(parents=True, exist_ok=True, mode=0o700)
-    clips = data_dir / "clips"
+    clips = clips or data_dir / "clips"
     if clips.is_dir() and any(clips.iterdir()):
         raise OsgError(f"{clips} is not empty; restore into an empty folder")
     with (
@@ -116,12 +141,45 @@ def restore_backup(source: Path, data_dir: Path) -> int:
                 if _copy(packed, file) != digest:
                     raise OsgError(f"{name} in {source.name} is damaged; use another backup")
         _check_database(folder / DATABASE)
+        for name in digests:
+            if name != DATABASE:
+                objects.upload(folder / name, name.removeprefix("clips/"))
         if (folder / "clips").is_dir():
             shutil.rmtree(clips, ignore_errors=True)
-            (folder / "clips").replace(clips)
+            # Perhaps to another disk: a rename alone would not do.
+            shutil.move(folder / "clips", clips)
         sync_directory(data_dir)
         publish(folder / DATABASE, data_dir / DATABASE)
     return len({name.split("/")[1] for name in digests if name.startswith("clips/")})
+
+
+class _ClipFiles:
+    """The files of clips, wherever they are.
+
+    Parameters
+    ----------
+    folder
+        Of the clips' files on this machine.
+    objects
+        Has those that are not in it.
+
+    """
+
+    def __init__(self, folder: Path, objects: ObjectStore) -> None:
+        self._folder = folder
+        self._objects = objects
+
+    @contextmanager
+    def open(self, clip_id: str, name: str, scratch: Path) -> Iterator[Path]:
+        """Yield where a file is; in `scratch` for so long if it is not on this machine."""
+        here, fetched = self._folder / clip_id / name, scratch / name
+        if here.is_file() or not self._objects.download(f"{clip_id}/{name}", fetched):
+            yield here
+            return
+        try:
+            yield fetched
+        finally:
+            fetched.unlink()
 
 
 def _copy_database(database: Path, target: Path) -> None:

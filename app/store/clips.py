@@ -14,12 +14,16 @@ from sqlalchemy.exc import IntegrityError
 from sqlmodel import Session, col, func, select
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.clip_folder import ClipFolder
 from app.store.database import Database
 from app.store.errors import NotFound
 from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
+from app.store.objects import ObjectStore, SharedFolder
 
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
 """Files of a clip beside the received one, which is named by its source, and the video."""
+
+_FOUND = RECORDING, POSTER, FILMSTRIP
 
 TOPIC_NEEDED = "topic_needed"
 """Why the job of a clip failed that needs somebody to choose a topic."""
@@ -43,13 +47,17 @@ class ClipStore:
     folder
         Where the files are: ``<folder>/<clip id>/video``, ``recording.npz`` and pictures,
         and uploads under way as ``<folder>/<id>.part``.
+    objects
+        Keeps the files for all servers; by default the folder is what they share.
 
     """
 
-    def __init__(self, database: Database, folder: Path) -> None:
+    def __init__(
+        self, database: Database, folder: Path, objects: ObjectStore | None = None
+    ) -> None:
         self._database = database
+        self._files = ClipFolder(folder, objects or SharedFolder())
         self.folder = folder
-        folder.mkdir(parents=True, exist_ok=True)
 
     def new_partial(self) -> Path:
         """Return a fresh path for a file that is still being received."""
@@ -59,12 +67,18 @@ class ClipStore:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
         A dive recording with several topics waits for `choose_topic`: its job has failed already.
-        The file gets its place first: a row never refers to what is not on disk. When that
-        fails, the file is at `partial` again, so that adding it can be repeated. When two uploads
-        with one idempotency key race, the second one gets the first one's clip.
+        The file gets its place first, in the object store too: a row never refers to what is not
+        kept. When that fails, the file is at `partial` again, so that adding it can be repeated.
+        When two uploads with one idempotency key race, the second one gets the first one's clip.
+
+        Raises
+        ------
+        StoreUnavailable
+            When the object store or the database does not answer.
+
         """
-        target = self.received(clip)
-        target.parent.mkdir()
+        target = self.place(clip.id, clip.source)
+        target.parent.mkdir(exist_ok=True)
         job = Job(clip_id=clip.id, client=client)
         if clip.needs_topic:
             job.status, job.finished = JobStatus.FAILED.value, now()
@@ -73,6 +87,7 @@ class ClipStore:
         try:
             publish(partial, target)
             sync_directory(self.folder)
+            self._files.keep(clip.id, [clip.source])
             with self._database.writing() as session:
                 session.add(clip)
                 session.flush()
@@ -80,7 +95,7 @@ class ClipStore:
         except BaseException as error:
             with suppress(OSError):
                 target.replace(partial)
-            shutil.rmtree(target.parent, ignore_errors=True)
+            self._files.remove([clip.id])
             earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
             if not earlier:
                 raise
@@ -191,9 +206,9 @@ class ClipStore:
         with self._database.writing() as session:
             gone = session.exec(select(Clip).where(col(Clip.deleted) < before)).all()
             for clip in gone:
+                self._files.note(clip.id)
                 session.delete(clip)
-        for clip in gone:
-            shutil.rmtree(self._home(clip.id), ignore_errors=True)
+        self._files.remove(clip.id for clip in gone)
         return len(gone)
 
     def sweep(self, before: datetime) -> int:
@@ -207,46 +222,63 @@ class ClipStore:
         orphans += [
             path
             for path in self.folder.glob("*/*")
-            if path.name not in (sources.get(path.parent.name), VIDEO, RECORDING, POSTER, FILMSTRIP)
+            if path.parent.name in sources
+            and path.name not in (sources[path.parent.name], VIDEO, *_FOUND)
         ]
-        removed = 0
+        removed, homes = 0, []
         for path in orphans:
             with suppress(OSError):
                 if path.stat().st_mtime > before.timestamp():
+                    continue
+                if path.is_dir() and path.parent == self.folder:
+                    homes.append(path.name)
                     continue
                 if path.is_dir():
                     shutil.rmtree(path)
                 else:
                     path.unlink()
                 removed += 1
-        return removed
+        return removed + self._files.remove(homes)
+
+    def place(self, clip_id: str, name: str) -> Path:
+        """Return where a file of a clip is to be written, on this machine."""
+        return self._files.home(clip_id) / name
+
+    def keep_found(self, clip: Clip) -> None:
+        """Put what a job has written of a clip where all servers find it.
+
+        Raises
+        ------
+        StoreUnavailable
+            When the object store does not answer; it may be tried again.
+
+        """
+        made = (VIDEO,) if clip.video_is_made else ()
+        self._files.keep(clip.id, (*made, *_FOUND))
 
     def received(self, clip: Clip) -> Path:
         """Return where the file is that a clip came as."""
-        return self._home(clip.id) / clip.source
+        return self._files.find(clip.id, clip.source)
 
     def video(self, clip_id: str) -> Path:
         """Return where the clip's video is: its own bytes, or what its job made to look at."""
-        return self._home(clip_id) / VIDEO
+        return self._files.find(clip_id, VIDEO)
 
     def recording(self, clip_id: str) -> Path:
         """Return where the landmarks found in the clip are, once its job is done."""
-        return self._home(clip_id) / RECORDING
+        return self._files.find(clip_id, RECORDING)
 
     def poster(self, clip_id: str) -> Path:
         """Return where the clip's still picture is, once its job is done."""
-        return self._home(clip_id) / POSTER
+        return self._files.find(clip_id, POSTER)
 
     def filmstrip(self, clip_id: str) -> Path:
         """Return where the thumbnails along the clip are, once its job is done."""
-        return self._home(clip_id) / FILMSTRIP
+        return self._files.find(clip_id, FILMSTRIP)
 
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key
         return None if key is None else self.by_idempotency_key(key)
-
-    def _home(self, clip_id: str) -> Path:
-        return self.folder / clip_id
 
 
 def _newest_jobs(which: ColumnElement[bool], session: Session) -> dict[str, Job]:

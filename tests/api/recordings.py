@@ -57,6 +57,7 @@ def recording_of(*shapes: str) -> Recording:
 def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp4") -> str:
     """Store a clip whose job is done, and return its id."""
     from app.store import Clip
+    from app.store.clips import RECORDING
 
     partial = studio.clips.new_partial()
     partial.write_bytes(bytes(range(256)) * 4)
@@ -64,7 +65,8 @@ def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp
     clip = Clip(name=name, media_type="video/mp4", size=1024, width=width, height=height)
     added = studio.clips.add(clip, partial, "test")
     studio.jobs.start(added.job.id)
-    recording.save(studio.clips.recording(clip.id))
+    recording.save(studio.clips.place(clip.id, RECORDING))
+    studio.clips.keep_found(clip)
     studio.jobs.complete(added.job.id, len(recording.poses), recording.warnings)
     return clip.id
 

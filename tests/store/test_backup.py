@@ -14,6 +14,8 @@ from app.store.backup import DATABASE, restore_backup, write_backup
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import running
+from tests.command_line import OsgStudio
+from tests.s3 import BUCKET, S3Server
 
 
 @pytest.fixture
@@ -93,3 +95,39 @@ def test_what_is_no_backup_is_said_so(tmp_path: Path) -> None:
     for source in (other, tmp_path / "absent.zip"):
         with pytest.raises(OsgError, match=r"other\.zip is no backup|cannot read"):
             restore_backup(source, tmp_path / "new")
+
+
+def test_clips_of_an_object_store_are_backed_up_and_come_back_into_another(
+    s3: S3Server, tmp_path: Path, osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OSG_SAMPLES_DIR", str(tmp_path / "none"))
+    monkeypatch.setenv("OSG_STORAGE", f"s3://{BUCKET}/first")
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "data"))
+    with running(Settings()) as server:
+        clip = add_recorded_clip(server.studio, recording_of("circle"))
+    # Of a folder that is only a copy, half is enough.
+    (tmp_path / "data" / "clips" / clip / "video").unlink()
+    assert osg_studio("backup", str(tmp_path / "kept.zip")).code == 0
+    monkeypatch.setenv("OSG_STORAGE", f"s3://{BUCKET}/second")
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "new"))
+    assert osg_studio("restore", str(tmp_path / "kept.zip")).code == 0
+    kept = {f"{clip}/video", f"{clip}/recording.npz"}
+    assert s3.names() == {f"{prefix}/{name}" for prefix in ("first", "second") for name in kept}
+    with running(Settings()) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert len(client.get(f"/api/v1/clips/{clip}/video").content) == 1024
+        assert len(client.get(f"/api/v1/clips/{clip}/takes").json()) == 1
+
+
+def test_clips_in_a_folder_of_their_own_are_backed_up(
+    tmp_path: Path, osg_studio: OsgStudio, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("OSG_SAMPLES_DIR", str(tmp_path / "none"))
+    monkeypatch.setenv("OSG_STORAGE", str(tmp_path / "clips"))
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "data"))
+    with running(Settings()) as server:
+        clip = add_recorded_clip(server.studio, recording_of("circle"))
+    assert osg_studio("backup", str(tmp_path / "kept.zip")).code == 0
+    monkeypatch.setenv("OSG_STORAGE", str(tmp_path / "others"))
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "new"))
+    assert osg_studio("restore", str(tmp_path / "kept.zip")).code == 0
+    assert (tmp_path / "others" / clip / "recording.npz").is_file()

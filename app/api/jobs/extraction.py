@@ -16,6 +16,8 @@ from app.api.workers.worker_messages import Failed, Finished, Progressed
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions, source_named
 from app.store import Clip, ClipStore, Job, JobStatus, JobStore, NotFound
+from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.models import VIDEO
 
 
 class ExtractionJob:
@@ -61,9 +63,9 @@ class ExtractionJob:
             return None
         messages = self._workers.record(
             source_named(clip.source),
-            self._clips.received(clip),
+            await persist(self._clips.received, clip),
             options_of(clip),
-            files_of(self._clips, clip.id),
+            files_to_write(self._clips, clip.id),
         )
         left = TimeLeft()
         end: Finished | Failed | None = None
@@ -76,6 +78,7 @@ class ExtractionJob:
         # After the worker has ended: storing may have to wait for the database.
         match end:
             case Finished(frames=frames, warnings=warnings):
+                await persist(self._clips.keep_found, clip)
                 await persist(self._jobs.complete, self._job.id, frames, warnings)
             case Failed(code=code, detail=detail):
                 await persist(
@@ -97,8 +100,22 @@ def options_of(clip: Clip) -> ReadOptions:
     return options.model_copy(update={"topic": clip.topic})
 
 
+def files_to_write(clips: ClipStore, clip_id: str) -> ClipFiles:
+    """Return where the parts of a clip are to be written."""
+    return ClipFiles(
+        *(clips.place(clip_id, name) for name in (VIDEO, RECORDING, POSTER, FILMSTRIP))
+    )
+
+
 def files_of(clips: ClipStore, clip_id: str) -> ClipFiles:
-    """Return where the parts of a clip are stored."""
+    """Return where the parts of a clip are stored.
+
+    Raises
+    ------
+    StoreUnavailable
+        When one of them is not on this machine, and the object store does not answer.
+
+    """
     return ClipFiles(
         clips.video(clip_id),
         clips.recording(clip_id),

@@ -46,6 +46,7 @@ from app.store import (
     identity_of,
 )
 from app.store.models import now
+from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
 
 CACHED_LANGUAGES = 16
@@ -197,6 +198,7 @@ def check_store(settings: Settings) -> None:
     """Raise StoreUnavailable with one line for a person when the store cannot be opened."""
     with _opened(settings) as database:
         database.migrate()
+        open_object_store(settings.objects)
 
 
 @contextmanager
@@ -215,7 +217,7 @@ def _opened(settings: Settings) -> Iterator[Database]:
 async def _studio(
     settings: Settings, database: Database, metrics: Metrics
 ) -> AsyncIterator[Studio]:
-    clips = ClipStore(database, settings.clips)
+    clips = ClipStore(database, settings.clips, open_object_store(settings.objects))
     jobs = JobStore(database, identity_of(settings.data_dir))
     languages = LanguageStore(database)
 

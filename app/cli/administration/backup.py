@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,16 +11,27 @@ from app.cli.administration.data_folder import DataDir, settings_of
 from app.cli.terminal import people
 from app.recognition.errors import OsgError
 
+if TYPE_CHECKING:
+    from app.settings import Settings
+
 
 def backup(
     file: Annotated[Path, typer.Argument(metavar="FILE.zip", help="File to write.")],
     data_dir: DataDir = None,
 ) -> None:
     """Write database, clips and keypoints to one file, also while the studio runs."""
-    folder = _data_dir(data_dir)
+    settings = _settings(data_dir)
+    from app.store import StoreError
     from app.store.backup import write_backup
+    from app.store.objects import open_object_store
 
-    clips = write_backup(folder, file.absolute())
+    try:
+        objects = open_object_store(settings.objects)
+        clips = write_backup(
+            settings.data_dir, file.absolute(), clips=settings.clips, objects=objects
+        )
+    except StoreError as error:
+        raise OsgError(str(error)) from error
     people.print(f"{clips} clips and all languages are in {file}", markup=False, highlight=False)
 
 
@@ -29,19 +40,26 @@ def restore(
     data_dir: DataDir = None,
 ) -> None:
     """Restore a backup into a data folder that is empty; every file is verified."""
-    folder = _data_dir(data_dir)
+    settings = _settings(data_dir)
+    from app.store import StoreError
     from app.store.backup import restore_backup
+    from app.store.objects import open_object_store
 
-    clips = restore_backup(file, folder)
+    folder = settings.data_dir
+    try:
+        objects = open_object_store(settings.objects)
+        clips = restore_backup(file, folder, clips=settings.clips, objects=objects)
+    except StoreError as error:
+        raise OsgError(str(error)) from error
     people.print(f"{clips} clips and all languages are in {folder}", markup=False, highlight=False)
 
 
-def _data_dir(given: Path | None) -> Path:
-    """Return the folder named, or that of the settings, whose database must be in it."""
+def _settings(given: Path | None) -> Settings:
+    """Return the settings, whose database must be in the data folder."""
     settings = settings_of(given)
     if settings.database_url is not None:
         raise OsgError(
             "OSG_DATABASE_URL names another database, which its own tools back up; copy the "
             "folder of the clips beside it"
         )
-    return settings.data_dir
+    return settings

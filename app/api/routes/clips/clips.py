@@ -110,9 +110,8 @@ async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> Cli
     partial = studio.clips.new_partial()
     try:
         await receive_file(request, partial, studio.settings)
-        same = await run_in_threadpool(
-            filecmp.cmp, partial, studio.clips.received(earlier.clip), shallow=False
-        )
+        received = await run_in_threadpool(studio.clips.received, earlier.clip)
+        same = await run_in_threadpool(filecmp.cmp, partial, received, shallow=False)
     finally:
         partial.unlink(missing_ok=True)
     if not same:

@@ -48,7 +48,7 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
     # The name of a file that is still being written: what a crash leaves is swept at the start.
     target = studio.clips.new_partial()
     try:
-        files = files_of(studio.clips, clip_id)
+        files = await run_in_threadpool(files_of, studio.clips, clip_id)
         ended = await studio.runner.run(
             BagExportJob(clip_id, request, target, files, studio.workers)
         )

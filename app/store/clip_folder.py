@@ -1,0 +1,105 @@
+"""Clip folder: the clips' files on this machine, written through to an object store."""
+
+from __future__ import annotations
+
+import logging
+import shutil
+from collections.abc import Iterable
+from pathlib import Path
+from threading import Lock
+from weakref import WeakValueDictionary
+
+from app.store.atomic_files import PARTIAL_SUFFIX, publish
+from app.store.errors import StoreUnavailable
+from app.store.models import new_id
+from app.store.objects import ObjectStore
+
+logger = logging.getLogger(__name__)
+
+
+class ClipFolder:
+    """Finds and keeps the files of clips; each clip has a folder named by its id.
+
+    What is complete is in the object store before the database says so. The folder of a clip
+    without a row is also the note that the object store may still have files of it.
+
+    Parameters
+    ----------
+    path
+        The folder on this machine.
+    objects
+        Keeps the files for all servers.
+
+    """
+
+    def __init__(self, path: Path, objects: ObjectStore) -> None:
+        self.path = path
+        self._objects = objects
+        self._fetching: WeakValueDictionary[Path, Lock] = WeakValueDictionary()
+        self._choosing = Lock()
+        path.mkdir(parents=True, exist_ok=True)
+
+    def home(self, clip_id: str) -> Path:
+        """Return the folder of a clip's files, which need not exist."""
+        return self.path / clip_id
+
+    def find(self, clip_id: str, name: str) -> Path:
+        """Return where a file is, fetched if it is not on this machine; it may not exist at all.
+
+        Raises
+        ------
+        StoreUnavailable
+            When it is not here and the object store does not answer.
+
+        """
+        target = self.home(clip_id) / name
+        if target.is_file():
+            return target
+        with self._choosing:
+            fetching = self._fetching.setdefault(target, Lock())
+        with fetching:
+            if not target.is_file():
+                self._fetch(target, f"{clip_id}/{name}")
+        return target
+
+    def keep(self, clip_id: str, names: Iterable[str]) -> None:
+        """Put complete files of a clip into the object store, those that exist.
+
+        Raises
+        ------
+        StoreUnavailable
+            When not all of them are kept; it may be tried again.
+
+        """
+        for name in names:
+            if (file := self.home(clip_id) / name).is_file():
+                self._objects.upload(file, f"{clip_id}/{name}")
+
+    def note(self, clip_id: str) -> None:
+        """Note that a clip's files are to be removed, in case that is interrupted."""
+        self.home(clip_id).mkdir(exist_ok=True)
+
+    def remove(self, clip_ids: Iterable[str]) -> int:
+        """Remove all files of clips; return of how many.
+
+        When the object store does not answer, the folders of the others stay, by which
+        `ClipStore.sweep` removes the rest later.
+        """
+        removed = 0
+        try:
+            for clip_id in clip_ids:
+                self._objects.remove(clip_id)
+                shutil.rmtree(self.home(clip_id), ignore_errors=True)
+                removed += 1
+        except StoreUnavailable as error:
+            logger.warning("files of clips are removed at a later start: %s", error)
+        return removed
+
+    def _fetch(self, target: Path, name: str) -> None:
+        target.parent.mkdir(exist_ok=True)
+        partial = target.with_name(f"{target.name}.{new_id()}{PARTIAL_SUFFIX}")
+        try:
+            if self._objects.download(name, partial):
+                publish(partial, target)
+        finally:
+            partial.unlink(missing_ok=True)

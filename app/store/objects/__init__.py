@@ -1,0 +1,7 @@
+"""Object stores: where the clips' files are kept, beyond the folder that the programs read."""
+
+from app.store.objects.object_store import ObjectStore
+from app.store.objects.opening import open_object_store
+from app.store.objects.shared_folder import SharedFolder
+
+__all__ = ["ObjectStore", "SharedFolder", "open_object_store"]
