@@ -24,11 +24,13 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.practice import PracticeStore
+from app.store.quotas import Allowance, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
 from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
 
 __all__ = [
+    "Allowance",
     "AuditEntry",
     "AuditStore",
     "Clip",
@@ -53,6 +55,7 @@ __all__ = [
     "NotFound",
     "PracticeStore",
     "PracticeTake",
+    "QuotaStore",
     "RecognitionRecord",
     "RecognitionStore",
     "Role",
@@ -64,5 +67,6 @@ __all__ = [
     "TokenFile",
     "Upload",
     "UploadStore",
+    "Usage",
     "identity_of",
 ]

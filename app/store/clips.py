@@ -11,7 +11,7 @@ from pathlib import Path
 
 from sqlalchemy import ColumnElement
 from sqlalchemy.exc import IntegrityError
-from sqlmodel import Session, col, func, select
+from sqlmodel import Session, col, select
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.clip_folder import ClipFolder
@@ -19,6 +19,7 @@ from app.store.database import Database
 from app.store.errors import NotFound
 from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
+from app.store.quotas import Allowance, release_in, usage_of
 
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
 """Files of a clip beside the received one, which is named by its source, and the video."""
@@ -63,13 +64,19 @@ class ClipStore:
         """Return a fresh path for a file that is still being received."""
         return self.folder / f"{new_id()}{PARTIAL_SUFFIX}"
 
-    def add(self, clip: Clip, partial: Path, client: str) -> ClipWithJob:
+    def add(
+        self, clip: Clip, partial: Path, client: str, allow: Allowance | None = None
+    ) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
         A dive recording with several topics waits for `choose_topic`: its job has failed already.
         The file gets its place first, in the object store too: a row never refers to what is not
         kept. When that fails, the file is at `partial` again, so that adding it can be repeated.
         When two uploads with one idempotency key race, the second one gets the first one's clip.
+
+        `allow` is asked in the same transaction, so that no other server adds a clip in between;
+        what it raises keeps the clip out. The place that a resumable upload has reserved becomes
+        the clip's.
 
         Raises
         ------
@@ -89,6 +96,10 @@ class ClipStore:
             sync_directory(self.folder)
             self._files.keep(clip.id, [clip.source])
             with self._database.writing() as session:
+                if allow is not None:
+                    allow(usage_of(session, clip.owner, without=clip.idempotency_key))
+                if clip.idempotency_key is not None:
+                    release_in(session, clip.idempotency_key)
                 session.add(clip)
                 session.flush()
                 session.add(job)
@@ -138,15 +149,6 @@ class ClipStore:
             if clip is None:
                 return None
             return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip.id, session)[clip.id])
-
-    def usage(self, owner: str) -> tuple[int, int]:
-        """Return the number of clips that somebody keeps, and their bytes."""
-        query = select(func.count(), func.coalesce(func.sum(Clip.size), 0)).where(
-            Clip.owner == owner, col(Clip.deleted).is_(None)
-        )
-        with self._database.reading() as session:
-            clips, size = session.exec(query).one()
-            return int(clips), int(size)
 
     def delete(self, clip_id: str) -> None:
         """Hide a clip; its files stay until `purge`.

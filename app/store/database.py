@@ -6,6 +6,7 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 from threading import Lock
 
@@ -177,6 +178,12 @@ class Database:
                 f"the database {self._name} is damaged ({verdict}); "
                 "restore a backup or start with another data directory"
             )
+
+
+def moment_of(session: Session) -> datetime:
+    """Return the database's present moment: the servers' clocks may differ."""
+    moment: datetime = session.execute(select(func.current_timestamp())).scalar_one()
+    return moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
 
 
 @contextmanager

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Sequence
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 
 from sqlalchemy import ColumnElement, or_
 from sqlmodel import Session, col, func, select
 
-from app.store.database import Database
+from app.store.database import Database, moment_of
 from app.store.errors import NotFound
 from app.store.models import Clip, Job, JobStatus, now
 
@@ -104,7 +104,7 @@ class JobStore:
     def renew(self, job_ids: Collection[str]) -> set[str]:
         """Go on having some running jobs; return those that this server still has."""
         with self._database.writing(counted=False) as session:
-            until = _moment(session) + LEASE
+            until = moment_of(session) + LEASE
             query = select(Job).where(
                 col(Job.id).in_(job_ids), _RUNNING, Job.server == self._server
             )
@@ -121,7 +121,7 @@ class JobStore:
             if job is None or job.status != JobStatus.QUEUED:
                 return None
             job.status, job.started = JobStatus.RUNNING.value, now()
-            job.server, job.lease = self._server, _moment(session) + LEASE
+            job.server, job.lease = self._server, moment_of(session) + LEASE
             job.attempts += 1
             session.add(job)
             return job
@@ -210,14 +210,8 @@ class JobStore:
         return job is not None and job.status == JobStatus.RUNNING and job.server == self._server
 
 
-def _moment(session: Session) -> datetime:
-    """Return the database's present moment: the servers' clocks may differ."""
-    moment: datetime = session.execute(select(func.current_timestamp())).scalar_one()
-    return moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
-
-
 def _overdue(session: Session) -> ColumnElement[bool]:
-    return or_(col(Job.lease).is_(None), col(Job.lease) < _moment(session))
+    return or_(col(Job.lease).is_(None), col(Job.lease) < moment_of(session))
 
 
 def _queue_again(session: Session, job: Job) -> None:

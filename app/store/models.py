@@ -306,6 +306,20 @@ class AuditEntry(SQLModel, table=True):
     """The same as in the log."""
 
 
+class UploadReservation(SQLModel, table=True):
+    """The place that a resumable upload under way takes in its owner's quota."""
+
+    __tablename__ = "upload_reservation"
+
+    id: str = Field(primary_key=True, max_length=32)
+    """Of the upload."""
+    owner: str = Field(max_length=80, index=True)
+    size: int = Field(sa_type=ByteCount)
+    """Bytes of the whole file."""
+    touched: datetime = Field(sa_type=UtcDateTime)
+    """When bytes of it came, about."""
+
+
 class ChangeCount(SQLModel, table=True):
     """The one row that counts the changes, where several servers share the database."""
 

@@ -23,7 +23,7 @@ from starlette.types import Message
 from app.api.routes.events import follow_changes
 from app.api.services.studio import open_studio
 from app.settings import Settings
-from app.store import Clip, ClipStore, Database, Job, JobStatus, JobStore
+from app.store import Clip, ClipStore, Database, Job, JobStatus, JobStore, QuotaStore
 from app.store.models import now
 
 AT_ONCE = 10_000
@@ -88,7 +88,7 @@ def measure_rows(database: Database, folder: Path, clips: int, longest_list: int
         "add a clip, run and end its job, delete it": add,
         "look for jobs that others left": jobs.take_over,
         "open jobs of an address": lambda: jobs.count_open("10.0.0.1"),
-        "what an owner keeps": lambda: store.usage("1"),
+        "what an owner keeps": lambda: QuotaStore(database).usage("1"),
         "number of changes": lambda: store.changes,
     }
     for name, work in works.items():

@@ -5,21 +5,23 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from datetime import timedelta
 from pathlib import Path
+from threading import Barrier
 from typing import Any
 
 import httpx
 import pytest
 
 from app.settings import Settings
-from app.store import Clip
+from app.store import Clip, ClipStore, Role, TokenFile
 from app.store.jobs import JobStore
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import Running, running, until
+from tests.api.running import Running, assert_problem, running, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.recognition.damaged_clips import write_clip
@@ -40,6 +42,7 @@ def servers(tmp_path: Path, postgres: Cluster) -> Iterator[tuple[Running, Runnin
                         samples_dir=tmp_path / "none",
                         database_url=url,
                         storage=tmp_path / "clips",
+                        tokens_file=tmp_path / "tokens.json",
                     )
                 )
             )
@@ -143,3 +146,60 @@ def test_the_job_of_a_server_that_vanished_is_run_by_the_other(
     with httpx.Client(base_url=two.address, timeout=60) as client:
         until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] in ("done", "failed"))
     assert one.studio.jobs.get(job_id).attempts == 2
+
+
+@pytest.mark.slow
+def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
+    servers: tuple[Running, Running],
+    small_clip: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    together = Barrier(2)
+
+    def add(store: ClipStore, *clip: Any) -> Any:
+        # Both were told before their bytes were read that there is place for one.
+        together.wait(60)
+        return add_clip(store, *clip)
+
+    add_clip = ClipStore.add
+    monkeypatch.setattr(ClipStore, "add", add)
+    secret = TokenFile(tmp_path / "tokens.json").add("Jo", Role.EDIT, quota_clips=1)
+    headers = {"Authorization": f"Bearer {secret}"}
+
+    def send(server: Running) -> int:
+        with httpx.Client(base_url=server.address, headers=headers, timeout=60) as client:
+            return upload(client, small_clip).status_code
+
+    with ThreadPoolExecutor(2) as uploaders:
+        assert sorted(uploaders.map(send, servers)) == [202, 507]
+    assert len(servers[0].studio.clips.all()) == 1
+    # The refused one left nothing.
+    (kept,) = servers[0].studio.clips.folder.iterdir()
+    assert kept.name == servers[0].studio.clips.all()[0].clip.id
+
+
+@pytest.mark.slow
+def test_an_upload_that_one_server_receives_counts_on_the_other(
+    servers: tuple[Running, Running], small_clip: Path, tmp_path: Path
+) -> None:
+    one, two = servers
+    content = small_clip.read_bytes()
+    secret = TokenFile(tmp_path / "tokens.json").add("Jo", Role.EDIT, quota_bytes=len(content))
+    headers = {"Authorization": f"Bearer {secret}", "Tus-Resumable": "1.0.0"}
+    length = {"Upload-Length": str(len(content))}
+    part = {"Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
+    with (
+        httpx.Client(base_url=one.address, headers=headers, timeout=60) as first,
+        httpx.Client(base_url=two.address, headers=headers, timeout=60) as second,
+    ):
+        given_up = first.post("/api/v1/uploads", headers=length).headers["location"]
+        assert_problem(second.post("/api/v1/uploads", headers=length), 507, "quota_exceeded")
+        assert_problem(upload(second, small_clip), 507, "quota_exceeded")
+        assert first.delete(given_up).status_code == 204
+        begun = second.post("/api/v1/uploads", headers=length).headers["location"]
+        assert_problem(upload(first, small_clip), 507, "quota_exceeded")
+        # Its own place is what it becomes a clip in.
+        assert second.patch(begun, headers=part, content=content).status_code == 204
+        usage = one.studio.quotas.usage("Jo")
+        assert (usage.clips, usage.bytes) == (1, len(content))

@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
-from app.api.ingest.quotas import owner_of
+from app.api.ingest.quotas import allowance_of, owner_of
 from app.api.services.studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
@@ -116,9 +116,17 @@ async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> 
     """Store an inspected file as its sender's `clip`, queue its job, and publish the change.
 
     The job of a dive recording whose topic nobody chose has failed already, for that reason.
+
+    Raises
+    ------
+    ProblemError
+        As `allowance_of`; the file stays where it is.
+
     """
     clip.owner = owner_of(request)
-    added = await run_in_threadpool(studio.clips.add, clip, partial, client_of(request))
+    added = await run_in_threadpool(
+        studio.clips.add, clip, partial, client_of(request), allowance_of(request, clip.size)
+    )
     if not added.clip.needs_topic:
         await studio.extractions.submit(added.job)
     studio.broadcast.publish("clips", id=added.clip.id)

@@ -2,29 +2,18 @@
 
 from __future__ import annotations
 
-import asyncio
-from weakref import WeakValueDictionary
+from functools import partial
 
 from fastapi import Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError
-from app.api.middleware.identities import identity_of
+from app.api.middleware.identities import Identity, identity_of
 from app.api.services.studio import Studio
+from app.store import Allowance, Usage
 
 CLOSE = {"Connection": "close"}
 """What is left of the body stays unread, so the connection cannot be used again."""
-
-
-_turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
-
-
-def turn_of(request: Request, studio: Studio) -> asyncio.Lock:
-    """Return the lock under which a name's quota is checked and then used.
-
-    Without it, uploads that end at the same time would all be told that there is place for one.
-    """
-    return _turns.setdefault(f"{owner_of(request)}\n{studio.clips.folder}", asyncio.Lock())
 
 
 def owner_of(request: Request) -> str:
@@ -32,28 +21,35 @@ def owner_of(request: Request) -> str:
     return identity_of(request.scope).name
 
 
-async def require_quota(
-    request: Request, studio: Studio, size: int, *, without: str | None = None
-) -> None:
-    """Refuse a clip of so many bytes that its sender's quota has no place for.
+async def require_quota(request: Request, studio: Studio, size: int) -> None:
+    """Refuse early a clip of at least so many bytes that its sender's quota has no place for.
 
-    Uploads that are under way count with all their bytes; `without` is the id of the one that is
-    about to become this clip.
+    Whether there is still place is asked again when the clip or its upload is written down.
 
     Raises
     ------
     ProblemError
-        413 when the clip alone is larger than the quota, 507 when less than that is left, or as
-        many clips are kept as may be.
+        As `allowance_of`.
 
+    """
+    if (allow := allowance_of(request, size)) is not None:
+        allow(await run_in_threadpool(studio.quotas.usage, owner_of(request)))
+
+
+def allowance_of(request: Request, size: int) -> Allowance | None:
+    """Return what refuses a clip of so many bytes by its sender's quota; None without a quota.
+
+    It raises ProblemError: 413 when the clip alone is larger than the quota, 507 when less than
+    that is left, or as many clips are kept as may be. Uploads under way count with all their bytes.
     """
     identity = identity_of(request.scope)
     if not (identity.quota_bytes or identity.quota_clips):
-        return
-    clips, used = await run_in_threadpool(studio.clips.usage, identity.name)
-    for upload in await run_in_threadpool(studio.uploads.active):
-        if upload.owner == identity.name and upload.id != without:
-            clips, used = clips + 1, used + upload.size
+        return None
+    return partial(_require_place, identity, size)
+
+
+def _require_place(identity: Identity, size: int, usage: Usage) -> None:
+    clips, used = usage.clips, usage.bytes
     numbers = {"clips": clips, "bytes": used}
     if identity.quota_clips and clips >= identity.quota_clips:
         detail = (

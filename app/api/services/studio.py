@@ -40,6 +40,7 @@ from app.store import (
     LanguageState,
     LanguageStore,
     PracticeStore,
+    QuotaStore,
     RecognitionStore,
     SourceStore,
     UploadStore,
@@ -77,7 +78,7 @@ class Studio:
     ----------
     settings
         How it was started.
-    clips, uploads, jobs, languages, sources, recognitions, audit, labelled, practice
+    clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice
         The store.
     workers
         Starts processes that read clips.
@@ -101,6 +102,7 @@ class Studio:
     settings: Settings
     clips: ClipStore
     uploads: UploadStore
+    quotas: QuotaStore
     jobs: JobStore
     languages: LanguageStore
     sources: SourceStore
@@ -237,6 +239,7 @@ async def _studio(
         settings=settings,
         clips=clips,
         uploads=UploadStore(settings.data_dir / "uploads"),
+        quotas=QuotaStore(database),
         jobs=jobs,
         languages=languages,
         sources=SourceStore(database),

@@ -21,7 +21,7 @@ from app.api.http.schemas.values import TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
-from app.api.ingest.quotas import require_quota, turn_of
+from app.api.ingest.quotas import require_quota
 from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.studio import CurrentStudio, Studio
@@ -97,9 +97,7 @@ async def upload_clip(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         clip.idempotency_key = idempotency_key
-        async with turn_of(request, studio):
-            await require_quota(request, studio, upload.size)
-            return await store(clip, partial, studio, request)
+        return await store(clip, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)
 

@@ -27,7 +27,7 @@ from app.api.ingest.intake import (
     store,
 )
 from app.api.ingest.multipart import display_name, require_space
-from app.api.ingest.quotas import owner_of, require_quota, turn_of
+from app.api.ingest.quotas import allowance_of, owner_of
 from app.api.middleware.body_limit import too_large
 from app.api.services.studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -90,9 +90,8 @@ async def begin_upload(
     texts = {key: str(value) for key, value in fields.items()}
     # One at a time: between the check and the file that reserves the space nobody else may begin.
     beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
-    async with beginning, turn_of(request, studio):
+    async with beginning:
         reserved = await require_place_in_queue(request, studio)
-        await require_quota(request, studio, upload_length)
         require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)
         upload = await run_in_threadpool(
             studio.uploads.create,
@@ -102,6 +101,12 @@ async def begin_upload(
             client_of(request),
             owner_of(request),
         )
+        try:
+            allow = allowance_of(request, upload_length)
+            await run_in_threadpool(studio.quotas.reserve, upload, allow)
+        except BaseException:
+            await run_in_threadpool(studio.uploads.remove, upload.id)
+            raise
     location = f"{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
@@ -162,6 +167,7 @@ async def append_part(
     ]
     reserved = bytes_to_come(others)
     require_space(studio.clips.folder, upload.missing, studio.settings, reserved=reserved)
+    await run_in_threadpool(studio.quotas.renew, upload)
     offset = await _write(request, upload, upload_offset, studio)
     headers = _COMMON | {"Upload-Offset": str(offset)}
     if offset == upload.size:
@@ -178,8 +184,14 @@ async def append_part(
 def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
     """Forget an upload and what came of it."""
     studio.uploads.get(upload_id)
-    studio.uploads.remove(upload_id)
+    _forget(upload_id, studio)
     return Response(status_code=204, headers=_COMMON)
+
+
+def _forget(upload_id: str, studio: Studio) -> None:
+    """Remove an upload that becomes no clip."""
+    studio.quotas.release(upload_id)
+    studio.uploads.remove(upload_id)
 
 
 def _metadata(header: str) -> dict[str, str]:
@@ -253,7 +265,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
                     fields=UploadFields.read(upload.fields),
                 )
             except ProblemError:
-                await run_in_threadpool(studio.uploads.remove, upload.id)
+                await run_in_threadpool(_forget, upload.id, studio)
                 raise
             made.idempotency_key = upload.id
             await store(made, upload.path, studio, request)

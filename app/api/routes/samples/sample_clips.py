@@ -12,7 +12,7 @@ from app.api.http.schemas.clips import ClipAccepted
 from app.api.http.schemas.samples import SampleChoice, SampleView
 from app.api.ingest.intake import inspect, require_place_in_queue, store
 from app.api.ingest.multipart import display_name
-from app.api.ingest.quotas import require_quota, turn_of
+from app.api.ingest.quotas import require_quota
 from app.api.services.studio import CurrentStudio
 
 router = APIRouter(prefix="/samples", tags=["samples"])
@@ -34,12 +34,11 @@ async def import_sample(
         raise ProblemError(404, "not_found", f"there is no sample clip {chosen.name!r}")
     sample = samples[chosen.name]
     await require_place_in_queue(request, studio)
+    await require_quota(request, studio, sample.size)
     partial = studio.clips.new_partial()
     try:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
         clip = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
-        async with turn_of(request, studio):
-            await require_quota(request, studio, sample.size)
-            return await store(clip, partial, studio, request)
+        return await store(clip, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)

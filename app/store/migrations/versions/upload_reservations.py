@@ -1,0 +1,27 @@
+"""Uploads under way count by their owner's quota on every server."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0011"
+down_revision = "0010"
+branch_labels = None
+depends_on = None
+
+
+def upgrade() -> None:
+    """Add the table."""
+    op.create_table(
+        "upload_reservation",
+        sa.Column("id", sa.String(32), nullable=False),
+        sa.Column("owner", sa.String(80), nullable=False),
+        sa.Column("size", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), nullable=False),
+        sa.Column("touched", sa.DateTime(), nullable=False),
+        sa.PrimaryKeyConstraint("id"),
+    )
+    op.create_index("ix_upload_reservation_owner", "upload_reservation", ["owner"])
+
+
+def downgrade() -> None:
+    """Drop it."""
+    op.drop_table("upload_reservation")
