@@ -139,8 +139,9 @@ class Settings(BaseSettings):
     `executor`, those of this server on all machines."""
 
     executor: Annotated[str, Field(pattern=r"^dask://[^/\s]+:\d+$")] | None = None
-    """Where extractions, checks and exports run: ``None`` is this machine; ``dask://HOST:PORT`` is
-    the Dask cluster of that scheduler, whose machines share `storage`."""
+    """Where extractions, checks, test runs and exports run: ``None`` is this machine;
+    ``dask://HOST:PORT`` is the Dask cluster of that scheduler, whose machines see the clips' folder
+    under the same path."""
 
     max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
     """Waiting jobs allowed for one address: enough for the clips of a language."""

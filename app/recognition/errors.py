@@ -62,6 +62,14 @@ class GestureError(OsgError):
     """Raised when a demonstration cannot become a gesture, for instance because nothing moves."""
 
 
+class RangeError(OsgError):
+    """Raised when a range of a clip is empty or reversed."""
+
+
+class AmbiguousRangeError(RangeError):
+    """Raised when no range is given of a clip with several takes."""
+
+
 class TriggerError(OsgError):
     """Raised when a pose of the arms cannot be a trigger, for instance because it is not held."""
 

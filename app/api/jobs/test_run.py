@@ -1,15 +1,19 @@
-"""Test run job: recognises the takes of a test set by one revision of their language."""
+"""Test run job: recognises the takes of a test set in a worker process."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
+from contextlib import aclosing
+from pathlib import Path
 from typing import Literal
 
 from starlette.concurrency import run_in_threadpool
 
 from app.api.events.broadcast import Event
 from app.api.jobs.job import Progress, Report
-from app.store import LabelledTake
+from app.api.workers.test_takes import RecognizedTake, TestRunRequest
+from app.api.workers.worker_messages import Failed
+from app.api.workers.worker_processes import Workers
 
 
 class TestRunJob:
@@ -19,10 +23,14 @@ class TestRunJob:
     ----------
     language_id, revision
         The language, for the events.
-    takes
+    request
         The takes to recognise.
-    recognize
-        Recognises one and keeps the result.
+    keep
+        Keeps the answer about the take of an index.
+    workers
+        Starts the process.
+    folder
+        Where its files may be.
 
     """
 
@@ -33,18 +41,22 @@ class TestRunJob:
         self,
         language_id: str,
         revision: int,
-        takes: Sequence[LabelledTake],
-        recognize: Callable[[LabelledTake], None],
+        request: TestRunRequest,
+        keep: Callable[[int, RecognizedTake], None],
+        workers: Workers,
+        folder: Path,
     ) -> None:
         self._language_id = language_id
         self._revision = revision
-        self._takes = takes
-        self._recognize = recognize
+        self._request = request
+        self._keep = keep
+        self._workers = workers
+        self._folder = folder
 
     @property
     def key(self) -> str:
         """The revision: two runs of it would do the same."""
-        return f"test {self._language_id} {self._revision}"
+        return test_run_key(self._language_id, self._revision)
 
     def event(self, progress: Progress) -> Event:
         """Return how far the run is."""
@@ -56,10 +68,22 @@ class TestRunJob:
         }
         return Event("tests", content)
 
-    async def run(self, report: Report) -> int:
-        """Recognise the takes, and return how many they were."""
-        for done, take in enumerate(self._takes):
-            report(Progress("recognising", done, len(self._takes)))
-            await run_in_threadpool(self._recognize, take)
-        report(Progress("recognising", len(self._takes), len(self._takes)))
-        return len(self._takes)
+    async def run(self, report: Report) -> Failed | None:
+        """Recognise the takes; return why the process could not."""
+        done, total = 0, len(self._request.takes)
+        report(Progress("recognising", done, total))
+        if not total:
+            return None
+        async with aclosing(self._workers.recognize_takes(self._request, self._folder)) as steps:
+            async for step in steps:
+                if isinstance(step, Failed):
+                    return step
+                await run_in_threadpool(self._keep, done, step)
+                done += 1
+                report(Progress("recognising", done, total))
+        return None
+
+
+def test_run_key(language_id: str, revision: int) -> str:
+    """Return the identity of the run of a revision among the jobs."""
+    return f"test {language_id} {revision}"

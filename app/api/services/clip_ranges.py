@@ -1,36 +1,12 @@
-"""Range of a clip that a request means: a take, a range chosen by hand, or all of it."""
+"""Range of a clip that a request means, or why it means none."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from app.api.http.problems import Fault, ProblemError
-from app.recognition.poses.sequence import PoseSequence
+from app.recognition.errors import AmbiguousRangeError, RangeError
+from app.recognition.recording.clip_range import Demonstration, find_demonstration
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.segmentation import Take, takes_in
 from app.recognition.triggers.trigger import SALUTE, Trigger
-
-SAME_MOMENT = 1e-3
-"""Seconds within which a given moment is a take's: numbers travel through JSON and text fields
-rounded to milliseconds, and no camera takes a thousand frames a second of a diver."""
-
-
-@dataclass(frozen=True)
-class Demonstration:
-    """One showing of a gesture.
-
-    Attributes
-    ----------
-    start, end
-        Seconds in the clip between which `poses` lies.
-    poses
-        The stroke.
-
-    """
-
-    start: float
-    end: float
-    poses: PoseSequence
 
 
 def demonstration_in(
@@ -41,13 +17,7 @@ def demonstration_in(
     keep_transit: bool = False,
     trigger: Trigger = SALUTE,
 ) -> Demonstration:
-    """Find the demonstration meant by a range of seconds.
-
-    A range that is a take's own, from salute to salute, means its stroke, without the hand's way
-    from and to the salute unless `keep_transit`. Any other range is taken as it is.
-    Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
-
-    Takes are what lies between salutes, or other triggers of a language.
+    """Find the demonstration meant by a range of seconds; see `find_demonstration`.
 
     Raises
     ------
@@ -55,42 +25,10 @@ def demonstration_in(
         422 when the range is empty or reversed, or no range is given and there are several takes.
 
     """
-    takes = takes_in(recording, trigger=trigger)
-    poses = recording.poses
-    if start is None and end is None:
-        if len(takes) > 1:
-            spans = ", ".join(f"{take.start:.2f}-{take.end:.2f} s" for take in takes)
-            detail = f"the clip holds {len(takes)} takes ({spans}); say which by start and end"
-            raise ProblemError(422, "take_ambiguous", detail)
-        if takes:
-            return _shown_in(takes[0], keep_transit)
-    first = float(poses.time[0]) if start is None else start
-    last = float(poses.time[-1]) if end is None else end
-    for take in takes:
-        if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
-            return _shown_in(take, keep_transit)
-    inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
-    if last <= first or not len(inside):
-        detail = (
-            f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
-            f"{poses.time[0]:g} s to {poses.time[-1]:g} s"
-        )
-        fault = Fault(pointer="/start" if start is not None else "/end", detail=detail)
-        raise ProblemError(422, "range_empty", detail, errors=[fault])
-    return Demonstration(first, last, inside)
-
-
-def surroundings_in(
-    recording: Recording, start: float, end: float, trigger: Trigger = SALUTE
-) -> PoseSequence:
-    """Return what a range was cut out of: the take around it between its triggers, or the clip."""
-    for take in takes_in(recording, trigger=trigger):
-        if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
-            return take.untrimmed
-    return recording.poses
-
-
-def _shown_in(take: Take, keep_transit: bool) -> Demonstration:
-    if keep_transit:
-        return Demonstration(take.start, take.end, take.untrimmed)
-    return Demonstration(take.stroke_start, take.stroke_end, take.poses)
+    try:
+        return find_demonstration(recording, start, end, keep_transit=keep_transit, trigger=trigger)
+    except AmbiguousRangeError as error:
+        raise ProblemError(422, "take_ambiguous", str(error)) from error
+    except RangeError as error:
+        fault = Fault(pointer="/start" if start is not None else "/end", detail=str(error))
+        raise ProblemError(422, "range_empty", str(error), errors=[fault]) from error

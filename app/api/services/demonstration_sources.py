@@ -6,12 +6,12 @@ import hashlib
 import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
-from app.api.services.clip_ranges import Demonstration
 from app.api.services.demonstration_faults import describe_fault
 from app.api.services.salute_ranges import count_salutes_in_clip
 from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.recording.clip_range import Demonstration
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.triggers.trigger import Trigger
 from app.store import DemonstrationSource, LanguageState

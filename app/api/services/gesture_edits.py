@@ -13,10 +13,11 @@ from app.api.http.schemas.gestures import (
     NewDemonstration,
     SwitchPosition,
 )
-from app.api.services.clip_ranges import Demonstration, demonstration_in
+from app.api.services.clip_ranges import demonstration_in
 from app.api.services.studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
+from app.recognition.recording.clip_range import Demonstration
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 WORDS = frozenset({"label", "description", "command", "diver"})

@@ -6,18 +6,17 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
-from app.api.services.clip_ranges import demonstration_in, surroundings_in
+from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.language.requirements import require_landmarks
+from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.schema import TuningEntry
 from app.recognition.language.tuning_entry import entry_to_tuning
+from app.recognition.recording.clip_range import find_surroundings
 from app.store import Clip, LanguageState, RecognitionRecord
 
 
@@ -85,8 +84,7 @@ def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) ->
 
     """
     if not shows_pictures(clip):
-        given = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
-        require_landmarks(language, given, clip.name)
+        require_seen_landmarks(language, poses, clip.name)
 
 
 def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
@@ -98,7 +96,7 @@ def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionCont
     return RecognitionContext(
         recognizer=make_recognizer(studio, state, record.profile, view.tuning, view.trial),
         poses=demonstration_in(recording, record.start, record.end, trigger=trigger).poses,
-        whole=surroundings_in(recording, record.start, record.end, trigger),
+        whole=find_surroundings(recording, record.start, record.end, trigger),
     )
 
 

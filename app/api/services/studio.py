@@ -9,6 +9,7 @@ from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
 from datetime import timedelta
 from functools import lru_cache, partial
+from pathlib import Path
 from threading import Event
 from typing import Annotated
 
@@ -128,7 +129,11 @@ class Studio:
         self.broadcast.close()
 
     def recording(self, clip_id: str) -> Recording:
-        """Return what was found in a clip.
+        """Return what was found in a clip; errors as `recording_file`."""
+        return _recording(str(self.recording_file(clip_id)))
+
+    def recording_file(self, clip_id: str) -> Path:
+        """Return the file with what was found in a clip.
 
         Raises
         ------
@@ -148,7 +153,7 @@ class Studio:
                 "wait for its job, or start it again",
                 job_id=found.job.id,
             )
-        return _recording(str(self.clips.recording(clip_id)))
+        return self.clips.recording(clip_id)
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -14,18 +15,20 @@ from app.api.http.schemas.test_sets import (
     RateView,
     TestSetView,
 )
+from app.api.jobs.test_run import TestRunJob
 from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import find_sources
-from app.api.services.stored_recognitions import recognize_range
 from app.api.services.studio import Studio
+from app.api.workers.test_takes import RecognizedTake, TakeToRecognize, TestRunRequest
 from app.evaluation.proportion import Share
-from app.recognition import OsgError
 from app.store import (
     LabelledResult,
     LabelledTake,
     LanguageState,
-    StoreError,
+    NotFound,
+    RecognitionRecord,
     TestedTake,
     TestSetFull,
 )
@@ -62,21 +65,35 @@ def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTake
         raise ProblemError(409, "test_set_full", str(error)) from error
 
 
-def recognize_labelled(studio: Studio, state: LanguageState, take: LabelledTake) -> None:
-    """Recognise a take by a revision and keep the result, also that it cannot be recognised."""
-    result = LabelledResult(take_id=take.id, revision=state.revision.revision)
-    try:
-        record = recognize_range(
-            studio, state, take.clip_id, take.start, take.end, expected=take.expected
-        )
-    except (OsgError, ProblemError, StoreError) as error:
-        result.fault = problem_of(error).detail
-    else:
-        answer: dict[str, Any] = record.answer
-        result.recognition_id = record.record.id
-        result.label, result.nearest = answer["label"], answer["nearest"]
-        result.confidence = answer["confidence"]
-    studio.labelled.keep(result, take.expected)
+def test_run_of(studio: Studio, state: LanguageState) -> TestRunJob:
+    """Return the job that recognises the takes which the revision has not recognised yet.
+
+    That the poses of a clip are not there is kept as the result of its takes.
+
+    Raises
+    ------
+    StoreUnavailable
+        When the files of a clip cannot be had now.
+
+    """
+    takes, wanted = [], []
+    for take in list_waiting(studio, state):
+        try:
+            wanted.append(_request_for(studio, take))
+            takes.append(take)
+        except (ProblemError, NotFound) as error:
+            fault = problem_of(error).detail
+            answer = RecognizedTake(start=take.start, end=take.end, fault=fault)
+            _keep(studio, state, take, answer)
+    request = TestRunRequest(document=state.revision.document, takes=wanted)
+    return TestRunJob(
+        state.record.id,
+        state.revision.revision,
+        request,
+        lambda index, found: _keep(studio, state, takes[index], found),
+        studio.workers,
+        studio.clips.folder,
+    )
 
 
 def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:
@@ -117,6 +134,36 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
             take.result is None or take.result.revision != state.revision.revision for take in takes
         ),
     )
+
+
+def _request_for(studio: Studio, take: LabelledTake) -> TakeToRecognize:
+    recording, clip = studio.recording_file(take.clip_id), studio.clips.get(take.clip_id).clip
+    return TakeToRecognize(
+        recording=recording,
+        start=take.start,
+        end=take.end,
+        keypoints_of=None if shows_pictures(clip) else clip.name,
+    )
+
+
+def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: RecognizedTake) -> None:
+    """Keep the answer about a take, also that it cannot be recognised."""
+    result = LabelledResult(take_id=take.id, revision=state.revision.revision, fault=found.fault)
+    if (answer := found.answer) is not None:
+        record = RecognitionRecord(
+            clip_id=take.clip_id,
+            language_id=state.record.id,
+            revision=state.revision.revision,
+            start=found.start,
+            end=found.end,
+            profile=studio.language(state).profile,
+            expected=take.expected,
+            result=json.dumps(answer, allow_nan=False),
+        )
+        result.recognition_id = studio.recognitions.add(record).id
+        result.label, result.nearest = answer["label"], answer["nearest"]
+        result.confidence = answer["confidence"]
+    studio.labelled.keep(result, take.expected)
 
 
 def _ranges(

@@ -24,6 +24,7 @@ from app.api.workers.bag_export_request import BagExportRequest
 from app.api.workers.clip_files import ClipFiles
 from app.api.workers.language_files import check_language, import_language
 from app.api.workers.pictures import Poster, Thumbnails, write_poster
+from app.api.workers.test_takes import recognize_takes
 from app.api.workers.worker_messages import (
     Failed,
     Finished,
@@ -271,10 +272,11 @@ def _arguments() -> argparse.Namespace:
     exporting.add_argument("request", type=Path)
     exporting.add_argument("file", type=Path, help="the MCAP file to write")
     importing, checking = commands.add_parser("import"), commands.add_parser("check")
-    for command in (importing, checking):
+    testing = commands.add_parser("test")
+    for command in (importing, checking, testing):
         command.set_defaults(source=VIDEO)
-        command.add_argument("file", type=Path, help="the language file")
-        command.add_argument("target", type=Path, help="the JSON file to write")
+        command.add_argument("file", type=Path, help="the language file, or the request of a test")
+        command.add_argument("target", type=Path, help="the JSON file, or folder of them, to write")
     importing.add_argument("--name", help="of a language whose file has none")
     for command in (recording, exporting):
         for name in ("video", "recording", "poster", "filmstrip"):
@@ -296,6 +298,8 @@ def _run(chosen: argparse.Namespace, report: Report) -> None:
             write_bag(chosen.request, chosen.file, _files(chosen), report)
         case "import":
             import_language(chosen.file, chosen.target, chosen.name, report)
+        case "test":
+            recognize_takes(chosen.file, chosen.target, report)
         case "check":
             check_language(chosen.file, chosen.target, report)
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from app.api.observation.metrics import Metrics
 from app.api.workers.clip_files import ClipFiles
 from app.api.workers.executor import Executor, ExecutorLost, Lines, LocalProcesses
+from app.api.workers.test_takes import RecognizedTake, TestRunRequest, answer_file
 from app.api.workers.worker_messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
 from app.settings import DASK, Settings
@@ -24,7 +25,7 @@ MOST_SHORT_WORKERS = 2
 many processes."""
 
 MOST_CHECKS = 2
-"""Health checks at the same time; further ones wait."""
+"""Health checks and test runs at the same time; further ones wait."""
 
 IMPORT_SECONDS = 120
 """Most processor time for reading a language file: the largest one allowed takes a minute."""
@@ -52,6 +53,13 @@ _TOO_LONG = Failed(
     code="language_too_large",
     detail="this language takes more time or memory than one job may use; "
     "split it into languages with fewer gestures",
+)
+
+
+_BROKEN_OFF = Failed(
+    code="test_run_broken_off",
+    detail="the process that recognises the takes ended or took too long; what is done is kept, "
+    "start it again for the rest",
 )
 
 
@@ -171,6 +179,31 @@ class Workers:
                 yield await asyncio.to_thread(target.read_text, "utf-8")
             else:
                 yield _TOO_LONG
+
+    async def recognize_takes(
+        self, request: TestRunRequest, folder: Path
+    ) -> AsyncGenerator[RecognizedTake | Failed, None]:
+        """Recognise takes; yield the answers in order, and last why not all of them are there."""
+        with _scratch_folder(folder) as scratch:
+            wanted, answers = scratch / "request.json", scratch / "answers"
+            answers.mkdir()
+            await asyncio.to_thread(wanted.write_text, request.model_dump_json(), "utf-8")
+            command = ["test", str(wanted), str(answers)]
+            messages = self._run(command, scratch, CHECK_SILENCE_SECONDS, hangs=_BROKEN_OFF)
+            done = 0
+            async with self._checks, aclosing(messages):
+                async for message in messages:
+                    if isinstance(message, Failed):
+                        yield message
+                        return
+                    # One that is run again reports again what it has done.
+                    while isinstance(message, Progressed) and done < message.done:
+                        file = answer_file(answers, done)
+                        content = await asyncio.to_thread(file.read_bytes)
+                        yield RecognizedTake.model_validate_json(content)
+                        done += 1
+            if done < len(request.takes):
+                yield _BROKEN_OFF
 
     async def _run(
         self,

@@ -6,11 +6,14 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import get_args
 
+import numpy as np
+
 from app.recognition.errors import LandmarkError
 from app.recognition.features.motion import find_followed_landmarks, list_limbs
 from app.recognition.language.language import Language
 from app.recognition.models import ModelName
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
+from app.recognition.poses.sequence import PoseSequence
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,12 @@ def require_trigger(language: Language, landmarks: Collection[str], source: str)
                 "trigger",
                 name,
             )
+
+
+def require_seen_landmarks(language: Language, poses: PoseSequence, source: str) -> None:
+    """Check that poses show the salient landmarks in some frame; otherwise `require_landmarks`."""
+    seen = [poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0))]
+    require_landmarks(language, seen, source)
 
 
 def require_landmarks(language: Language, landmarks: Collection[str], source: str) -> None:

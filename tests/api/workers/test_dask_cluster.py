@@ -10,8 +10,10 @@ from pathlib import Path
 import httpx
 import pytest
 
+from app.api.services.studio import Studio
 from app.recognition import Recording
 from app.settings import Settings
+from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, until
 from tests.api.running_workers import linux, workers_of
@@ -51,8 +53,8 @@ def status(client: httpx.Client, job_id: str) -> str:
     return str(client.get(f"{JOBS}/{job_id}").json()["status"])
 
 
-def test_jobs_run_on_the_cluster_and_a_check_too(
-    client: httpx.Client, cluster: Cluster, tmp_path: Path
+def test_jobs_run_on_the_cluster_and_checks_and_test_runs_too(
+    client: httpx.Client, studio: Studio, cluster: Cluster, tmp_path: Path
 ) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=FRAMES)
     jobs = [upload(client, clip).json()["job_id"] for _ in range(2)]
@@ -63,6 +65,10 @@ def test_jobs_run_on_the_cluster_and_a_check_too(
     content = pool(circle=circle, line=line).to_json()
     language = client.post("/api/v1/languages/import", content=content).json()["id"]
     assert client.get(f"/api/v1/languages/{language}/check").status_code == 200
+    shown = add_recorded_clip(studio, recording_of("circle", "line"))
+    takes = f"/api/v1/languages/{language}/test-set"
+    client.post(takes, json={"takes": [{"clip_id": shown, "expected": "circle"}]})
+    assert client.post(f"{takes}/run").json()["overall"]["asked"] == 2
 
 
 def test_a_cancelled_job_ends_where_it_runs(

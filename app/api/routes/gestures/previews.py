@@ -17,7 +17,6 @@ from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, SwitchPosition
 from app.api.http.schemas.values import Body, Label
-from app.api.services.clip_ranges import Demonstration
 from app.api.services.gesture_edits import (
     change_gesture_of,
     demonstration_at,
@@ -40,6 +39,7 @@ from app.recognition.preprocessing.salience import (
     find_salient_landmarks,
     measure_displacements,
 )
+from app.recognition.recording.clip_range import Demonstration
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
@@ -11,13 +9,12 @@ from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
 from app.api.jobs.job import JobCancelled
-from app.api.jobs.test_run import TestRunJob
+from app.api.jobs.test_run import test_run_key
 from app.api.middleware.shutdown import stopping
 from app.api.services.studio import CurrentStudio, Studio
 from app.api.services.test_sets import (
     add_labelled,
-    list_waiting,
-    recognize_labelled,
+    test_run_of,
     view_test_set,
 )
 from app.store import LanguageState
@@ -49,17 +46,13 @@ async def run_test_set(request: Request, language_id: str, studio: CurrentStudio
     409, and keeps what is done.
     """
     state = await run_in_threadpool(studio.languages.get, language_id)
-    takes = await run_in_threadpool(list_waiting, studio, state)
-    job = TestRunJob(
-        language_id,
-        state.revision.revision,
-        takes,
-        partial(recognize_labelled, studio, state),
-    )
+    job = await run_in_threadpool(test_run_of, studio, state)
     try:
-        await while_connected(request, studio.runner.run(job))
+        failed = await while_connected(request, studio.runner.run(job))
     except JobCancelled as error:
         raise _refusal(studio) from error
+    if failed is not None:
+        raise ProblemError(422, failed.code, failed.detail)
     return await run_in_threadpool(_changed, studio, state)
 
 
@@ -67,8 +60,7 @@ async def run_test_set(request: Request, language_id: str, studio: CurrentStudio
 async def cancel_test_run(language_id: str, studio: CurrentStudio) -> Response:
     """Cancel the run of the newest revision, for all who wait for it."""
     state = await run_in_threadpool(studio.languages.get, language_id)
-    key = TestRunJob(language_id, state.revision.revision, [], lambda _: None).key
-    await studio.runner.cancel(key)
+    await studio.runner.cancel(test_run_key(language_id, state.revision.revision))
     return Response(status_code=204)
 
 

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import httpx
 import pytest
 
+from app.api.jobs.test_run import test_run_key as key_of_run
 from app.api.services.studio import Studio
+from app.store import JobStatus
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import assert_problem
+from tests.api.running import assert_problem, until
+from tests.api.running_workers import linux, workers_of
 
 
 @pytest.fixture
@@ -115,3 +121,59 @@ def test_a_run_without_takes_or_of_nothing_new_does_nothing(
     assert run(client, place)["takes"] == []
     assert client.delete(f"{place}/run").status_code == 204
     assert_problem(client.post(f"{LANGUAGES}/none/test-set/run"), 404, "not_found")
+
+
+@linux
+def test_a_run_is_a_process_that_is_cancelled_and_keeps_what_is_done(
+    client: httpx.Client, studio: Studio, language_id: str, place: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of(*["circle"] * 20), "many.mp4")
+    labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    key = key_of_run(language_id, client.get(place).json()["revision"])
+
+    def has_begun() -> bool:
+        progress = studio.runner.progress(key)
+        return progress is not None and progress.done > 0
+
+    with ThreadPoolExecutor(1) as asking:
+        answer = asking.submit(client.post, f"{place}/run")
+        until(lambda: workers_of(os.getpid(), "test"))
+        until(has_begun)
+        assert client.delete(f"{place}/run").status_code == 204
+        assert_problem(answer.result(), 409, "test_run_cancelled")
+    until(lambda: not workers_of(os.getpid(), "test"))
+    assert 0 < client.get(place).json()["waiting"] < 20
+    found = run(client, place)
+    assert (found["waiting"], found["overall"]["asked"]) == (0, 20)
+
+
+@linux
+def test_a_run_whose_process_dies_says_so_and_goes_on_when_asked_again(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of(*["circle"] * 5), "many.mp4")
+    labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    with ThreadPoolExecutor(1) as asking:
+        answer = asking.submit(client.post, f"{place}/run")
+        until(lambda: workers_of(os.getpid(), "test"))
+        for worker in workers_of(os.getpid(), "test"):
+            os.kill(worker, signal.SIGKILL)
+        assert_problem(answer.result(), 422, "test_run_broken_off")
+    assert run(client, place)["waiting"] == 0
+
+
+def test_a_clip_whose_poses_are_gone_is_the_fault_of_its_takes_alone(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    lost, whole = (
+        add_recorded_clip(studio, recording_of("circle"), name) for name in ("a.mp4", "b.mp4")
+    )
+    for clip in (lost, whole):
+        labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    with studio.jobs._database.writing() as session:
+        job = studio.clips.get(lost).job
+        job.status = JobStatus.FAILED.value
+        session.merge(job)
+    found = run(client, place)
+    assert "not extracted" in found["takes"][0]["result"]["fault"]
+    assert found["takes"][1]["result"]["right"]

@@ -1,0 +1,97 @@
+"""Range of a recording that a person means: a take, a range chosen by hand, or all of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from app.recognition.errors import AmbiguousRangeError, RangeError
+from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.recording import Recording
+from app.recognition.recording.segmentation import Take, takes_in
+from app.recognition.triggers.trigger import SALUTE, Trigger
+
+SAME_MOMENT = 1e-3
+"""Seconds within which a given moment is a take's: numbers travel through JSON and text fields
+rounded to milliseconds, and no camera takes a thousand frames a second of a diver."""
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """One showing of a gesture.
+
+    Attributes
+    ----------
+    start, end
+        Seconds in the clip between which `poses` lies.
+    poses
+        The stroke.
+
+    """
+
+    start: float
+    end: float
+    poses: PoseSequence
+
+
+def find_demonstration(
+    recording: Recording,
+    start: float | None = None,
+    end: float | None = None,
+    *,
+    keep_transit: bool = False,
+    trigger: Trigger = SALUTE,
+) -> Demonstration:
+    """Find the demonstration meant by a range of seconds.
+
+    A range that is a take's own, from salute to salute, means its stroke, without the hand's way
+    from and to the salute unless `keep_transit`. Any other range is taken as it is.
+    Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
+
+    Takes are what lies between salutes, or other triggers of a language.
+
+    Raises
+    ------
+    AmbiguousRangeError
+        When no range is given and there are several takes.
+    RangeError
+        When the range is empty or reversed.
+
+    """
+    takes = takes_in(recording, trigger=trigger)
+    poses = recording.poses
+    if start is None and end is None:
+        if len(takes) > 1:
+            spans = ", ".join(f"{take.start:.2f}-{take.end:.2f} s" for take in takes)
+            raise AmbiguousRangeError(
+                f"the clip holds {len(takes)} takes ({spans}); say which by start and end"
+            )
+        if takes:
+            return _shown_in(takes[0], keep_transit)
+    first = float(poses.time[0]) if start is None else start
+    last = float(poses.time[-1]) if end is None else end
+    for take in takes:
+        if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
+            return _shown_in(take, keep_transit)
+    inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
+    if last <= first or not len(inside):
+        raise RangeError(
+            f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
+            f"{poses.time[0]:g} s to {poses.time[-1]:g} s"
+        )
+    return Demonstration(first, last, inside)
+
+
+def find_surroundings(
+    recording: Recording, start: float, end: float, trigger: Trigger = SALUTE
+) -> PoseSequence:
+    """Return what a range was cut out of: the take around it between its triggers, or the clip."""
+    for take in takes_in(recording, trigger=trigger):
+        if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
+            return take.untrimmed
+    return recording.poses
+
+
+def _shown_in(take: Take, keep_transit: bool) -> Demonstration:
+    if keep_transit:
+        return Demonstration(take.start, take.end, take.untrimmed)
+    return Demonstration(take.stroke_start, take.stroke_end, take.poses)

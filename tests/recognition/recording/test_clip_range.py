@@ -1,0 +1,34 @@
+"""Which part of a recording a range means, without a server."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.recognition.errors import AmbiguousRangeError, RangeError
+from app.recognition.recording.clip_range import find_demonstration, find_surroundings
+from app.recognition.recording.segmentation import takes_in
+from tests.api.recordings import recording_of
+
+
+def test_a_range_from_salute_to_salute_means_the_stroke_between() -> None:
+    recording = recording_of("circle", "line")
+    take = takes_in(recording)[1]
+    assert find_demonstration(recording, take.start, take.end).poses == take.poses
+    whole = find_demonstration(recording, take.start, take.end, keep_transit=True)
+    assert (whole.start, whole.end, whole.poses) == (take.start, take.end, take.untrimmed)
+
+
+def test_a_range_that_means_nothing_is_refused() -> None:
+    recording = recording_of("circle", "line")
+    with pytest.raises(AmbiguousRangeError, match="2 takes"):
+        find_demonstration(recording)
+    with pytest.raises(RangeError, match="no frames lie between 90 s"):
+        find_demonstration(recording, 90.0, 91.0)
+
+
+def test_a_range_was_cut_out_of_the_take_around_it_or_of_the_clip() -> None:
+    recording = recording_of("circle", "line")
+    take = takes_in(recording)[0]
+    middle = (take.start + take.end) / 2
+    assert find_surroundings(recording, middle, take.end) == take.untrimmed
+    assert find_surroundings(recording, 0.0, recording.poses.time[-1]) == recording.poses
