@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import aclosing
 from pathlib import Path
 from typing import Literal
 
 from app.api.events.broadcast import Event
 from app.api.jobs.job import Progress, Report
+from app.api.jobs.time_left import TimeLeft
 from app.api.workers.bag_export_request import BagExportRequest
 from app.api.workers.clip_files import ClipFiles
 from app.api.workers.worker_messages import Failed, Finished, Progressed
@@ -60,15 +62,18 @@ class BagExportJob:
             "stage": progress.stage,
             "done": progress.done,
             "total": progress.total,
+            "eta_s": progress.eta_s,
         }
         return Event("exports", content)
 
     async def run(self, report: Report) -> Finished | Failed:
         """Write the file, and return how that ended."""
         request = self._request.model_dump_json().encode()
+        left = TimeLeft()
         async with aclosing(self._workers.write_bag(request, self._target, self._files)) as steps:
             async for step in steps:
                 if not isinstance(step, Progressed):
                     return step
-                report(Progress(step.stage, step.done, step.total))
+                eta = left.estimate(step.done, step.total, time.monotonic())
+                report(Progress(step.stage, step.done, step.total, eta))
         raise AssertionError("a worker's last message says how it ended")

@@ -120,8 +120,23 @@ export const clips = {
   chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
   /** @type {(clip: string) => string} */
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
-  /** @type {(clip: string) => string} */
-  session: (clip) => `${BASE}/clips/${id(clip)}/session.mcap`,
+  /**
+   * Write a session, and fetch it; `sending` is called once it is written.
+   *
+   * @type {(clip: string, signal: AbortSignal, sending: () => void) => Promise<{ name: string, content: Blob }>}
+   */
+  writeSession: async (clip, signal, sending) => {
+    try {
+      const response = await fetch(`${BASE}/clips/${id(clip)}/session.mcap`, { signal });
+      if (!response.ok) throw new ApiError(await problemOf(response), response.status);
+      sending();
+      const header = response.headers.get("Content-Disposition") ?? "";
+      const [, name] = /filename\*=utf-8''([^;]+)/.exec(header) ?? [null, "session.mcap"];
+      return { name: decodeURIComponent(name), content: await response.blob() };
+    } catch (error) {
+      throw error instanceof ApiError ? error : unreachable();
+    }
+  },
   /** @type {(clip: string) => string} */
   video: (clip) => `${BASE}/clips/${id(clip)}/video`,
 };

@@ -50,6 +50,7 @@ const values = {
   loaded: false,
   health: null,
   checking: null,
+  exporting: null,
   testSet: null,
   testing: null,
   labelled: null,

@@ -235,6 +235,17 @@ export interface CheckProgress {
   total: number;
 }
 
+/** How far the MCAP file of a clip is. */
+export interface ExportProgress {
+  /** The clip. */
+  id: string;
+  stage: string;
+  done: number;
+  total: number;
+  /** Seconds left, where they are known. */
+  eta_s: number | null;
+}
+
 /** The health report on display, or the progress towards it. */
 export interface HealthState {
   key: string;
@@ -325,6 +336,7 @@ export interface State {
   loaded: boolean;
   health: HealthState | null;
   checking: CheckProgress | null;
+  exporting: ExportProgress | null;
   testSet: TestSet | null;
   /** How far the run of the test set is; null while none runs. */
   testing: { id: string; done: number; total: number } | null;

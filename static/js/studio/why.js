@@ -4,6 +4,7 @@ import * as api from "../core/api.js";
 import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
+import { sessionExport } from "../clips/session-export.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
@@ -164,13 +165,12 @@ function remedy(found) {
  * @param {string} href
  * @param {string} title
  * @param {string} note
- * @param {() => void} [onclick]
  */
-const shared = (href, title, note, onclick = () => {}) =>
+const shared = (href, title, note) =>
   h(
     "span",
     {},
-    h("a", { href, download: "", onclick }, title),
+    h("a", { href, download: "" }, title),
     h("small", { className: "dim" }, ` ${note}`),
   );
 
@@ -203,9 +203,7 @@ const shares = (result, why) =>
           ),
           h("small", { className: "dim" }, " recognised again after every change"),
         ),
-    shared(api.clips.session(result.clip_id), "Session as MCAP", "opens in Foxglove", () => {
-      toast("The session is being written", "The download starts by itself, in half a minute.");
-    }),
+    sessionExport(result.clip_id),
   );
 
 /**

@@ -133,7 +133,7 @@ def test_the_topic_is_chosen_in_a_dialogue(
     page.get_by_role("button", name="Recognise", exact=True).click()
     why = page.get_by_role("region", name="Why")
     with page.expect_download() as download:
-        why.get_by_role("link", name="Session as MCAP").click()
+        why.get_by_role("button", name="Session as MCAP").click()
     assert download.value.suggested_filename == "two-divers.mcap"
     download.value.save_as(tmp_path / "session.mcap")
     found = checked(tmp_path / "session.mcap")

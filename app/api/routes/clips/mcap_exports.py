@@ -6,11 +6,12 @@ import json
 from pathlib import Path
 from urllib.parse import quote
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.jobs.bag_export import BagExportJob
 from app.api.jobs.extraction import files_of
@@ -39,19 +40,19 @@ router = APIRouter(prefix="/clips", tags=["clips"])
         200: {"description": "An MCAP file with its schemas inside", "content": {MEDIA_TYPE: {}}},
     },
 )
-async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
+async def get_session(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
     """Send keypoints, salute, takes, recognitions and video of a clip as one MCAP file.
 
     Its messages are JSON with their schemas beside them, in Foxglove's own terms where it has some.
+    How far it is comes as `exports` among the events; closing the request cancels it.
     """
-    request = await run_in_threadpool(_request, studio, clip_id)
+    content = await run_in_threadpool(_request, studio, clip_id)
     # The name of a file that is still being written: what a crash leaves is swept at the start.
     target = studio.clips.new_partial()
     try:
         files = await run_in_threadpool(files_of, studio.clips, clip_id)
-        ended = await studio.runner.run(
-            BagExportJob(clip_id, request, target, files, studio.workers)
-        )
+        job = BagExportJob(clip_id, content, target, files, studio.workers)
+        ended = await while_connected(request, studio.runner.run(job))
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
     except JobCancelled as error:
@@ -60,7 +61,7 @@ async def get_session(clip_id: str, studio: CurrentStudio) -> FileResponse:
     except BaseException:
         target.unlink(missing_ok=True)
         raise
-    shown = quote(f"{Path(request.clip).stem}.mcap", safe="")
+    shown = quote(f"{Path(content.clip).stem}.mcap", safe="")
     disposition = f"attachment; filename=\"session.mcap\"; filename*=utf-8''{shown}"
     return FileResponse(
         target,

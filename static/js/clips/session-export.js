@@ -1,0 +1,125 @@
+// The export of a clip as MCAP: a button, and while the file is written its progress with Cancel.
+
+import * as api from "../core/api.js";
+import { h } from "../core/dom.js";
+import { percent, timeLeft } from "../core/format.js";
+import { follow, state } from "../core/state.js";
+import { toast } from "../core/toasts.js";
+
+/** @import { ExportProgress } from "../core/types.d.ts" */
+
+/** @type {Map<string, AbortController>} */
+const running = new Map(); // by clip
+/** @type {Map<string, HTMLElement>} */
+const elements = new Map(); // by clip; they stay when the explanation around them is drawn anew
+
+/**
+ * How far an export is, in words.
+ *
+ * @param {ExportProgress | null} progress
+ */
+export function exportWords(progress) {
+  if (!progress) return "Preparing the session";
+  const { stage, done, total, eta_s: left } = progress;
+  if (stage === "sending") return "Sending the file";
+  if (!total) return "Writing the session";
+  const rest = left === null ? "" : `, ${timeLeft(left)}`;
+  return `Writing the session, ${percent(done / total)}${rest}`;
+}
+
+/**
+ * Let the browser save a file that is there.
+ *
+ * @param {{ name: string, content: Blob }} file
+ */
+export function saveFile({ name, content }) {
+  const href = URL.createObjectURL(content);
+  h("a", { href, download: name }).click();
+  // The download has begun by then; until it is saved the browser keeps the content itself.
+  setTimeout(() => URL.revokeObjectURL(href), 60_000);
+}
+
+/**
+ * @param {HTMLElement} box
+ * @param {string} clip
+ * @param {HTMLElement | null} problem
+ */
+function drawStart(box, clip, problem) {
+  const button = h(
+    "button",
+    { type: "button", className: "link", onclick: () => run(box, clip) },
+    problem ? "Try the session again" : "Session as MCAP",
+  );
+  const had = box.contains(document.activeElement);
+  box.replaceChildren(button, problem ?? h("small", { className: "dim" }, " opens in Foxglove"));
+  if (had) button.focus();
+}
+
+/**
+ * @param {HTMLElement} box
+ * @param {ExportProgress | null} progress
+ */
+function advance(box, progress) {
+  const bar = box.querySelector("progress");
+  const words = box.querySelector("[role=status]");
+  if (!bar || !words) return;
+  words.textContent = exportWords(progress);
+  if (progress?.total && progress.stage !== "sending")
+    Object.assign(bar, { max: progress.total, value: progress.done });
+  else bar.removeAttribute("value");
+}
+
+/**
+ * @param {HTMLElement} box
+ * @param {string} clip
+ */
+async function run(box, clip) {
+  const leaving = new AbortController();
+  running.set(clip, leaving);
+  const cancel = h("button", { type: "button", onclick: () => leaving.abort() }, "Cancel");
+  cancel.setAttribute("aria-label", "Cancel the session");
+  box.replaceChildren(
+    h("span", { role: "status" }),
+    h("progress", { "aria-label": "Progress of the session" }),
+    cancel,
+  );
+  cancel.focus();
+  advance(box, null);
+  let problem = null;
+  try {
+    const sending = () =>
+      advance(box, { id: clip, stage: "sending", done: 0, total: 0, eta_s: null });
+    saveFile(await api.clips.writeSession(clip, leaving.signal, sending));
+  } catch (error) {
+    if (leaving.signal.aborted) toast("The session is cancelled", "Nothing was downloaded.");
+    else
+      problem = h(
+        "small",
+        { className: "session-problem", role: "alert" },
+        `The session could not be downloaded: ${error.message} Nothing is lost: try it again.`,
+      );
+  } finally {
+    running.delete(clip);
+  }
+  drawStart(box, clip, problem);
+}
+
+/**
+ * The element that exports a clip.
+ *
+ * @param {string} clip
+ */
+export function sessionExport(clip) {
+  const known = elements.get(clip);
+  if (known) return known;
+  const box = h("span", { className: "session-export" });
+  elements.set(clip, box);
+  drawStart(box, clip, null);
+  return box;
+}
+
+follow(["exporting"], () => {
+  const { exporting } = state;
+  const box = exporting && elements.get(exporting.id);
+  if (box && running.has(exporting.id)) advance(box, exporting);
+});

@@ -1,0 +1,89 @@
+"""A clip leaves as MCAP: the page shows how far it is, cancels it, and says what went wrong."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.settings import Settings
+from tests.api.running import Running
+from tests.bags.exports import checked
+from tests.browser.accessibility import faults
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+
+pytestmark = pytest.mark.slow
+
+SESSION = "**/session.mcap"
+
+
+@pytest.fixture
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "exported")
+
+
+def recognised(open_page: OpenPage, library: Library) -> Page:
+    """Open the page at a recognition of the clip."""
+    return open_page(library.address | {"recognition": library.recognise("circle")}, scene=False)
+
+
+def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
+    open_page: OpenPage, library: Library, tmp_path: Path
+) -> None:
+    page = recognised(open_page, library)
+    # Whatever the page says while it is written, since that may be short.
+    page.evaluate(
+        "window.said = []; new MutationObserver(() => { const now = document.querySelector("
+        "'.session-export [role=status]'); if (now) window.said.push(now.textContent); })"
+        ".observe(document.body, {subtree: true, childList: true, characterData: true})"
+    )
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Session as MCAP").click()
+    assert download.value.suggested_filename == "exported.mcap"
+    download.value.save_as(tmp_path / "exported.mcap")
+    assert len(checked(tmp_path / "exported.mcap")["/takes"]) == 1
+    expect(page.get_by_role("button", name="Session as MCAP")).to_be_focused()
+    said = page.evaluate("window.said")
+    assert said[0] == "Preparing the session"
+    assert any(re.match(r"Writing the session, \d+ %", words) for words in said), said
+
+
+def test_a_session_can_be_cancelled(
+    open_page: OpenPage, server: Running, library: Library, settings: Settings
+) -> None:
+    long = add_clip(server, *["circle", "line"] * 40, name="long.mp4")
+    query = {"clip_id": long, "language_id": library.language, "start": 0, "end": 3}
+    answer = library.client.post("/api/v1/recognitions", json=query)
+    address = {"clip": long, "language": library.language, "recognition": answer.json()["id"]}
+    page = open_page(address, scene=False)
+    page.get_by_role("button", name="Session as MCAP").click()
+    expect(page.get_by_text("Writing the session")).to_be_visible()
+    assert faults(page) == []
+    page.get_by_role("button", name="Cancel the session").click()
+    expect(page.get_by_text("The session is cancelled")).to_be_visible()
+    expect(page.get_by_role("button", name="Session as MCAP")).to_be_visible()
+    # The server stopped writing and left nothing.
+    expect(page.get_by_text("The session is cancelled")).to_have_count(0)
+    left = {each.name for each in (settings.data_dir / "clips").iterdir()}
+    assert left == {clip["id"] for clip in library.client.get("/api/v1/clips").json()}
+
+
+def test_a_session_that_fails_says_why_and_can_be_tried_again(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = recognised(open_page, library)
+    page.route(SESSION, lambda route: route.abort())
+    page.get_by_role("button", name="Session as MCAP").click()
+    problem = page.get_by_role("alert").filter(has_text="could not be downloaded")
+    expect(problem).to_contain_text("The server did not answer")
+    expect(problem).to_contain_text("try it again")
+    assert faults(page) == []
+    page.unroute(SESSION)
+    with page.expect_download():
+        page.get_by_role("button", name="Try the session again").click()
