@@ -60,6 +60,7 @@ from app.api.routes.languages import (
     practice,
     revisions,
     slates,
+    take_tables,
     test_sets,
     triggers,
 )
@@ -146,6 +147,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         revisions.router,
         checks.router,
         test_sets.router,
+        take_tables.router,
         practice.router,
         slates.router,
         language_settings.router,

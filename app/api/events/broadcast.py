@@ -33,8 +33,8 @@ class Event:
     Attributes
     ----------
     kind
-        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks`` or
-        ``exports``: how far one is.
+        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks``,
+        ``exports`` or ``tables``: how far one is.
     data
         JSON types; at least ``id``. Of ``jobs`` that run: ``progress``, the fields of `Progress`.
 

@@ -24,7 +24,8 @@ async def follow_changes(studio: CurrentStudio) -> EventSourceResponse:
     """Stream what changes, as server-sent events.
 
     `clips`, `languages` and `recognitions` carry the `id` to load again, `jobs` the whole job,
-    `checks` how far the check of a language is, `exports` how far a bag is.
+    `checks` how far the check of a language is, `exports` how far a bag is,
+    `tables` how far a table of takes is.
     One stream for all, because browsers open only six connections to a server.
     """
     return EventSourceResponse(_change_events(studio))

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from app.cli.batches.table import Row
+from app.evaluation.take_table import Row
 
 
 class Journal:

@@ -11,16 +11,15 @@ from typing import Any
 from app import __version__
 from app.cli.batches.folder import list_clips, measure_bytes
 from app.cli.batches.journal import Journal, describe_state
-from app.cli.batches.table import Row, check_table, write_table
+from app.cli.batches.table import check_table, write_table
 from app.cli.clip_argument import ClipReading, recognize_clip
 from app.cli.terminal import batch_bar, describe_error, people
 from app.clip_sources import source_of
-from app.recognition import Recognition, Recognizer, Recording, Take
+from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip
+from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
-
-NO_TAKE = "no take found"
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +111,7 @@ class FolderBatch:
         """Return whatever changes a result, as plain JSON types."""
         return {
             "version": __version__,
+            "columns": list(COLUMNS),
             "language": seal(json.loads(self.recognizer.language.to_json())),
             "profile": self.recognizer.profile,
             "salutes": self.spotter is None,
@@ -124,50 +124,14 @@ class FolderBatch:
         return clip.relative_to(self.folder).as_posix()
 
     def _recognize(self, clip: Path) -> list[Row]:
-        language = self.recognizer.language
-        constant = {
-            "clip": self._name(clip),
-            "language": language.name,
-            "revision": language.revision,
-            "profile": self.recognizer.profile,
-        }
+        name = self._name(clip)
         try:
             recording, results = recognize_clip(
                 clip, None, self.reading, self.recognizer, self.spotter
             )
         except (OsgError, OSError) as error:
-            return [constant | _row(None, [describe_error(error)])]
-        if not results:
-            return [constant | _row(None, [*recording.warnings, NO_TAKE])]
-        return [
-            constant | _row(number, _list_faults(recording, take, result), take, result)
-            for number, (take, result) in enumerate(results, start=1)
-        ]
-
-
-def _list_faults(recording: Recording, take: Take, result: Recognition) -> list[str]:
-    unclosed = [] if take.closed else ["no second salute"]
-    poor = [result.fault] if result.fault else []
-    return [*recording.warnings, *unclosed, *result.findings, *poor]
-
-
-def _row(
-    number: int | None,
-    faults: Sequence[str],
-    take: Take | None = None,
-    result: Recognition | None = None,
-) -> Row:
-    return {
-        "take": number,
-        "start": take and round(take.start, 3),
-        "end": take and round(take.end, 3),
-        "closed": take and take.closed,
-        "label": result and result.label,
-        "nearest": result and result.nearest,
-        "confidence": result and round(result.confidence, 4),
-        "margin": result and (round(result.margin, 4) if abs(result.margin) < 1e300 else None),
-        "faults": "; ".join(faults),
-    }
+            return [row_of_fault(name, self.recognizer, describe_error(error))]
+        return rows_of_clip(name, self.recognizer, recording, results)
 
 
 def _summarise(rows: Sequence[Row]) -> str:

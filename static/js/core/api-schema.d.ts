@@ -1879,6 +1879,82 @@ export interface components {
             words: string;
         };
         /**
+         * TakeRowView
+         * @description A take, or a clip without one, as `osg-studio recognize FOLDER --table` writes it.
+         */
+        TakeRowView: {
+            /** Clip Id */
+            clip_id: string;
+            /** Clip */
+            clip: string;
+            /**
+             * Take
+             * @description From 1; null: no take was found, see `faults`
+             */
+            take: number | null;
+            /** Start */
+            start: number | null;
+            /** End */
+            end: number | null;
+            /** Closed */
+            closed: boolean | null;
+            /**
+             * Label
+             * @description Null: rejected
+             */
+            label: string | null;
+            /** Nearest */
+            nearest: string | null;
+            /**
+             * Runner Up
+             * @description The nearest gesture but `nearest`
+             */
+            runner_up: string | null;
+            /** Confidence */
+            confidence: number | null;
+            /** Margin */
+            margin: number | null;
+            /**
+             * Expected
+             * @description By the language's test set; null: not in it
+             */
+            expected: string | null;
+            /** Faults */
+            faults: string;
+            /** Language */
+            language: string;
+            /** Revision */
+            revision: number;
+            /** Profile */
+            profile: string;
+        };
+        /**
+         * TakeTableRequest
+         * @description Clips whose takes are recognised.
+         */
+        TakeTableRequest: {
+            /**
+             * Id
+             * @description Chosen by the client: names its `tables` events
+             */
+            id: string;
+            /** Clip Ids */
+            clip_ids: string[];
+        };
+        /**
+         * TakeTableView
+         * @description One row for each take, clip after clip.
+         */
+        TakeTableView: {
+            /** Rows */
+            rows: components["schemas"]["TakeRowView"][];
+            /**
+             * Csv
+             * @description The same rows as the command line writes them
+             */
+            csv: string;
+        };
+        /**
          * TakeView
          * @description What lies between two salutes, in seconds of the clip.
          */

@@ -1,0 +1,47 @@
+"""Route of the table of takes: all takes of several clips, recognised by one language."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from fastapi import APIRouter, Request
+from starlette.concurrency import run_in_threadpool
+
+from app.api.http.connection import while_connected
+from app.api.http.problems import problem_responses
+from app.api.http.schemas.take_tables import TakeRowView, TakeTableRequest, TakeTableView
+from app.api.jobs.job import JobCancelled
+from app.api.jobs.take_table import TakeTableJob
+from app.api.middleware.shutdown import stopping
+from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.take_tables import recognize_clip_takes
+from app.evaluation.take_table import write_csv
+from app.store import Clip, LanguageState
+
+router = APIRouter(prefix="/languages/{language_id}/take-table", tags=["languages"])
+
+
+@router.post("", responses=problem_responses(404))
+async def make_take_table(
+    request: Request, language_id: str, wanted: TakeTableRequest, studio: CurrentStudio
+) -> TakeTableView:
+    """Recognise all takes of clips, and return one table; nothing is kept.
+
+    How far it is comes as `tables` among the events; closing the request cancels it.
+    """
+    state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
+    job = TakeTableJob(wanted.id, clips, partial(recognize_clip_takes, studio, state))
+    try:
+        rows = await while_connected(request, studio.runner.run(job))
+    except JobCancelled as error:
+        raise stopping() from error
+    return TakeTableView(rows=[TakeRowView(**row) for row in rows], csv=write_csv(rows))
+
+
+def _load(
+    studio: Studio, language_id: str, wanted: TakeTableRequest
+) -> tuple[LanguageState, list[Clip]]:
+    return (
+        studio.languages.get(language_id),
+        [studio.clips.get(clip_id).clip for clip_id in wanted.clip_ids],
+    )

@@ -1,0 +1,90 @@
+"""Take tables: the rows of a stored clip, made as the command line makes them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from app.api.http.problems import ProblemError, problem_of
+from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_takes import find_takes
+from app.api.services.stored_recognitions import require_landmarks_of
+from app.api.services.studio import Studio
+from app.evaluation.take_table import row_of_fault, rows_of_clip
+from app.recognition import OsgError, Recognition, Take
+from app.store import Clip, LabelledTake, LanguageState, StoreError
+
+SAME_TAKE = 0.5
+"""Share of a take that a labelled one covers when both are the same."""
+
+
+def recognize_clip_takes(
+    studio: Studio, state: LanguageState, clip: Clip, advance: Callable[[float], None]
+) -> list[dict[str, Any]]:
+    """Recognise every take of a clip, and return its rows with the clip's id.
+
+    A clip that cannot be recognised is a row with its fault.
+
+    Parameters
+    ----------
+    studio, state
+        The language's revision, in its studio.
+    clip
+        The clip.
+    advance
+        Called with the share of the takes that is done; an exception of it ends the work.
+
+    """
+    recognizer = studio.recognizer(state)
+    try:
+        recording = studio.recording(clip.id)
+        require_landmarks_of(clip, recording.poses, recognizer.language)
+        takes = _list_takes(studio, state, clip)
+        results: list[tuple[Take, Recognition]] = []
+        for take in takes:
+            results.append((take, recognizer.recognize(take.poses)))
+            advance(len(results) / len(takes))
+        expected = _find_expected(studio, state, clip, takes)
+        rows = rows_of_clip(clip.name, recognizer, recording, results, expected)
+    except (OsgError, ProblemError, StoreError) as error:
+        rows = [row_of_fault(clip.name, recognizer, problem_of(error).detail)]
+    return [row | {"clip_id": clip.id} for row in rows]
+
+
+def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
+    """Return the takes that the studio shows for a clip, with their strokes."""
+    recording, trigger = studio.recording(clip.id), studio.language(state).trigger
+    return [
+        Take(
+            start=found.start,
+            end=found.end,
+            closed=found.closed,
+            poses=demonstration_in(recording, found.start, found.end, trigger=trigger).poses,
+            stroke_start=found.stroke_start,
+            stroke_end=found.stroke_end,
+            untrimmed=recording.poses.between(found.start, found.end),
+        )
+        for found in find_takes(studio, clip.id, state)
+    ]
+
+
+def _find_expected(
+    studio: Studio, state: LanguageState, clip: Clip, takes: list[Take]
+) -> dict[int, str]:
+    """Return by a take's number the gesture that the language's test set expects."""
+    labelled = [
+        tested.take
+        for tested in studio.labelled.of(state.record.id)
+        if tested.take.clip_id == clip.id
+    ]
+    return {
+        number: known.expected
+        for number, take in enumerate(takes, start=1)
+        for known in labelled
+        if _is_same(take, known)
+    }
+
+
+def _is_same(take: Take, known: LabelledTake) -> bool:
+    shared = min(take.end, known.end) - max(take.start, known.start)
+    return shared > SAME_TAKE * max(take.end - take.start, known.end - known.start)

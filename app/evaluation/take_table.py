@@ -1,0 +1,134 @@
+"""Table of takes: one row for each take of several clips, or for a clip without takes."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from app.recognition import Recognition, Recognizer, Recording, Take
+
+COLUMNS: Final[dict[str, type]] = {
+    "clip": str,
+    "take": int,
+    "start": float,
+    "end": float,
+    "closed": bool,
+    "label": str,
+    "nearest": str,
+    "runner_up": str,
+    "confidence": float,
+    "margin": float,
+    "expected": str,
+    "faults": str,
+    "language": str,
+    "revision": int,
+    "profile": str,
+}
+"""Columns in order. ``start`` and ``end`` are seconds of the clip; ``label`` is empty for a
+rejected take, all of a take for a clip without one; ``expected`` is empty where no test set says
+it; ``faults`` are sentences between ``; ``."""
+
+NO_TAKE: Final = "no take found"
+
+Row = dict[str, Any]
+"""A value or None for each of `COLUMNS`."""
+
+
+def rows_of_clip(
+    clip: str,
+    recognizer: Recognizer,
+    recording: Recording,
+    results: Sequence[tuple[Take, Recognition]],
+    expected: Mapping[int, str] | None = None,
+) -> list[Row]:
+    """Return the rows of a clip's takes, or the one of a clip without takes.
+
+    Parameters
+    ----------
+    clip
+        Its name.
+    recognizer
+        What recognised them.
+    recording
+        What was seen in the clip.
+    results
+        The takes and what they were recognised as.
+    expected
+        Known labels by the take's number, from 1.
+
+    """
+    if not results:
+        return [row_of_fault(clip, recognizer, *recording.warnings, NO_TAKE)]
+    known = expected or {}
+    return [
+        _constant(clip, recognizer)
+        | {
+            "take": number,
+            "start": round(take.start, 3),
+            "end": round(take.end, 3),
+            "closed": take.closed,
+            "label": result.label,
+            "nearest": result.nearest,
+            "runner_up": _find_runner_up(result),
+            "confidence": round(result.confidence, 4),
+            "margin": round(result.margin, 4) if abs(result.margin) < 1e300 else None,
+            "expected": known.get(number),
+            "faults": "; ".join(_list_faults(recording, take, result)),
+        }
+        for number, (take, result) in enumerate(results, start=1)
+    ]
+
+
+def row_of_fault(clip: str, recognizer: Recognizer, *faults: str) -> Row:
+    """Return the row of a clip without takes, or of one that cannot be read."""
+    return dict.fromkeys(COLUMNS) | _constant(clip, recognizer) | {"faults": "; ".join(faults)}
+
+
+def write_csv(rows: Sequence[Row]) -> str:
+    """Write rows as comma-separated values under a header."""
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, list(COLUMNS))
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({name: _to_cell(row[name]) for name in COLUMNS})
+    return text.getvalue()
+
+
+def _constant(clip: str, recognizer: Recognizer) -> Row:
+    language = recognizer.language
+    return {
+        "clip": clip,
+        "language": language.name,
+        "revision": language.revision,
+        "profile": recognizer.profile,
+    }
+
+
+def _find_runner_up(result: Recognition) -> str | None:
+    """Return the nearest gesture but `nearest`; None where no other can be compared."""
+    scores = [
+        (score, label)
+        for score, label in zip(result.scores, result.gestures, strict=False)
+        if label != result.nearest and np.isfinite(score)
+    ]
+    return min(scores)[1] if scores else None
+
+
+def _list_faults(recording: Recording, take: Take, result: Recognition) -> list[str]:
+    unclosed = [] if take.closed else ["no second salute"]
+    poor = [result.fault] if result.fault else []
+    return [*recording.warnings, *unclosed, *result.findings, *poor]
+
+
+def _to_cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    # A spreadsheet would run a text that begins so.
+    text = str(value)
+    return f"'{text}" if isinstance(value, str) and text[:1] in ("=", "+", "-", "@") else text
