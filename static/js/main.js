@@ -35,6 +35,7 @@ import {
   showSelection,
   stageButtons,
 } from "./studio/stage.js";
+import { drawTakesButton, openTakeTable } from "./studio/take-table.js";
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
@@ -74,6 +75,7 @@ function drawEverything() {
   follow(["clips", "jobs", "clip"], drawClips);
   follow(["clips", "jobs"], drawBatch);
   follow(["clips", "gestures"], drawTableButton);
+  follow(["clips", "gestures"], drawTakesButton);
   follow(["samples"], drawSampleClips);
   follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
   follow(["languages", "language"], drawPicker);
@@ -156,6 +158,7 @@ async function start() {
   bindKeyList({ loadAll: loadViews, startTour, showExample });
   byId("record-clip").onclick = () => go("live", { source: null });
   byId("make-gestures").onclick = openGestureTable;
+  byId("all-takes").onclick = openTakeTable;
   bindUndo();
   showSession();
   acceptFiles();

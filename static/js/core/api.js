@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TestSet, Timeline, TriggerDraft, Workspace } from "./types.d.ts" */
+/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -54,12 +54,12 @@ export async function problemOf(response) {
 /**
  * @param {string} method
  * @param {string} path
- * @param {{ body?: any, headers?: Record<string, string>, raw?: boolean }} [options]
+ * @param {{ body?: any, headers?: Record<string, string>, raw?: boolean, signal?: AbortSignal }} [options]
  * @returns {Promise<any>}
  */
-async function request(method, path, { body, headers = {}, raw = false } = {}) {
+async function request(method, path, { body, headers = {}, raw = false, signal } = {}) {
   /** @type {RequestInit & { headers: Record<string, string> }} */
-  const options = { method, headers: { ...headers } };
+  const options = { method, headers: { ...headers }, signal };
   if (body !== undefined) {
     options.body = raw ? body : JSON.stringify(body);
     options.headers["Content-Type"] = "application/json";
@@ -267,6 +267,12 @@ export const languages = {
   removeDemonstration: (language, label, index) =>
     request("DELETE", `/languages/${id(language.id)}/demonstrations/${index}?label=${id(label)}`, {
       headers: matching(language),
+    }),
+  /** @type {(language: string, table: string, clips: string[], signal: AbortSignal) => Promise<TakeTable>} */
+  takeTable: (language, table, clips, signal) =>
+    request("POST", `/languages/${id(language)}/take-table`, {
+      body: { id: table, clip_ids: clips },
+      signal,
     }),
   /** @type {(language: string) => Promise<ExportContents>} */
   exportContents: (language) => request("GET", `/languages/${id(language)}/export/contents`),

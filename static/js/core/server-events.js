@@ -47,6 +47,7 @@ export function followServer(handlers, lost = false) {
   stream.addEventListener("languages", (event) => handlers.languages(data(event).id));
   stream.addEventListener("checks", (event) => update({ checking: data(event) }));
   stream.addEventListener("exports", (event) => update({ exporting: data(event) }));
+  stream.addEventListener("tables", (event) => update({ tabling: data(event) }));
   stream.addEventListener("test-sets", (event) => update({ labelled: { id: data(event).id } }));
   stream.addEventListener("tests", (event) => {
     const run = data(event);

@@ -51,6 +51,7 @@ const values = {
   health: null,
   checking: null,
   exporting: null,
+  tabling: null,
   testSet: null,
   testing: null,
   labelled: null,

@@ -41,6 +41,8 @@ export type PracticeRecord = Schemas["PracticeRecordView"];
 export type PracticeTake = Schemas["PracticeTakeView"];
 export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
+export type TakeTable = Schemas["TakeTableView"];
+export type TakeRow = Schemas["TakeRowView"];
 export type TestSet = Schemas["TestSetView"];
 export type LabelledTake = Schemas["LabelledTakeView"];
 export type TriggerDraft = Schemas["TriggerDraft"];
@@ -337,6 +339,8 @@ export interface State {
   health: HealthState | null;
   checking: CheckProgress | null;
   exporting: ExportProgress | null;
+  /** How far a table of takes is; its id is the table's. */
+  tabling: ExportProgress | null;
   testSet: TestSet | null;
   /** How far the run of the test set is; null while none runs. */
   testing: { id: string; done: number; total: number } | null;

@@ -1,0 +1,228 @@
+// The table of all takes of clips: recognised at once, sorted, filtered, and kept as CSV.
+
+import { saveFile } from "../clips/session-export.js";
+import { select } from "../clips/clip-store.js";
+import * as api from "../core/api.js";
+import { byId, h } from "../core/dom.js";
+import { moment, percent, plural, timeLeft } from "../core/format.js";
+import { follow, state, update } from "../core/state.js";
+import { shownRows, sortedRows } from "./take-rows.js";
+
+/** @import { ExportProgress, State, TakeRow, TakeTable } from "../core/types.d.ts" */
+
+/** @type {[string, keyof TakeRow][]} */
+const COLUMNS = [
+  ["Clip", "clip"],
+  ["Start", "start"],
+  ["End", "end"],
+  ["Label", "label"],
+  ["Confidence", "confidence"],
+  ["Runner-up", "runner_up"],
+  ["Expected", "expected"],
+  ["Faults", "faults"],
+];
+
+/** @type {{ id: string, bar: HTMLProgressElement, words: HTMLElement } | null} */
+let running = null;
+
+/**
+ * Show the button as soon as there are takes to recognise.
+ *
+ * @param {State} state
+ */
+export function drawTakesButton({ clips, gestures }) {
+  byId("all-takes").hidden =
+    !gestures?.gestures.length || !clips.some(({ status }) => status === "done");
+}
+
+/** @param {ExportProgress | null} progress */
+function advance(progress) {
+  if (!running || progress?.id !== running.id) return;
+  const { stage, done, total, eta_s: left } = progress;
+  const rest = left === null ? "" : `, ${timeLeft(left)}`;
+  running.words.textContent = `Recognising ${stage}, ${percent(done / total)}${rest}`;
+  Object.assign(running.bar, { max: total, value: done });
+}
+
+/**
+ * Show a take in the studio, where its votes and reasons are.
+ *
+ * @param {TakeRow} row
+ */
+function jump(row) {
+  byId("dialog").close();
+  select(row.clip_id);
+  update({ take: row.take === null ? null : row.take - 1, start: null, end: null });
+}
+
+/** @param {TakeRow} row */
+function cellsOf(row) {
+  const name = row.take === null ? row.clip : `${row.clip}, take ${row.take}`;
+  const result = row.take === null ? "" : (row.label ?? `refused, nearest ${row.nearest}`);
+  const wrong = row.take !== null && row.expected !== null && row.expected !== row.label;
+  return [
+    h(
+      "button",
+      { type: "button", className: "link", title: "Show in the studio", onclick: () => jump(row) },
+      name,
+    ),
+    row.start === null ? "" : moment(row.start),
+    row.end === null ? "" : moment(row.end),
+    result,
+    row.confidence === null ? "" : percent(row.confidence),
+    row.runner_up ?? "",
+    row.expected === null ? "" : wrong ? `no: ${row.expected}` : "yes",
+    row.faults,
+  ];
+}
+
+/**
+ * The table with its filter, its order and its file.
+ *
+ * @param {TakeTable} table
+ */
+function resultOf({ rows, csv }) {
+  let by = /** @type {keyof TakeRow | null} */ (null);
+  let down = false;
+  const labels = [...new Set(rows.flatMap(({ label }) => label ?? []))].sort();
+  const filter = h(
+    "select",
+    { id: "take-filter" },
+    h("option", { value: "" }, "All takes"),
+    h("option", { value: "refused" }, "Refused"),
+    h("option", { value: "faults" }, "With faults"),
+    labels.map((label) => h("option", { value: `=${label}` }, label)),
+  );
+  const count = h("span", { className: "dim", role: "status" });
+  const body = h("tbody");
+  const heads = COLUMNS.map(([title, name]) => {
+    const sort = () => {
+      down = by === name && !down;
+      by = name;
+      draw();
+    };
+    return h(
+      "th",
+      { scope: "col" },
+      h("button", { type: "button", className: "link", onclick: sort }, title),
+    );
+  });
+  const draw = () => {
+    const shown = sortedRows(shownRows(rows, filter.value), by, down);
+    count.textContent = `${shown.length} of ${plural(rows.length, "row")}`;
+    heads.forEach((head, at) => {
+      const order = COLUMNS[at][1] === by ? (down ? "descending" : "ascending") : "none";
+      head.setAttribute("aria-sort", order);
+    });
+    body.replaceChildren(
+      ...shown.map((row) =>
+        h(
+          "tr",
+          {},
+          cellsOf(row).map((cell) => h("td", {}, cell)),
+        ),
+      ),
+    );
+  };
+  filter.onchange = draw;
+  draw();
+  const file = () => ({ name: "takes.csv", content: new Blob([csv], { type: "text/csv" }) });
+  return [
+    h(
+      "div",
+      { className: "take-tools" },
+      h("label", { for: "take-filter" }, "Show"),
+      filter,
+      count,
+      h("span", { className: "spacer" }),
+      h(
+        "button",
+        {
+          type: "button",
+          title: "All rows, in the order of the clips",
+          onclick: () => saveFile(file()),
+        },
+        "Export as CSV",
+      ),
+    ),
+    h(
+      "div",
+      { className: "take-scroll", tabIndex: 0, role: "region", "aria-label": "Table of takes" },
+      h("table", {}, h("thead", {}, h("tr", {}, heads)), body),
+    ),
+  ];
+}
+
+/** The clips to choose from; all are chosen at first. */
+function clipChoice() {
+  const ready = state.clips.filter(({ status }) => status === "done");
+  const boxes = ready.map((clip) =>
+    h("input", { type: "checkbox", value: clip.id, checked: true }),
+  );
+  const every = h("input", { type: "checkbox", checked: true });
+  every.onchange = () => {
+    for (const box of boxes) box.checked = every.checked;
+  };
+  const element = h(
+    "fieldset",
+    { className: "take-clips" },
+    h("legend", {}, "Clips"),
+    h("label", {}, every, h("b", {}, `All ${plural(ready.length, "clip")}`)),
+    ready.map((clip, at) => h("label", {}, boxes[at], clip.name)),
+  );
+  return { element, chosen: () => boxes.filter((box) => box.checked).map(({ value }) => value) };
+}
+
+/** Open the dialog that recognises all takes. */
+export function openTakeTable() {
+  const language = state.gestures;
+  if (!language) return;
+  const dialog = byId("dialog");
+  const leaving = new AbortController();
+  const { element, chosen } = clipChoice();
+  const content = h("div", { className: "take-content" }, element);
+  const start = h("button", { type: "submit", className: "primary" }, "Recognise all takes");
+  const close = h("button", { type: "button", onclick: () => dialog.close() }, "Close");
+  const fail = (/** @type {string} */ text) =>
+    content.replaceChildren(element, h("p", { className: "field-problem", role: "alert" }, text));
+  const recognise = async () => {
+    const clips = chosen();
+    if (!clips.length) return fail("No clip is chosen; choose one whose takes are recognised.");
+    const bar = h("progress", { "aria-label": "Progress of the table" });
+    const words = h("p", { role: "status" }, "Recognising");
+    const id = Array.from(crypto.getRandomValues(new Uint32Array(4)), String).join("-");
+    running = { id, bar, words };
+    content.replaceChildren(words, bar);
+    start.hidden = true;
+    close.textContent = "Cancel";
+    try {
+      const table = await api.languages.takeTable(language.id, id, clips, leaving.signal);
+      content.replaceChildren(...resultOf(table));
+    } catch (error) {
+      start.hidden = false;
+      fail(`The takes could not be recognised: ${error.message}`);
+    } finally {
+      running = null;
+      close.textContent = "Close";
+    }
+    return undefined;
+  };
+  const form = h(
+    "form",
+    { method: "dialog", className: "take-table", noValidate: true },
+    h("h2", { id: "dialog-title" }, `All takes, recognised by ${language.name}`),
+    content,
+    h("div", { className: "dialog-actions" }, close, start),
+  );
+  form.onsubmit = (event) => {
+    event.preventDefault();
+    if (!start.hidden) recognise();
+  };
+  dialog.replaceChildren(form);
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = () => leaving.abort();
+  dialog.showModal();
+  start.focus();
+}
+
+follow(["tabling"], () => advance(state.tabling));
