@@ -77,7 +77,7 @@ def rows_of_clip(
             "confidence": round(result.confidence, 4),
             "margin": round(result.margin, 4) if abs(result.margin) < 1e300 else None,
             "expected": known.get(number),
-            "faults": "; ".join(_list_faults(recording, take, result)),
+            "faults": "; ".join(_list_faults(recording, take, result, recognizer)),
         }
         for number, (take, result) in enumerate(results, start=1)
     ]
@@ -118,8 +118,10 @@ def _find_runner_up(result: Recognition) -> str | None:
     return min(scores)[1] if scores else None
 
 
-def _list_faults(recording: Recording, take: Take, result: Recognition) -> list[str]:
-    unclosed = [] if take.closed else ["no second salute"]
+def _list_faults(
+    recording: Recording, take: Take, result: Recognition, recognizer: Recognizer
+) -> list[str]:
+    unclosed = [] if take.closed else [f"no second {recognizer.language.trigger.noun}"]
     poor = [result.fault] if result.fault else []
     return [*recording.warnings, *unclosed, *result.findings, *poor]
 
