@@ -13,7 +13,7 @@ import { drawConnection, followServer } from "./core/server-events.js";
 import { showSession } from "./core/session.js";
 import { follow, followHistory, readUrl, selectedClip, state, update } from "./core/state.js";
 import { bindSun } from "./core/sun.js";
-import { attempt, toast } from "./core/toasts.js";
+import { attempt, reserveToasts, toast } from "./core/toasts.js";
 import { bindUndo } from "./core/undo.js";
 import { followViews, go, loadViews } from "./core/views.js";
 import { bindExport, drawExportButton } from "./export/export-dialog.js";
@@ -77,7 +77,10 @@ function drawEverything() {
   follow(["clips", "gestures"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
   follow(["samples"], drawSampleClips);
-  follow(["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded"], drawWelcome);
+  follow(
+    ["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded", "role"],
+    drawWelcome,
+  );
   follow(["languages", "language"], drawPicker);
   follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
@@ -160,6 +163,7 @@ async function start() {
   byId("make-gestures").onclick = openGestureTable;
   byId("all-takes").onclick = openTakeTable;
   bindUndo();
+  reserveToasts();
   showSession();
   acceptFiles();
   findClips();

@@ -6,6 +6,25 @@ import { byId, h, iconButton } from "./dom.js";
 const SHOWN_FOR = { info: 6000, error: 15000 };
 
 /**
+ * Reserve the height of the messages, so that they lie over nothing that is used next.
+ *
+ * @param {HTMLElement} box
+ */
+function reserve(box) {
+  const height = box.offsetHeight;
+  document.documentElement.style.setProperty("--toasts", `${height}px`);
+  const { activeElement } = document;
+  if (height && activeElement !== document.body)
+    activeElement?.scrollIntoView({ block: "nearest" });
+}
+
+/** Keep the reserved height up to date. */
+export function reserveToasts() {
+  const box = byId("toasts");
+  new ResizeObserver(() => reserve(box)).observe(box, { box: "border-box" });
+}
+
+/**
  * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
  * One with the same text replaces the older one. Returns its element.
  *

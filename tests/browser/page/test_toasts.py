@@ -1,0 +1,60 @@
+"""Messages lie over nothing that is used next."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import httpx
+import pytest
+from playwright.sync_api import expect
+
+from tests.api.running import Running
+from tests.browser.accessibility import faults
+from tests.browser.conftest import OpenPage
+from tests.browser.library import Library, add_clip, library_of
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def library(server: Running) -> Iterator[Library]:
+    with httpx.Client(base_url=server.address, timeout=60) as client:
+        yield library_of(server, client, "messages")
+
+
+SHOW = """
+import("/static/js/core/toasts.js").then(({ toast }) =>
+  ["One", "Two"].forEach((title) => toast(title, "A sentence that says what is next.",
+    { kind: "error" })))
+"""
+
+REACHED = """
+(button) => {
+  button.scrollIntoView({ block: "nearest" });
+  const { left, top, width, height } = button.getBoundingClientRect();
+  const found = document.elementFromPoint(left + width / 2, top + height / 2);
+  return button.contains(found) || String(found?.outerHTML).slice(0, 100);
+}
+"""
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
+def test_every_gesture_can_be_pressed_while_messages_are_shown(
+    open_page: OpenPage, server: Running, library: Library, size: tuple[int, int]
+) -> None:
+    for index in range(6):
+        added = add_clip(server, "circle", name=f"more {index} {size[0]}.mp4")
+        library.add_gesture(f"more {index}", added)
+    page = open_page(library.address, scene=False, size=size)
+    cards = page.locator("#gestures button:visible")
+    expect(page.locator("#gestures > li")).to_have_count(8)
+    page.evaluate(SHOW)
+    expect(page.locator(".toast")).to_have_count(2)
+    assert faults(page) == []
+    for card in cards.all():
+        assert card.evaluate(REACHED) is True
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    for button in page.get_by_role("button", name="Dismiss").all()[::-1]:
+        button.click()
+    # Without a message nothing is reserved.
+    expect(page.locator("html")).to_have_attribute("style", "--toasts: 0px;")
