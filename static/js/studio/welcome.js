@@ -8,6 +8,7 @@ import * as api from "../core/api.js";
 import { byId, h, icon, WRITES } from "../core/dom.js";
 import { firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
+import { mayWrite } from "../core/session.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
@@ -84,8 +85,18 @@ function question(samples, languages) {
     ),
   );
   button.onclick = () => ask(found, button);
-  return button;
+  if (mayWrite() || knownClip(found.sample)) return button;
+  button.disabled = true;
+  return [button, h("p", { className: "dim" }, EXAMPLE_NEEDS_EDIT)];
 }
+
+/** Why a reader sees no example, and who can help. */
+const EXAMPLE_NEEDS_EDIT =
+  "The example\u2019s clip is not in this studio yet, and your token has the role read. Ask someone whose token has the role edit to open the example once; then you can open it too.";
+
+/** @param {Sample} sample */
+const knownClip = (sample) =>
+  state.clips.find(({ name, status }) => name === sample.name && status === "done");
 
 /**
  * The misread sample and a language that misreads it; null where one of them is gone.
@@ -107,7 +118,7 @@ function exampleOf(samples, languages) {
  */
 async function ask({ sample, language }, button) {
   await choose(language.id);
-  const known = state.clips.find(({ name, status }) => name === sample.name && status === "done");
+  const known = knownClip(sample);
   if (known) select(known.id);
   const clip = known?.id ?? (await addSampleClip(sample, button));
   if (clip) update({ question: { clip, expected: MISREAD.expected } });
@@ -118,6 +129,10 @@ export async function showExample() {
   const found = exampleOf(state.samples, state.languages);
   if (!found) {
     toast("There is no example", "Its sample clip or its sample language was deleted.");
+    return;
+  }
+  if (!mayWrite() && !knownClip(found.sample)) {
+    toast("The example needs the role edit", EXAMPLE_NEEDS_EDIT);
     return;
   }
   await go("studio");
@@ -137,7 +152,7 @@ function welcome(samples, languages) {
       STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
     ),
     salutePicture(),
-    question(samples, languages),
+    ...[question(samples, languages)].flat(),
     h(
       "div",
       { className: "welcome-actions" },
@@ -245,14 +260,14 @@ function showProgress(panel, clip, job) {
  * @param {State} state
  * @param {Clip | null} clip
  */
-function contentOf({ clips, uploads, samples, languages, loaded }, clip) {
+function contentOf({ clips, uploads, samples, languages, loaded, role }, clip) {
   if (clip && BUSY.has(clip.status)) return { key: clip.job_id, panel: () => progressPanel(clip) };
   if (clip && needsTopic(clip)) return { key: `topics ${clip.id}`, panel: () => topicsPanel(clip) };
   if (clip || !loaded || uploads.length) return null;
   if (clips.length) return { key: "unchosen", panel: noClip };
   const revisions = languages.map(({ id, revision }) => id + revision);
   return {
-    key: `welcome ${samples.length} ${revisions}`,
+    key: `welcome ${samples.length} ${revisions} ${role}`,
     panel: () => h("div", {}, welcome(samples, languages)),
   };
 }

@@ -13,9 +13,12 @@ from app.settings import Settings
 from app.store import Role, TokenFile
 from tests.api.running import running
 from tests.browser.files import drop
-from tests.browser.library import library_of
+from tests.browser.library import add_clip, library_of
 
 pytestmark = pytest.mark.slow
+
+MISREAD = "unfinished-triangle.mp4"
+"""Name of the example's clip."""
 
 
 def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
@@ -64,4 +67,30 @@ def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
         expect(page.locator("#outcome")).to_contain_text("Recognised as circle")
         page.get_by_role("button", name="Log out").click()
         expect(page.get_by_label("Token")).to_be_visible()
+        page.context.close()
+
+
+def test_a_reader_is_told_who_can_open_the_example(browser: Browser, tmp_path: Path) -> None:
+    settings = Settings(data_dir=tmp_path / "data")
+    token = TokenFile(settings.tokens).add("Ada", Role.READ)
+    with running(settings) as server:
+        page = browser.new_context(base_url=server.address).new_page()
+        page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+        page.route("**/viser/**", lambda route: route.fulfill(body=""))
+        page.goto("/")
+        page.get_by_label("Token").fill(token)
+        page.get_by_role("button", name="Sign in").click()
+        welcome = page.locator("#welcome")
+        expect(welcome.get_by_role("button", name="Why was a")).to_be_disabled()
+        expect(welcome).to_contain_text("Ask someone whose token has the role edit")
+        page.get_by_role("button", name="All keys").click()
+        page.get_by_role("dialog").get_by_role("button", name="Example").click()
+        expect(page.get_by_text("The example needs the role edit")).to_be_visible()
+        # Once somebody has added its clip, it opens for readers too.
+        add_clip(server, "circle", name=MISREAD)
+        page.reload()
+        page.get_by_role("button", name="All keys").click()
+        page.get_by_role("dialog").get_by_role("button", name="Example").click()
+        expect(page.locator("#clip-name")).to_have_text(MISREAD)
+        expect(page.locator("#outcome")).to_contain_text("ecognised")
         page.context.close()
