@@ -1,4 +1,4 @@
-"""Behind a proxy: the documented nginx works, and only a trusted proxy is believed."""
+"""Behind a proxy: the documented nginx and Caddy work, and only a trusted proxy is believed."""
 
 from __future__ import annotations
 
@@ -16,11 +16,14 @@ import httpx
 import pytest
 from websockets.sync.client import connect
 
+from app.api.ingest.multipart import FRAME_BYTES
+from app.settings import Settings
 from tests.api.running import until
 from tests.conftest import ROOT
 
 pytestmark = pytest.mark.slow
 
+ASSETS = ROOT / "docs" / "assets"
 API = "/api/v1"
 TOKEN = "correct-horse-battery"
 SIGNED_IN = {"Authorization": f"Bearer {TOKEN}"}
@@ -50,34 +53,68 @@ def free_port() -> int:
         return int(listening.getsockname()[1])
 
 
-@pytest.fixture
-def proxied(tmp_path: Path) -> Iterator[tuple[str, str]]:
-    """Return the addresses of nginx and of the studio behind it."""
+@contextmanager
+def nginx(folder: Path, studio: int, own: int) -> Iterator[None]:
+    """Run nginx with the documented configuration, without its certificate."""
     # Debian keeps it where only root looks.
-    nginx = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
-    if nginx is None:
+    program = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
+    if program is None:
         pytest.skip("needs nginx")
-    with serving(tmp_path / "data", OSG_FORWARDED_ALLOW_IPS="127.0.0.1") as port:
+    server = (ASSETS / "nginx.conf").read_text()
+    server = server.replace("listen 443 ssl;", f"listen 127.0.0.1:{own};")
+    server = re.sub(r"ssl_certificate\w* .*\n", "", server)
+    server = server.replace("127.0.0.1:8000", f"127.0.0.1:{studio}")
+    file = folder / "nginx.conf"
+    folders = "".join(
+        f"{kind}_temp_path {folder}/{kind};\n"
+        for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
+    )
+    file.write_text(
+        f"pid {folder}/pid; daemon off; error_log {folder}/error;\n"
+        f"events {{}}\nhttp {{ access_log off;\n{folders}{server}}}\n"
+    )
+    with running(program, "-c", str(file), "-e", str(folder / "error")):
+        yield
+
+
+@contextmanager
+def caddy(folder: Path, studio: int, own: int) -> Iterator[None]:
+    """Run Caddy with the documented configuration, without its certificate."""
+    site = (ASSETS / "Caddyfile").read_text()
+    site = site.replace("studio.example {", f"http://127.0.0.1:{own} {{\n\tbind 127.0.0.1")
+    site = site.replace("127.0.0.1:8000", f"127.0.0.1:{studio}")
+    file = folder / "Caddyfile"
+    file.write_text(f"{{\n\tadmin off\n}}\n{site}")
+    arguments = ("run", "--adapter", "caddyfile", "--config", str(file))
+    with running(caddy_program(), *arguments, HOME=str(folder), XDG_CONFIG_HOME=str(folder)):
+        yield
+
+
+def caddy_program() -> str:
+    program = shutil.which("caddy")
+    if program is None:
+        pytest.skip("needs Caddy: apt-get install caddy")
+    return program
+
+
+@contextmanager
+def running(program: str, *arguments: str, **environment: str) -> Iterator[None]:
+    """Run a program until the context ends."""
+    with subprocess.Popen([program, *arguments], env=os.environ | environment) as process:
+        try:
+            yield
+        finally:
+            process.terminate()
+
+
+@pytest.fixture(params=[nginx, caddy], ids=["nginx", "caddy"])
+def proxied(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
+    """Return the address of a documented proxy with the studio behind it."""
+    with serving(tmp_path / "data", OSG_FORWARDED_ALLOW_IPS="127.0.0.1") as studio:
         own = free_port()
-        server = (ROOT / "docs" / "assets" / "nginx.conf").read_text()
-        server = server.replace("listen 443 ssl;", f"listen 127.0.0.1:{own};")
-        server = re.sub(r"ssl_certificate\w* .*\n", "", server)
-        server = server.replace("127.0.0.1:8000", f"127.0.0.1:{port}")
-        file = tmp_path / "nginx.conf"
-        folders = "".join(
-            f"{kind}_temp_path {tmp_path}/{kind};\n"
-            for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-        )
-        file.write_text(
-            f"pid {tmp_path}/pid; daemon off; error_log {tmp_path}/error;\n"
-            f"events {{}}\nhttp {{ access_log off;\n{folders}{server}}}\n"
-        )
-        with subprocess.Popen([nginx, "-c", str(file), "-e", str(tmp_path / "error")]) as process:
-            try:
-                until(lambda: answers(own))
-                yield f"http://127.0.0.1:{own}", f"http://127.0.0.1:{port}"
-            finally:
-                process.terminate()
+        with request.param(tmp_path, studio, own):
+            until(lambda: answers(own))
+            yield f"http://127.0.0.1:{own}"
 
 
 def answers(port: int) -> bool:
@@ -85,10 +122,8 @@ def answers(port: int) -> bool:
         return tried.connect_ex(("127.0.0.1", port)) == 0
 
 
-def test_the_studio_works_behind_the_documented_nginx(
-    proxied: tuple[str, str], small_clip: Path
-) -> None:
-    address, _ = proxied
+def test_the_studio_works_behind_a_documented_proxy(proxied: str, small_clip: Path) -> None:
+    address = proxied
     content = small_clip.read_bytes()
     # From an address of its own, and claiming another one.
     transport = httpx.HTTPTransport(local_address="127.0.0.2")
@@ -97,7 +132,7 @@ def test_the_studio_works_behind_the_documented_nginx(
         assert "OSG Studio" in client.get("/").text
         made = client.post(f"{API}/languages", json={"name": "pool"}, headers={"Origin": address})
         assert made.status_code == 201
-        assert len(made.headers["x-request-id"]) == 32
+        assert re.fullmatch("[0-9a-f]{32}", made.headers["x-request-id"].replace("-", ""))
         noted = client.get(f"{API}/audit").json()[0]
         assert noted["address"] == "127.0.0.2"
         assert noted["request_id"] == made.headers["x-request-id"]
@@ -114,11 +149,23 @@ def test_the_studio_works_behind_the_documented_nginx(
         assert elsewhere.status_code == 403
 
 
-def test_websockets_pass_the_documented_nginx(proxied: tuple[str, str]) -> None:
-    address, _ = proxied
-    place = address.replace("http://", "ws://") + f"{API}/live"
-    with connect(place, origin=address, additional_headers=SIGNED_IN) as opened:  # type: ignore[arg-type]
+def test_websockets_pass_a_documented_proxy(proxied: str) -> None:
+    place = proxied.replace("http://", "ws://") + f"{API}/live"
+    with connect(place, origin=proxied, additional_headers=SIGNED_IN) as opened:  # type: ignore[arg-type]
         assert opened.ping().wait(60)
+
+
+def test_the_documented_caddyfile_lets_the_largest_clip_pass(tmp_path: Path) -> None:
+    arguments = ["adapt", "--validate", "--adapter", "caddyfile", "--config"]
+    adapted = subprocess.run(
+        [caddy_program(), *arguments, str(ASSETS / "Caddyfile")],
+        env=os.environ | {"HOME": str(tmp_path), "XDG_DATA_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (most,) = re.findall(r'"max_size":(\d+)', adapted.stdout)
+    assert int(most) >= Settings().max_clip_bytes + FRAME_BYTES
 
 
 def test_only_a_trusted_proxy_is_believed(tmp_path: Path) -> None:
