@@ -1,0 +1,69 @@
+"""The job that makes the table of takes: it tells how far it is, and ends between two takes."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import Callable
+
+import pytest
+
+from app.api.events.broadcast import Broadcast
+from app.api.jobs.job import JobCancelled, Progress
+from app.api.jobs.runner import JobRunner
+from app.api.jobs.take_table import Rows, TakeTableJob
+from app.store import Clip
+
+
+def clip_of(name: str, frames: int) -> Clip:
+    return Clip(name=name, media_type="video/mp4", size=1, width=4, height=3, frames=frames)
+
+
+def test_progress_counts_the_frames_of_all_clips() -> None:
+    told: list[Progress] = []
+
+    def recognize(clip: Clip, advance: Callable[[float], None]) -> Rows:
+        advance(0.5)
+        return [{"clip": clip.name}]
+
+    clips = [clip_of("a.mp4", 100), clip_of("b.mp4", 300)]
+    rows = asyncio.run(TakeTableJob("mine", clips, recognize).run(told.append))
+    assert rows == [{"clip": "a.mp4"}, {"clip": "b.mp4"}]
+    assert [(each.stage, each.done, each.total) for each in told] == [
+        ("clip 1 of 2: a.mp4", 0, 400),
+        ("clip 1 of 2: a.mp4", 50, 400),
+        ("clip 2 of 2: b.mp4", 100, 400),
+        ("clip 2 of 2: b.mp4", 250, 400),
+    ]
+
+
+def test_a_cancelled_table_recognises_no_further_take() -> None:
+    begun, cancelled, ended = threading.Event(), threading.Event(), threading.Event()
+    takes: list[int] = []
+
+    def recognize(clip: Clip, advance: Callable[[float], None]) -> Rows:
+        try:
+            for take in range(3):
+                takes.append(take)
+                begun.set()
+                assert cancelled.wait(60)
+                advance(take / 3)
+        finally:
+            ended.set()
+        return []
+
+    async def scenario() -> None:
+        runner = JobRunner(Broadcast())
+        job = TakeTableJob("mine", [clip_of("a.mp4", 9), clip_of("b.mp4", 9)], recognize)
+        waiting = asyncio.create_task(runner.run(job))
+        await asyncio.to_thread(begun.wait, 60)
+        cancelling = asyncio.create_task(runner.cancel(job.key))
+        await asyncio.sleep(0.05)  # the thread goes on only after it was told
+        cancelled.set()
+        assert await cancelling
+        with pytest.raises(JobCancelled):
+            await waiting
+        await asyncio.to_thread(ended.wait, 60)
+
+    asyncio.run(scenario())
+    assert takes == [0]
