@@ -202,7 +202,8 @@ export function openTakeTable() {
       start.hidden = false;
       fail(`The takes could not be recognised: ${error.message}`);
     } finally {
-      running = null;
+      // Another table may have begun since this one was cancelled.
+      if (running?.id === id) running = null;
       close.textContent = "Close";
     }
     return undefined;
