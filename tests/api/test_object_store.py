@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -10,10 +11,12 @@ import httpx
 import pytest
 
 from app.settings import Settings
+from app.store.clips import RECORDING
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import Running, assert_problem, running, until
+from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.s3 import BUCKET, S3Server
 
@@ -87,3 +90,21 @@ def test_while_the_object_store_is_away_requests_are_asked_to_come_again(
         s3.start()
         assert len(client.get(f"{CLIPS}/{clip}/video").content) == 1024
         assert upload(client, small_clip).status_code == 202
+
+
+@linux
+def test_a_job_keeps_what_it_found_until_the_object_store_is_back(
+    servers: tuple[Running, Running], small_clip: Path, s3: S3Server, models: None
+) -> None:
+    with httpx.Client(base_url=servers[0].address, timeout=60) as client:
+        clip = upload(client, small_clip).json()["id"]
+        until(lambda: workers_of(os.getpid()))
+        s3.stop()
+        # Either server may have taken the job.
+        found = [server.studio.clips.place(clip, RECORDING) for server in servers]
+        until(lambda: any(map(Path.is_file, found)) and not workers_of(os.getpid()))
+        assert client.get(f"{CLIPS}/{clip}").json()["status"] == "running"
+        s3.start()
+        until(lambda: client.get(f"{CLIPS}/{clip}").json()["status"] == "done")
+    for server in servers:
+        assert len(httpx.get(f"{server.address}{CLIPS}/{clip}/poses").json()["time"]) == 12
