@@ -35,7 +35,7 @@ import {
   showSelection,
   stageButtons,
 } from "./studio/stage.js";
-import { drawTakesButton, openTakeTable } from "./studio/take-table.js";
+import { drawTakesButton, openTakeTable } from "./export/take-table.js";
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";

@@ -50,9 +50,11 @@ function drawStart(box, clip, problem) {
     { type: "button", className: "link", onclick: () => run(box, clip) },
     problem ? "Try the session again" : "Session as MCAP",
   );
-  const had = box.contains(document.activeElement);
+  // Where the explanation was drawn anew in the meantime, the focus went from Cancel to nothing.
+  const focused = document.activeElement;
+  const had = box.contains(focused) || (box.isConnected && focused === document.body);
   box.replaceChildren(button, problem ?? h("small", { className: "dim" }, " opens in Foxglove"));
-  if (had) button.focus();
+  if (had) button.focus({ preventScroll: true });
 }
 
 /**

@@ -14,12 +14,20 @@ const MOST_UNASKED = 30; // Takes that are recognised again unasked: a few secon
 /** @type {Promise<unknown> | null} */
 let running = null;
 
+let changes = 0; // Answered so far: what was asked for before such an answer is older than it.
+
 /**
- * Show a test set that the server answered with.
+ * Show the test set as it is after a change, by the answer to that.
  *
  * @param {TestSet | null} testSet
  */
 function show(testSet) {
+  changes += 1;
+  draw(testSet);
+}
+
+/** @param {TestSet | null} testSet */
+function draw(testSet) {
   if (testSet && testSet.language_id === state.language) update({ testSet });
 }
 
@@ -27,7 +35,10 @@ function show(testSet) {
 export async function loadTestSet() {
   const { language } = state;
   if (!language) return update({ testSet: null });
-  show(await attempt("Loading the test set", () => api.testSets.get(language)));
+  const before = changes;
+  const testSet = await attempt("Loading the test set", () => api.testSets.get(language));
+  if (before === changes) draw(testSet);
+  else await loadTestSet();
   return undefined;
 }
 

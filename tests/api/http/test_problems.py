@@ -102,6 +102,7 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
         "takes": [{"clip_id": "missing", "expected": "x"}]
     },
     ("PATCH", "/api/v1/languages/{language_id}/test-set/{take_id}"): {"expected": "x"},
+    ("POST", "/api/v1/languages/{language_id}/take-table"): {"id": "x", "clip_ids": ["missing"]},
     ("POST", "/api/v1/languages/{language_id}/practice"): {
         "clip_id": "missing",
         "expected": "x",

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { shownRows, sortedRows } from "../../../static/js/studio/take-rows.js";
+import { shownRows, sortedRows } from "../../../static/js/export/take-rows.js";
 
 /** @type {any[]} */
 const ROWS = [
