@@ -112,6 +112,14 @@ export function follow(names, react) {
 }
 
 /**
+ * Resolve once the lists of clips, samples and languages are there.
+ *
+ * @returns {Promise<void>}
+ */
+export const whenLoaded = () =>
+  new Promise((resolve) => follow(["loaded"], ({ loaded }) => loaded && resolve()));
+
+/**
  * Read the state that is in the URL.
  *
  * @returns {Partial<State>}

@@ -9,7 +9,7 @@ import { byId, h, icon, WRITES } from "../core/dom.js";
 import { firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { mayWrite } from "../core/session.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { selectedClip, state, update, whenLoaded } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.js";
@@ -126,6 +126,7 @@ async function ask({ sample, language }, button) {
 
 /** Show the misread sample, from wherever the user is. */
 export async function showExample() {
+  await whenLoaded();
   const found = exampleOf(state.samples, state.languages);
   if (!found) {
     toast("There is no example", "Its sample clip or its sample language was deleted.");

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, expect
+from playwright.sync_api import Browser, Route, expect
 
 from app.settings import Settings
 from app.store import Role, TokenFile
@@ -19,6 +19,9 @@ pytestmark = pytest.mark.slow
 
 MISREAD = "unfinished-triangle.mp4"
 """Name of the example's clip."""
+
+CLIPS = re.compile(r"/api/v1/clips(\?|$)")
+"""Addresses of the list of clips."""
 
 
 def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
@@ -86,11 +89,15 @@ def test_a_reader_is_told_who_can_open_the_example(browser: Browser, tmp_path: P
         page.get_by_role("button", name="All keys").click()
         page.get_by_role("dialog").get_by_role("button", name="Example").click()
         expect(page.get_by_text("The example needs the role edit")).to_be_visible()
-        # Once somebody has added its clip, it opens for readers too.
+        # Once somebody has added its clip, it opens for readers too, also before the list is there.
         add_clip(server, "circle", name=MISREAD)
+        held: list[Route] = []
+        page.route(CLIPS, lambda route: held.append(route))
         page.reload()
         page.get_by_role("button", name="All keys").click()
         page.get_by_role("dialog").get_by_role("button", name="Example").click()
+        page.unroute(CLIPS)
+        held.pop().continue_()
         expect(page.locator("#clip-name")).to_have_text(MISREAD)
         expect(page.locator("#outcome")).to_contain_text("ecognised")
         page.context.close()

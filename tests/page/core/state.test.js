@@ -1,7 +1,18 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { follow, lengthOf, state, update } from "../../../static/js/core/state.js";
+import { follow, lengthOf, state, update, whenLoaded } from "../../../static/js/core/state.js";
+
+test("what waits for the lists goes on once they are there", async () => {
+  let waited = false;
+  const waiting = whenLoaded().then(() => (waited = true));
+  await Promise.resolve();
+  assert.equal(waited, false);
+  update({ loaded: true });
+  await waiting;
+  assert.equal(waited, true);
+  update({ loaded: false });
+});
 
 test("a listener is called at once, and then only when a value it named changes", () => {
   const seen = [];
