@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import httpx
 import uvicorn
+from starlette.types import ASGIApp
 
 from app.api.middleware.shutdown import StudioServer
 from app.api.services.studio import Studio
@@ -43,11 +44,17 @@ class Running:
 
 
 @contextmanager
-def running(settings: Settings) -> Iterator[Running]:
-    """Serve on a free port of loopback until the context ends."""
+def running(
+    settings: Settings, wrap: Callable[[ASGIApp], ASGIApp] | None = None
+) -> Iterator[Running]:
+    """Serve on a free port of loopback until the context ends, behind what `wrap` adds."""
     app = create_app(settings)
     config = uvicorn.Config(
-        app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
+        wrap(app) if wrap else app,
+        host="127.0.0.1",
+        port=0,
+        log_level="error",
+        timeout_graceful_shutdown=1,
     )
     server = StudioServer(config, app)
     thread = threading.Thread(target=server.run, daemon=True)

@@ -15,10 +15,12 @@ from playwright.sync_api import (
     BrowserContext,
     BrowserType,
     Page,
-    Route,
+    ViewportSize,
     expect,
     sync_playwright,
 )
+from starlette.responses import HTMLResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.recognition.models import installed_models
 from app.settings import Settings
@@ -55,6 +57,9 @@ addEventListener("securitypolicyviolation", (event) => {
   throw new Error(`refused by the content security policy: ${event.violatedDirective}`);
 });
 """
+
+WITHOUT_SCENE = "without-scene"
+"""Name of a cookie by which a page gets an empty frame in place of viser's."""
 
 OpenPage = Callable[..., Page]
 
@@ -109,8 +114,27 @@ def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 @pytest.fixture(scope="module")
 def server(settings: Settings) -> Iterator[Running]:
     """Serve the app to the tests of one file: what a test needs it adds under names of its own."""
-    with running(settings) as server:
+    with running(settings, EmptyFrames) as server:
         yield server
+
+
+class EmptyFrames:
+    """ASGI middleware: answers as viser's page does once it draws, where the cookie asks for it.
+
+    The browser could answer itself, but then caches nothing, and loads the page's modules anew.
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer a request for viser's frame, or pass it on."""
+        if scope["type"] == "http" and scope["path"].startswith("/viser/"):
+            cookies = dict(scope["headers"]).get(b"cookie", b"").decode("latin-1")
+            if WITHOUT_SCENE in cookies:
+                await HTMLResponse("<div id=root><canvas></canvas></div>")(scope, receive, send)
+                return
+        await self._app(scope, receive, send)
 
 
 @pytest.fixture(scope="module")
@@ -122,9 +146,37 @@ def clips(settings: Settings) -> Path:
     return settings.samples_dir / "clips"
 
 
+@pytest.fixture(scope="module")
+def shared_context(browser: Browser) -> Iterator[BrowserContext]:
+    """Return a browser context for the tests of one file: it loads the page's modules once."""
+    context = new_context(browser)
+    yield context
+    context.close()
+
+
+def new_context(browser: Browser) -> BrowserContext:
+    context = browser.new_context(reduced_motion="reduce")
+    context.set_default_timeout(PATIENCE_MS)
+    return context
+
+
+def forget_visit(context: BrowserContext, address: str) -> None:
+    """Leave nothing behind of what the pages of a context kept, but for what is cached."""
+    context.set_offline(False)
+    context.clear_permissions()
+    context.clear_cookies()
+    page = context.new_page()
+    command = {"origin": address, "storageTypes": "local_storage,indexeddb,service_workers"}
+    context.new_cdp_session(page).send("Storage.clearDataForOrigin", command)
+    for page in context.pages:
+        page.close()
+
+
 @pytest.fixture
-def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
-    """Return a function that opens the app in a browser context of its own.
+def open_page(
+    browser: Browser, shared_context: BrowserContext, server: Running
+) -> Iterator[OpenPage]:
+    """Return a function that opens the app as a user who shares nothing with the others.
 
     It takes the query of the address as a mapping, the width and height of the window, the colour
     scheme, whether viser's frame is loaded (drawing WebGL in software is what takes longest), and
@@ -142,16 +194,13 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         scene: bool = True,
         first_visit: bool = False,
     ) -> Page:
-        context = browser.new_context(
-            viewport={"width": size[0], "height": size[1]},
-            color_scheme="light" if scheme == "light" else "dark",
-            reduced_motion="reduce",
-        )
+        context = new_context(browser) if contexts else shared_context
         contexts.append(context)
-        context.set_default_timeout(PATIENCE_MS)
         if not scene:
-            context.route("**/viser/**", _empty_frame)
+            context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
         page = context.new_page()
+        page.set_viewport_size(ViewportSize(width=size[0], height=size[1]))
+        page.emulate_media(color_scheme="light" if scheme == "light" else "dark")
         if not first_visit:
             page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
         page.on("pageerror", lambda error: errors.append(str(error)))
@@ -160,7 +209,9 @@ def open_page(browser: Browser, server: Running) -> Iterator[OpenPage]:
         return page
 
     yield open_page
-    for context in contexts:
+    if contexts:
+        forget_visit(shared_context, server.address)
+    for context in contexts[1:]:
         context.close()
     assert errors == []
 
@@ -181,8 +232,3 @@ def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
         return path
 
     return take
-
-
-def _empty_frame(route: Route) -> None:
-    """Answer as viser's page does once it draws."""
-    route.fulfill(body="<div id=root><canvas></canvas></div>", content_type="text/html")

@@ -9,16 +9,18 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
+from app.recognition import Recording
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip
+from tests.conftest import RECORDINGS
 
 pytestmark = pytest.mark.slow
 
 SAMPLE = "Table 2: eight signs"
 
-EXTRACTION_MS = 300_000
-"""Longest wait for the poses of a clip of six seconds on a loaded machine."""
+MISREAD = "unfinished-triangle"
+"""Name of the example's clip."""
 
 
 @pytest.fixture
@@ -36,16 +38,19 @@ def sample_id(client: httpx.Client) -> str:
 def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
-    assert clips.is_dir()
     page = open_page(scene=False)
     expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
+    # Its poses were found before: how they are found is another test's subject.
+    found = Recording.load(RECORDINGS / "avx512" / f"{MISREAD}.npz")
+    video = clips / f"{MISREAD}.mp4"
+    add_clip(server, name=video.name, video=video, recording=found)
     add_clip(server, "circle", name="mine.mp4")
     page.reload()
     expect(page.get_by_role("heading", name="mine.mp4")).to_be_visible()
     page.get_by_role("button", name="All keys").click()
     page.get_by_role("button", name="Example").click()
     why = page.get_by_role("region", name="Why")
-    expect(why).to_contain_text("instead of 'triangle'", timeout=EXTRACTION_MS)
+    expect(why).to_contain_text("instead of 'triangle'")
 
 
 def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is_chosen(
