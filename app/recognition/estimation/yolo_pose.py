@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -20,6 +19,7 @@ from app.recognition.estimation.estimator import check_image
 from app.recognition.estimation.landmark_models.letterbox import Letterbox
 from app.recognition.estimation.landmark_models.onnx_session import Provider
 from app.recognition.estimation.landmark_models.planar_model import PlanarModel
+from app.recognition.estimation.landmark_models.suppression import select_best
 from app.recognition.estimation.person_tracker import PersonTracker
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -174,11 +174,7 @@ def _detections(rows: FloatArray) -> People:
 
 def _drop_overlapping(people: People) -> People:
     """Keep the best of overlapping candidates."""
-    extents = np.concatenate([people.boxes[:, 0], people.boxes[:, 1] - people.boxes[:, 0]], axis=1)
-    kept = np.asarray(
-        cv2.dnn.NMSBoxes(extents.tolist(), people.scores.tolist(), LEAST_SCORE, MOST_OVERLAP),
-        dtype=np.intp,
-    ).ravel()
+    kept = select_best(people.boxes, people.scores, MOST_OVERLAP)
     return People(people.boxes[kept], people.scores[kept], people.keypoints[kept])
 
 

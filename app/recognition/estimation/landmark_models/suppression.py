@@ -1,10 +1,11 @@
-"""Non-maximum suppression: merges overlapping boxes of one object."""
+"""Non-maximum suppression: merges overlapping boxes of one object, or keeps the best of them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.poses.sequence import FloatArray
 
@@ -62,6 +63,28 @@ def blend_overlapping(
         detections.append(Detection(blended[:2], blended[2:], float(scores[0])))
         points, scores = points[~same], scores[~same]
     return tuple(detections)
+
+
+def select_best(boxes: FloatArray, scores: FloatArray, threshold: float) -> npt.NDArray[np.intp]:
+    """Return the indices of boxes that overlap no better one, best first: greedy suppression.
+
+    Parameters
+    ----------
+    boxes
+        ``(N, 2, 2)``: corners (left, top) and (right, bottom).
+    scores
+        ``(N,)``; of equal ones the first is the better.
+    threshold
+        Intersection over union above which two boxes are the same object.
+
+    """
+    left = np.argsort(-scores, kind="stable")
+    kept = []
+    while len(left):
+        best, left = left[0], left[1:]
+        kept.append(best)
+        left = left[measure_overlaps(boxes[best], boxes[left]) <= threshold]
+    return np.array(kept, dtype=np.intp)
 
 
 def measure_overlaps(box: FloatArray, boxes: FloatArray) -> FloatArray:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from random import Random
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from app.recognition.estimation.landmark_models.suppression import (
     blend_overlapping,
     measure_overlaps,
+    select_best,
 )
 from app.recognition.poses.sequence import FloatArray
 
@@ -39,6 +41,20 @@ def test_results_overlap_no_better_one_they_could_have_joined(
     for index, box in enumerate(bests):
         for better in bests[:index]:
             assert measure_overlaps(better, box[None])[0] <= 0.3
+
+
+@given(candidates())
+def test_the_best_are_those_that_opencv_keeps(
+    given_candidates: tuple[FloatArray, FloatArray],
+) -> None:
+    boxes, scores = given_candidates[0][:, :2], np.float32(given_candidates[1]).astype(np.float64)
+    extents = np.concatenate([boxes[:, 0], boxes[:, 1] - boxes[:, 0]], axis=1)
+    kept = cv2.dnn.NMSBoxes(extents.tolist(), scores.tolist(), 0.25, 0.7)
+    assert select_best(boxes, scores, 0.7).tolist() == list(kept)
+
+
+def test_of_no_boxes_none_is_the_best() -> None:
+    assert select_best(np.zeros((0, 2, 2)), np.zeros(0), 0.7).tolist() == []
 
 
 @given(candidates())
