@@ -65,20 +65,6 @@ def first_shown(page: Page, server: Running) -> int:
     return int(times.index(stroke[0])) + initial_frame(len(stroke))
 
 
-def take_other_pictures(page: Page, picture: Callable[[Page, str], Path]) -> None:
-    """Take the same in light colours and on a phone, and return to where it was."""
-    scheme = page.frame_locator("#lab").locator("html")
-    page.emulate_media(color_scheme="light")
-    expect(scheme).to_have_attribute("data-mantine-color-scheme", "light")
-    # The scene is drawn anew: its clock shows when that is done.
-    expect(page.frame_locator("#lab").locator("canvas[data-engine]")).to_be_visible()
-    page.emulate_media(color_scheme="dark")
-    expect(scheme).to_have_attribute("data-mantine-color-scheme", "dark")
-    page.set_viewport_size({"width": 390, "height": 844})
-    page.set_viewport_size({"width": 1440, "height": 900})
-    lab_of(page)
-
-
 def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     open_page: OpenPage,
     server: Running,
@@ -150,7 +136,6 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     expect(clock).to_have_text(re.compile(rf"frame {at + 9} of \d+$"))
     expect(page.locator(".toast")).to_have_count(0)
     assert picture(page, "studio").stat().st_size < 600_000
-    take_other_pictures(page, picture)
     page.get_by_role("button", name="Play", exact=True).click()
     expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
     page.keyboard.press("v")
