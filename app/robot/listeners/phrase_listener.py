@@ -10,10 +10,10 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
 from app.robot.listeners.salute_listener import LandmarkListener
-from app.robot.listeners.stream_order import StreamOrder
+from app.robot.listeners.wrapping_listener import WrappingListener
 
 
-class PhraseListener:
+class PhraseListener(WrappingListener):
     """Listener that adds phrases to the events of another listener; a `LandmarkListener`.
 
     Without a grammar it adds nothing. A message is cancelled when its language, its source or the
@@ -31,27 +31,12 @@ class PhraseListener:
     """
 
     def __init__(self, listener: LandmarkListener, lag: float | Callable[[], float] = 0.0) -> None:
-        self._listener = listener
+        super().__init__(listener)
         self._lag = lag if callable(lag) else lambda: lag
         self._parser = create_parser(listener.language)
         self._time = 0.0
         self._takes: list[TakeRecognized] = []  # candidates for the current message
         self._cancelled: tuple[PhraseEvent, ...] = ()  # by a change of the language
-
-    @property
-    def language(self) -> ActiveLanguage:
-        """The active language."""
-        return self._listener.language
-
-    @property
-    def state(self) -> TakeState:
-        """State of the salutes."""
-        return self._listener.state
-
-    @property
-    def order(self) -> StreamOrder:
-        """What is known of the order of the frames."""
-        return self._listener.order
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame; see `LandmarkListener.feed`."""

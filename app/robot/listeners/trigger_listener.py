@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from app.recognition import PoseSequence
 from app.recognition.errors import EstimatorError
-from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import LONGEST_MEMORY
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event
 from app.robot.listeners.salute_listener import LandmarkListener, Listener
 from app.robot.listeners.spotting_listener import SpottingListener
-from app.robot.listeners.stream_order import StreamOrder
+from app.robot.listeners.wrapping_listener import WrappingListener
 
 
-class TriggerListener:
+class TriggerListener(WrappingListener):
     """Listener that changes with the language's trigger; a `LandmarkListener`.
 
     Parameters
@@ -38,23 +37,8 @@ class TriggerListener:
     ) -> None:
         self._always_spots = without_salutes
         self._hands = hands
-        self._listener = self._create(language)
+        super().__init__(self._create(language))
         self._left: tuple[Event, ...] = ()  # of the listener before a change
-
-    @property
-    def language(self) -> ActiveLanguage:
-        """The active language."""
-        return self._listener.language
-
-    @property
-    def state(self) -> TakeState:
-        """State of the triggers."""
-        return self._listener.state
-
-    @property
-    def order(self) -> StreamOrder:
-        """What is known of the order of the frames."""
-        return self._listener.order
 
     @property
     def lag(self) -> float:
