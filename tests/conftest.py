@@ -27,8 +27,8 @@ SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "d
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Count what runs on PostgreSQL, a process of its own, among the slow tests."""
-    if "postgresql" in item.name:
+    """Count what runs on PostgreSQL or S3, processes of their own, among the slow tests."""
+    if "postgresql" in item.name or "s3" in getattr(item, "fixturenames", ()):
         item.add_marker("slow")
 
 

@@ -18,6 +18,8 @@ from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, until
 from tests.api.running_workers import linux, workers_of
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture
 def place(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
