@@ -15,6 +15,7 @@ from app.cli.application import command_line
 from app.robot.publishing.status_page import SERVICE
 from tests.conftest import ROOT
 from tests.release.containerfile import lineage, read_command, read_labels, read_stages
+from tests.test_repository import pins
 
 RECIPE = ROOT / "release" / "containers" / "Containerfile"
 STAGES = read_stages(RECIPE)
@@ -45,6 +46,17 @@ def test_an_image_builds_nothing_itself_and_brings_the_models(image: str) -> Non
     assert "osg-studio models install" in commands
     models = "OSG_MODELS_DIR=/opt/osg/models"
     assert models in " ".join(STAGES[build].values("ENV") + STAGES["runtime"].values("ENV"))
+
+
+def test_opencv_is_built_by_pinned_tools_against_the_numpy_that_runs() -> None:
+    tools, runs = pins("requirements-opencv.txt"), pins("requirements-vehicle.txt")
+    assert {"scikit-build", "setuptools", "wheel"} <= set(tools)
+    assert {str(pin.specifier) for pin in tools["numpy"]} <= {
+        str(pin.specifier) for pin in runs["numpy"]
+    }
+    lock = (ROOT / "requirements-opencv.txt").read_text(encoding="utf-8")
+    entries = re.split(r"\n(?=[a-z0-9])", lock)[1:]
+    assert [entry for entry in entries if "--hash=sha256:" not in entry] == []
 
 
 def test_what_is_copied_is_there_and_let_through() -> None:

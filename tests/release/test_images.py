@@ -21,6 +21,10 @@ from release.checkout import ROOT
 
 BASE = os.environ.get("OSG_BASE_IMAGE")
 TAG = "localhost/osg-robot:tested"
+
+MOST_MEGABYTES = 250
+"""Size of what is installed, without the models."""
+
 RUN = """
 osg-studio samples /tmp/languages
 cd /tmp/languages
@@ -49,7 +53,7 @@ def container(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """Build the image from a release and give a container of it."""
     context = tmp_path_factory.mktemp("context")
     build_release(context / "dist")
-    for name in (".dockerignore", "requirements.txt", "requirements-vehicle.txt"):
+    for name in (".dockerignore", *(lock.name for lock in ROOT.glob("requirements*.txt"))):
         shutil.copyfile(ROOT / name, context / name)
     recipe = ROOT / "release" / "containers" / "Containerfile"
     options = shlex.split(os.environ.get("OSG_BUILD_OPTIONS", ""))
@@ -66,6 +70,13 @@ def test_the_robot_recognises_in_its_image_as_nobody(container: str) -> None:
     labels = [json.loads(line).get("label") for line in events if "take_recognized" in line]
     assert labels == ["line"]
     assert buildah("run", container, "--", "id", "-u") == "10001"
+
+
+def test_the_image_is_small_and_reads_every_kind_of_clip(container: str) -> None:
+    packages = "du -sm --exclude=models /opt/osg | cut -f1"
+    assert int(buildah("run", container, "--", "sh", "-c", packages)) <= MOST_MEGABYTES
+    libraries = "import av, cv2, lz4.frame, rosbags, zstandard; print(cv2.__version__)"
+    assert buildah("run", container, "--", "/opt/osg/bin/python3", "-c", libraries)
 
 
 def test_the_image_speaks_mavlink_and_writes_nowhere_but_its_data(container: str) -> None:
