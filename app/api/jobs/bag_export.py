@@ -21,8 +21,8 @@ class BagExportJob:
 
     Parameters
     ----------
-    clip_id
-        The clip, for the events.
+    export_id
+        Names the export in its events: there may be several of one clip.
     request
         The content of the bag.
     target
@@ -38,13 +38,13 @@ class BagExportJob:
 
     def __init__(
         self,
-        clip_id: str,
+        export_id: str,
         request: BagExportRequest,
         target: Path,
         files: ClipFiles,
         workers: Workers,
     ) -> None:
-        self._clip_id = clip_id
+        self._export_id = export_id
         self._request = request
         self._target = target
         self._files = files
@@ -58,7 +58,7 @@ class BagExportJob:
     def event(self, progress: Progress) -> Event:
         """Return how far the export is."""
         content = {
-            "id": self._clip_id,
+            "id": self._export_id,
             "stage": progress.stage,
             "done": progress.done,
             "total": progress.total,

@@ -15,10 +15,11 @@ from app.store import Role
 ADMIN_PATHS: Final = frozenset({"/metrics", "/api/v1/audit"})
 
 READING: Final = re.compile(
-    r"/api/v1/(recognitions|session|workspaces(/.*)?|languages/[^/]+/(preview(/health)?|take-table))"
+    r"/api/v1/(recognitions|session|workspaces(/.*)?|clips/[^/]+/session\.mcap"
+    r"|languages/[^/]+/(preview(/health)?|take-table))"
 )
 """Paths where no method changes what others see: a recognition is kept as a record of its own, a
-workspace is one browser tab's picture."""
+workspace is one browser tab's picture, and a session is written to be fetched."""
 
 
 class RoleRequired:

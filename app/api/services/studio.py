@@ -25,6 +25,7 @@ from app.api.jobs.job import progress_of
 from app.api.jobs.runner import JobRunner
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
+from app.api.services.kept_exports import KeptExports
 from app.api.services.sample_library import Samples
 from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
@@ -97,6 +98,8 @@ class Studio:
         Counts what happens, for Prometheus.
     computations
         Places of previews and pair differences, which compute in threads.
+    exports
+        Files that were written and wait to be fetched.
 
     """
 
@@ -121,6 +124,7 @@ class Studio:
     computations: asyncio.Semaphore = field(
         default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
     )
+    exports: KeptExports = field(default_factory=KeptExports)
 
     async def stop_soon(self) -> None:
         """Cancel the jobs that somebody waits for, and end the event streams."""
@@ -270,6 +274,7 @@ async def _studio(
         await studio.runner.stop()
         await studio.extractions.stop()
         await workers.close()
+        studio.exports.clear()
         await run_in_threadpool(broadcast.leave)
 
 

@@ -5,11 +5,12 @@ import { h } from "../core/dom.js";
 import { percent, timeLeft } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { toast } from "../core/toasts.js";
+import { uniqueId } from "../core/unique-id.js";
 
 /** @import { ExportProgress } from "../core/types.d.ts" */
 
-/** @type {Map<string, AbortController>} */
-const running = new Map(); // by clip
+/** @type {Map<string, HTMLElement>} */
+const running = new Map(); // elements, by the name of their export
 /** @type {Map<string, HTMLElement>} */
 const elements = new Map(); // by clip; they stay when the explanation around them is drawn anew
 
@@ -20,8 +21,7 @@ const elements = new Map(); // by clip; they stay when the explanation around th
  */
 export function exportWords(progress) {
   if (!progress) return "Preparing the session";
-  const { stage, done, total, eta_s: left } = progress;
-  if (stage === "sending") return "Sending the file";
+  const { done, total, eta_s: left } = progress;
   if (!total) return "Writing the session";
   const rest = left === null ? "" : `, ${timeLeft(left)}`;
   return `Writing the session, ${percent(done / total)}${rest}`;
@@ -66,18 +66,20 @@ function advance(box, progress) {
   const words = box.querySelector("[role=status]");
   if (!bar || !words) return;
   words.textContent = exportWords(progress);
-  if (progress?.total && progress.stage !== "sending")
-    Object.assign(bar, { max: progress.total, value: progress.done });
+  if (progress?.total) Object.assign(bar, { max: progress.total, value: progress.done });
   else bar.removeAttribute("value");
 }
 
 /**
+ * Write the session, and let the browser save it as it arrives: it may be larger than memory.
+ *
  * @param {HTMLElement} box
  * @param {string} clip
  */
 async function run(box, clip) {
   const leaving = new AbortController();
-  running.set(clip, leaving);
+  const name = uniqueId();
+  running.set(name, box);
   const cancel = h("button", { type: "button", onclick: () => leaving.abort() }, "Cancel");
   cancel.setAttribute("aria-label", "Cancel the session");
   box.replaceChildren(
@@ -89,9 +91,8 @@ async function run(box, clip) {
   advance(box, null);
   let problem = null;
   try {
-    const sending = () =>
-      advance(box, { id: clip, stage: "sending", done: 0, total: 0, eta_s: null });
-    saveFile(await api.clips.writeSession(clip, leaving.signal, sending));
+    const written = await api.clips.writeSession(clip, name, leaving.signal);
+    h("a", { href: api.clips.session(clip, name), download: written.name }).click();
   } catch (error) {
     if (leaving.signal.aborted) toast("The session is cancelled", "Nothing was downloaded.");
     else
@@ -101,7 +102,7 @@ async function run(box, clip) {
         `The session could not be downloaded: ${error.message} Nothing is lost: try it again.`,
       );
   } finally {
-    running.delete(clip);
+    running.delete(name);
   }
   drawStart(box, clip, problem);
 }
@@ -122,6 +123,6 @@ export function sessionExport(clip) {
 
 follow(["exporting"], () => {
   const { exporting } = state;
-  const box = exporting && elements.get(exporting.id);
-  if (box && running.has(exporting.id)) advance(box, exporting);
+  const box = exporting && running.get(exporting.id);
+  if (box) advance(box, exporting);
 });

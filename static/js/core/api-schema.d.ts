@@ -1719,6 +1719,17 @@ export interface components {
             size: number;
         };
         /**
+         * SessionExportRequest
+         * @description An export to write.
+         */
+        SessionExportRequest: {
+            /**
+             * Id
+             * @description Chosen by the client: names the export and its events
+             */
+            id: string;
+        };
+        /**
          * SessionView
          * @description Who sends this request.
          */
@@ -2203,6 +2214,24 @@ export interface components {
              * @default true
              */
             animate: boolean;
+        };
+        /**
+         * WrittenSessionView
+         * @description An export that was written.
+         */
+        WrittenSessionView: {
+            /** Id */
+            id: string;
+            /**
+             * Name
+             * @description Name of the file when it is saved
+             */
+            name: string;
+            /**
+             * Size
+             * @description Bytes
+             */
+            size: number;
         };
         /**
          * Fault

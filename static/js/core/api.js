@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace } from "./types.d.ts" */
+/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -121,22 +121,18 @@ export const clips = {
   /** @type {(clip: string) => string} */
   poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
   /**
-   * Write a session, and fetch it; `sending` is called once it is written.
+   * Write a session on the server; its progress comes as events of that `name`.
    *
-   * @type {(clip: string, signal: AbortSignal, sending: () => void) => Promise<{ name: string, content: Blob }>}
+   * @type {(clip: string, name: string, signal: AbortSignal) => Promise<WrittenSession>}
    */
-  writeSession: async (clip, signal, sending) => {
-    try {
-      const response = await fetch(`${BASE}/clips/${id(clip)}/session.mcap`, { signal });
-      if (!response.ok) throw new ApiError(await problemOf(response), response.status);
-      sending();
-      const header = response.headers.get("Content-Disposition") ?? "";
-      const [, name] = /filename\*=utf-8''([^;]+)/.exec(header) ?? [null, "session.mcap"];
-      return { name: decodeURIComponent(name), content: await response.blob() };
-    } catch (error) {
-      throw error instanceof ApiError ? error : unreachable();
-    }
-  },
+  writeSession: (clip, name, signal) =>
+    request("POST", `/clips/${id(clip)}/session.mcap`, { body: { id: name }, signal }),
+  /**
+   * The address from which the browser saves a session that was written.
+   *
+   * @type {(clip: string, name: string) => string}
+   */
+  session: (clip, name) => `${BASE}/clips/${id(clip)}/session.mcap?export=${id(name)}`,
   /** @type {(clip: string) => string} */
   video: (clip) => `${BASE}/clips/${id(clip)}/video`,
 };

@@ -41,6 +41,7 @@ export type PracticeRecord = Schemas["PracticeRecordView"];
 export type PracticeTake = Schemas["PracticeTakeView"];
 export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
+export type WrittenSession = Schemas["WrittenSessionView"];
 export type TakeTable = Schemas["TakeTableView"];
 export type TakeRow = Schemas["TakeRowView"];
 export type TestSet = Schemas["TestSetView"];
@@ -237,9 +238,9 @@ export interface CheckProgress {
   total: number;
 }
 
-/** How far the MCAP file of a clip is. */
+/** How far the MCAP file of a clip, or a table of takes, is. */
 export interface ExportProgress {
-  /** The clip. */
+  /** The export, as the page named it. */
   id: string;
   stage: string;
   done: number;

@@ -6,6 +6,7 @@ import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { moment, percent, plural, timeLeft } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
+import { uniqueId } from "../core/unique-id.js";
 import { shownRows, sortedRows } from "./take-rows.js";
 
 /** @import { ExportProgress, State, TakeRow, TakeTable } from "../core/types.d.ts" */
@@ -190,7 +191,7 @@ export function openTakeTable() {
     if (!clips.length) return fail("No clip is chosen; choose one whose takes are recognised.");
     const bar = h("progress", { "aria-label": "Progress of the table" });
     const words = h("p", { role: "status" }, "Recognising");
-    const id = Array.from(crypto.getRandomValues(new Uint32Array(4)), String).join("-");
+    const id = uniqueId();
     running = { id, bar, words };
     content.replaceChildren(words, bar);
     start.hidden = true;

@@ -34,7 +34,7 @@ def recognised(open_page: OpenPage, library: Library) -> Page:
 
 
 def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
-    open_page: OpenPage, library: Library, tmp_path: Path
+    open_page: OpenPage, server: Running, library: Library, tmp_path: Path
 ) -> None:
     page = recognised(open_page, library)
     # Whatever the page says while it is written, since that may be short.
@@ -45,6 +45,9 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     )
     with page.expect_download() as download:
         page.get_by_role("button", name="Session as MCAP").click()
+    # The browser saves it as it arrives: the page itself never holds what may be gigabytes.
+    assert f"/clips/{library.clip}/session.mcap?export=" in download.value.url
+    assert download.value.url.startswith(server.address)
     assert download.value.suggested_filename == "exported.mcap"
     download.value.save_as(tmp_path / "exported.mcap")
     assert len(checked(tmp_path / "exported.mcap")["/takes"]) == 1

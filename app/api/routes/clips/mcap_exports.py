@@ -1,18 +1,21 @@
-"""Route of the bag export: a clip and its recognitions as one MCAP file."""
+"""Routes of the bag export: a clip and its recognitions as one MCAP file."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Annotated
 from urllib.parse import quote
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from fastapi.responses import FileResponse
+from pydantic import BaseModel, Field
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.values import Body, Identifier
 from app.api.jobs.bag_export import BagExportJob
 from app.api.jobs.extraction import files_of
 from app.api.jobs.job import JobCancelled
@@ -22,6 +25,7 @@ from app.api.workers.bag_export_request import BagExportRequest, ExportedRecogni
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.triggers.trigger import SALUTE
+from app.store.models import new_id
 
 MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""
@@ -29,7 +33,42 @@ MEDIA_TYPE = "application/octet-stream"
 MOST_RECOGNITIONS = 500
 """In one bag, the newest: as many as `GET /recognitions` lists."""
 
+ExportName = Annotated[
+    str | None,
+    Query(max_length=64, description="Name of an export that was written for this client"),
+]
+
 router = APIRouter(prefix="/clips", tags=["clips"])
+
+
+class SessionExportRequest(Body):
+    """An export to write."""
+
+    id: Identifier = Field(description="Chosen by the client: names the export and its events")
+
+
+class WrittenSessionView(BaseModel):
+    """An export that was written."""
+
+    id: str
+    name: str = Field(description="Name of the file when it is saved")
+    size: int = Field(description="Bytes")
+
+
+@router.post("/{clip_id}/session.mcap", status_code=201, responses=problem_responses(404, 409))
+async def write_session(
+    request: Request, clip_id: str, wanted: SessionExportRequest, studio: CurrentStudio
+) -> WrittenSessionView:
+    """Write the MCAP file of a clip, to be fetched from the same address with `export`.
+
+    How far it is comes as `exports` among the events; closing the request cancels it. The file is
+    kept for ten minutes, and sent once.
+    """
+    content = await run_in_threadpool(_request, studio, clip_id)
+    target = await _write(request, studio, clip_id, wanted.id, content)
+    size = target.stat().st_size
+    studio.exports.keep(clip_id, wanted.id, target)
+    return WrittenSessionView(id=wanted.id, name=_name(content), size=size)
 
 
 @router.get(
@@ -40,18 +79,39 @@ router = APIRouter(prefix="/clips", tags=["clips"])
         200: {"description": "An MCAP file with its schemas inside", "content": {MEDIA_TYPE: {}}},
     },
 )
-async def get_session(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+async def get_session(
+    request: Request, clip_id: str, studio: CurrentStudio, export: ExportName = None
+) -> FileResponse:
     """Send keypoints, salute, takes, recognitions and video of a clip as one MCAP file.
 
     Its messages are JSON with their schemas beside them, in Foxglove's own terms where it has some.
-    How far it is comes as `exports` among the events; closing the request cancels it.
+    It is written first, which closing the request cancels, unless `export` names one that is here:
+    another server of several, and a second request, write it again.
     """
     content = await run_in_threadpool(_request, studio, clip_id)
+    name = export or new_id()
+    target = studio.exports.take(clip_id, name)
+    if target is None:
+        target = await _write(request, studio, clip_id, name, content)
+    shown = quote(_name(content), safe="")
+    disposition = f"attachment; filename=\"session.mcap\"; filename*=utf-8''{shown}"
+    return FileResponse(
+        target,
+        media_type=MEDIA_TYPE,
+        headers={"Content-Disposition": disposition},
+        background=BackgroundTask(target.unlink, missing_ok=True),
+    )
+
+
+async def _write(
+    request: Request, studio: Studio, clip_id: str, export_id: str, content: BagExportRequest
+) -> Path:
+    """Write an export while its client waits, and return the file, which is then the caller's."""
     # The name of a file that is still being written: what a crash leaves is swept at the start.
     target = studio.clips.new_partial()
     try:
         files = await run_in_threadpool(files_of, studio.clips, clip_id)
-        job = BagExportJob(clip_id, content, target, files, studio.workers)
+        job = BagExportJob(export_id, content, target, files, studio.workers)
         ended = await while_connected(request, studio.runner.run(job))
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
@@ -61,14 +121,12 @@ async def get_session(request: Request, clip_id: str, studio: CurrentStudio) -> 
     except BaseException:
         target.unlink(missing_ok=True)
         raise
-    shown = quote(f"{Path(content.clip).stem}.mcap", safe="")
-    disposition = f"attachment; filename=\"session.mcap\"; filename*=utf-8''{shown}"
-    return FileResponse(
-        target,
-        media_type=MEDIA_TYPE,
-        headers={"Content-Disposition": disposition},
-        background=BackgroundTask(target.unlink, missing_ok=True),
-    )
+    return target
+
+
+def _name(content: BagExportRequest) -> str:
+    """Return the name under which a browser saves the file."""
+    return f"{Path(content.clip).stem}.mcap"
 
 
 def _request(studio: Studio, clip_id: str) -> BagExportRequest:

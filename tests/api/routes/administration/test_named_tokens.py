@@ -242,6 +242,7 @@ def test_every_operation_has_the_role_that_it_needs(settings: Settings) -> None:
     }
     assert reading == {
         ("POST", "/api/v1/recognitions"),
+        ("POST", "/api/v1/clips/{clip_id}/session.mcap"),
         ("POST", "/api/v1/languages/{language_id}/take-table"),
         ("DELETE", "/api/v1/session"),
         ("POST", "/api/v1/languages/{language_id}/preview"),

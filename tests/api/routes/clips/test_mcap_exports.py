@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import httpx
@@ -11,7 +12,7 @@ from app.settings import Settings
 from tests.api.ingest.test_bag_clips import finished, upload
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import recording_of
-from tests.api.running import assert_problem
+from tests.api.running import Running, assert_problem, until
 from tests.bags.bag_files import file_of, published_rows, write_bag
 from tests.bags.exports import checked
 
@@ -45,6 +46,57 @@ def test_a_session_holds_what_was_seen_and_recognised(
     assert any("the skeleton is drawn" in content["message"] for _, content in found["/log"])
     # What was written to be sent is gone.
     assert {each.name for each in (settings.data_dir / "clips").iterdir()} == {clip["id"]}
+
+
+def test_a_session_is_written_under_a_name_and_fetched_once(
+    client: httpx.Client, settings: Settings, tmp_path: Path, circle_clip: str
+) -> None:
+    address = f"/api/v1/clips/{circle_clip}/session.mcap"
+    partials = settings.data_dir / "clips"
+    before = {each.name for each in partials.iterdir()}
+    written = {}
+    for name in ("first", "second"):
+        answer = client.post(address, json={"id": name})
+        assert answer.status_code == 201, answer.text
+        written[name] = answer.json()
+    (kept, other) = sorted(
+        partials / each.name for each in partials.iterdir() if each.name not in before
+    )
+    assert {each["id"] for each in written.values()} == {"first", "second"}
+    assert written["first"]["size"] == kept.stat().st_size
+    assert written["first"]["name"].endswith(".mcap")
+
+    fetched = client.get(address, params={"export": "first"})
+    assert len(fetched.content) == written["first"]["size"]
+    (tmp_path / "session.mcap").write_bytes(fetched.content)
+    assert len(checked(tmp_path / "session.mcap")["/takes"]) == 1
+    # What was sent is gone, the other one waits; whoever asks again gets it written again.
+    until(lambda: kept.exists() != other.exists())
+    assert client.get(address, params={"export": "first"}).status_code == 200
+    assert client.get(address, params={"export": "second"}).status_code == 200
+    until(lambda: {each.name for each in partials.iterdir()} == before)
+
+
+def test_two_exports_of_one_clip_tell_their_progress_by_their_own_names(
+    client: httpx.Client, server: Running, circle_clip: str
+) -> None:
+    told = []
+    with client.stream("GET", "/api/v1/events") as stream:
+        lines = stream.iter_lines()
+        while "listening" not in next(lines):
+            pass
+        for name in ("mine", "hers"):
+            address = f"{server.address}/api/v1/clips/{circle_clip}/session.mcap"
+            assert httpx.post(address, json={"id": name}, timeout=60).status_code == 201
+        server.studio.broadcast.publish("clips", id="over")
+        kind = ""
+        for line in lines:
+            kind = line.removeprefix("event:").strip() if line.startswith("event:") else kind
+            if line.startswith("data:") and kind == "clips":
+                break
+            if line.startswith("data:") and kind == "exports":
+                told.append(json.loads(line.removeprefix("data:"))["id"])
+    assert set(told) == {"mine", "hers"}
 
 
 def test_a_clip_whose_video_cannot_be_read_any_more_still_has_a_session(

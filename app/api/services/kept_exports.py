@@ -1,0 +1,59 @@
+"""Exports that were written and wait to be fetched."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+KEEP_SECONDS: Final = 600.0
+"""Time in which an export is fetched: a browser does so at once, a person may be asked first where
+to save it."""
+
+MOST_KEPT: Final = 8
+"""At the same time, so that nobody fills the disk by having exports written; the oldest goes."""
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """One file, and what removes it in time."""
+
+    path: Path
+    removal: asyncio.TimerHandle
+
+
+class KeptExports:
+    """Files by the name that their client gave them; each can be taken once."""
+
+    def __init__(self) -> None:
+        self._kept: dict[tuple[str, str], _Kept] = {}
+
+    def keep(self, clip_id: str, export_id: str, path: Path) -> None:
+        """Keep the export of a clip for `KEEP_SECONDS`, instead of an older one of that name."""
+        place = (clip_id, export_id)
+        self._remove(place)
+        while len(self._kept) >= MOST_KEPT:
+            self._remove(next(iter(self._kept)))
+        removal = asyncio.get_running_loop().call_later(KEEP_SECONDS, self._remove, place)
+        self._kept[place] = _Kept(path, removal)
+
+    def take(self, clip_id: str, export_id: str) -> Path | None:
+        """Return the file of an export, from now on the caller's; None where there is none."""
+        kept = self._kept.pop((clip_id, export_id), None)
+        if kept is None:
+            return None
+        kept.removal.cancel()
+        return kept.path
+
+    def clear(self) -> None:
+        """Remove all."""
+        for place in [*self._kept]:
+            self._remove(place)
+
+    def _remove(self, place: tuple[str, str]) -> None:
+        path = self.take(*place)
+        if path is not None:
+            with suppress(OSError):  # What is left is swept at the next start.
+                path.unlink(missing_ok=True)
