@@ -20,9 +20,18 @@ GREY = 68
 BLACK = 0
 WHITE = 255
 
+JOINERS = "\u200c\u200d"
+"""Zero width non-joiner and joiner: they are not seen, and tell which letters are joined."""
+
+BASELINE = 0.3
+"""Of a letter's size, from the middle of a cell of fpdf2 down to the baseline of its text."""
+
 
 def to_pdf(page: Page) -> bytes:
     """Return a page as a PDF document.
+
+    Letters are shaped and ordered as their script asks: Arabic ones are joined, and it and Hebrew
+    run from right to left.
 
     Raises
     ------
@@ -37,7 +46,9 @@ def to_pdf(page: Page) -> bytes:
     pdf.set_creation_date(EPOCH)
     pdf.set_title(page.title)
     pdf.set_auto_page_break(auto=False)
+    pdf.set_text_shaping(True)
     pdf.add_page()
+    pdf.c_margin = 0  # of a cell, between its edge and its text
     for part in page.parts:
         _draw(pdf, part)
     return bytes(pdf.output())
@@ -61,8 +72,8 @@ def _draw(pdf: FPDF, part: Part) -> None:
 
 
 def _write(pdf: FPDF, words: Words) -> None:
-    text = "".join(each for each in words.text if each.isprintable())
-    path = find_font(frozenset(text), bold=words.bold)
+    text = "".join(each for each in words.text if each.isprintable() or each in JOINERS)
+    path = find_font(frozenset(text) - {*JOINERS}, bold=words.bold)
     family = path.name.lower()
     if family not in pdf.fonts:
         pdf.add_font(family, fname=path)
@@ -70,4 +81,7 @@ def _write(pdf: FPDF, words: Words) -> None:
     pdf.set_text_color(WHITE if words.white else GREY if words.grey else BLACK)
     x, y = words.at
     shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[words.align]
-    pdf.text(x - shift * pdf.get_string_width(text), y, text)
+    width = pdf.get_string_width(text)
+    # Of fpdf2's ways to write, only cells shape their text.
+    pdf.set_xy(x - shift * width, y - BASELINE * words.size)
+    pdf.cell(w=width, h=0, text=text)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+import struct
+import zlib
 from dataclasses import replace
 from xml.etree import ElementTree
 
@@ -142,3 +145,46 @@ def test_lines_are_broken_at_words_and_within_words_that_are_too_wide() -> None:
     assert wrap("go to the waypoint", 1.0, 7.0, 3) == ["go to the", "waypoint"]
     assert wrap("go to the waypoint", 1.0, 7.0, 1) == ["go to the\u2026"]
     assert wrap("\u4e0a\u6d6e\u4e0b\u6f5c", 1.0, 2.0, 2) == ["\u4e0a\u6d6e", "\u4e0b\u6f5c"]
+
+
+SHOWN = re.compile(rb"\(((?:[^()\\]|\\.)*)\) Tj", re.DOTALL)
+"""A string of glyphs in a PDF's page, two bytes each."""
+
+STANDS_FOR = re.compile(rb"<([0-9A-F]{4})> <([0-9A-F]{4})>")
+"""A glyph's number, and the letter that it is a form of."""
+
+
+def drawn(text: str) -> list[tuple[int, str]]:
+    """Return the glyphs of a line in a PDF, from left to right, and the letters they stand for."""
+    content = to_pdf(Page("slate", 210.0, 297.0, (Words(text, (20.0, 20.0), 5.0),)))
+    found = [
+        zlib.decompress(each) if each.startswith(b"x") else each
+        for each in re.findall(rb"stream\n(.*?)\nendstream", content, re.DOTALL)
+    ]
+    (page,) = (each for each in found if b" Tj" in each)
+    (letters,) = (each for each in found if b"beginbfchar" in each)
+    known = {int(glyph, 16): chr(int(code, 16)) for glyph, code in STANDS_FOR.findall(letters)}
+    shown = b"".join(
+        re.sub(rb"\\(.)", lambda it: it[1].replace(b"r", b"\r"), each)
+        for each in SHOWN.findall(page)
+    )
+    glyphs = struct.unpack(f">{len(shown) // 2}H", shown)
+    return [(glyph, known[glyph]) for glyph in glyphs]
+
+
+def test_hebrew_runs_from_right_to_left_in_a_pdf() -> None:
+    assert "".join(letter for _, letter in drawn("\u05e9\u05dc\u05d5\u05dd")) == (
+        "\u05dd\u05d5\u05dc\u05e9"
+    )
+    # Numbers and Latin words within it keep their own order.
+    mixed = "".join(letter for _, letter in drawn("\u05d0\u05d1 OK 12"))
+    assert mixed == "OK 12 \u05d1\u05d0"
+
+
+def test_arabic_letters_are_joined_in_a_pdf() -> None:
+    glyphs = drawn("\u0628\u0628\u0628")
+    assert [letter for _, letter in glyphs] == ["\u0628"] * 3
+    # The end, the middle and the beginning of a word are three forms of one letter.
+    assert len({glyph for glyph, _ in glyphs}) == 3
+    apart = drawn("\u0628\u200c\u0628")
+    assert len({glyph for glyph, letter in apart if letter == "\u0628"}) == 1
