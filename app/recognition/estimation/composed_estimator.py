@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from app.recognition.estimation.estimator import check_image
 from app.recognition.estimation.landmark_models.hands import HandTracker
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 
@@ -13,6 +14,10 @@ class BodyFinder(Protocol):
 
     def track(self, image: Image, time: float) -> Body | None:
         """Return the body in `image`, taken at `time` seconds, or None where none is seen."""
+        ...
+
+    def examine(self, image: Image) -> Body | None:
+        """Return the body in `image` alone; tracking goes on as if it had not been shown."""
         ...
 
     def reset(self) -> None:
@@ -25,6 +30,10 @@ class HandFinder(Protocol):
 
     def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
         """Return up to two hands in `image`, larger first, given the body in it."""
+        ...
+
+    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return those in `image` alone; tracking goes on as if it had not been shown."""
         ...
 
     def reset(self) -> None:
@@ -49,6 +58,10 @@ class TrackedHands:
     def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
         """Return up to two hands in `image`, larger first."""
         return self._tracker.complete(image, self._tracker.follow(image), body)
+
+    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return up to two hands in `image` alone; tracking is left as it is."""
+        return TrackedHands(self._tracker.renew()).find(image, body)
 
     def reset(self) -> None:
         """Reset the tracking."""
@@ -87,6 +100,19 @@ class ComposedEstimator:
         """
         body = self._body.track(image, time)
         return FrameLandmarks(body, self._hands.find(image, body) if self._hands else ())
+
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        check_image(image)
+        body = self._body.examine(image)
+        return FrameLandmarks(body, self._hands.examine(image, body) if self._hands else ())
 
     def reset(self) -> None:
         """Reset the tracking; call it before another clip."""

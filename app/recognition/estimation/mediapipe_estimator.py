@@ -45,6 +45,7 @@ class MediaPipeEstimator:
         self._mediapipe = _library()
         self._pose_bundle = task_bundle_path("pose_landmarker_full", models)
         self._hand_bundle = task_bundle_path("hand_landmarker", models)
+        self._alone: tuple[Any, Any] | None = None
         self._start()
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
@@ -64,51 +65,78 @@ class MediaPipeEstimator:
             When `image` is not an RGB image of 8 bits.
 
         """
-        check_image(image)
+        picture, size = self._take(image)
         stamp = self._next_stamp(time)
-        picture = self._mediapipe.Image(
-            image_format=self._mediapipe.ImageFormat.SRGB,
-            data=np.ascontiguousarray(image),  # it reads rows back to back, whatever the strides
-        )
-        size = np.array([image.shape[1], image.shape[0]], dtype=np.float64)
         return FrameLandmarks(
             _body(self._pose.detect_for_video(picture, stamp), size),
             _hands(self._hand.detect_for_video(picture, stamp), size),
         )
 
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+
+        Landmarkers of their own look at it, which are started at the first call.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        picture, size = self._take(image)
+        if self._alone is None:
+            self._alone = self._open(self._mediapipe.tasks.vision.RunningMode.IMAGE)
+        pose, hand = self._alone
+        return FrameLandmarks(_body(pose.detect(picture), size), _hands(hand.detect(picture), size))
+
     def reset(self) -> None:
         """Reset tracking and smoothing; call it before another clip."""
-        self.close()
+        self._pose.close()
+        self._hand.close()
         self._start()
 
     def close(self) -> None:
         """Release the models; the estimator cannot be used afterwards."""
-        self._pose.close()
-        self._hand.close()
+        for each in (self._pose, self._hand, *(self._alone or ())):
+            each.close()
+
+    def _take(self, image: Image) -> tuple[Any, FloatArray]:
+        """Return the library's own image, and its width and height in pixels."""
+        check_image(image)
+        picture = self._mediapipe.Image(
+            image_format=self._mediapipe.ImageFormat.SRGB,
+            data=np.ascontiguousarray(image),  # it reads rows back to back, whatever the strides
+        )
+        return picture, np.array([image.shape[1], image.shape[0]], dtype=np.float64)
 
     def _start(self) -> None:
+        self._pose, self._hand = self._open(self._mediapipe.tasks.vision.RunningMode.VIDEO)
+        self._origin: float | None = None
+        self._stamp = 0
+
+    def _open(self, mode: Any) -> tuple[Any, Any]:
+        """Start a landmarker for bodies and one for hands."""
         vision = self._mediapipe.tasks.vision
-        video = vision.RunningMode.VIDEO
         try:
-            self._pose = vision.PoseLandmarker.create_from_options(
-                vision.PoseLandmarkerOptions(
-                    base_options=self._base_options(self._pose_bundle), running_mode=video
-                )
-            )
-            self._hand = vision.HandLandmarker.create_from_options(
-                vision.HandLandmarkerOptions(
-                    base_options=self._base_options(self._hand_bundle),
-                    running_mode=video,
-                    num_hands=MOST_HANDS,
-                )
+            return (
+                vision.PoseLandmarker.create_from_options(
+                    vision.PoseLandmarkerOptions(
+                        base_options=self._base_options(self._pose_bundle), running_mode=mode
+                    )
+                ),
+                vision.HandLandmarker.create_from_options(
+                    vision.HandLandmarkerOptions(
+                        base_options=self._base_options(self._hand_bundle),
+                        running_mode=mode,
+                        num_hands=MOST_HANDS,
+                    )
+                ),
             )
         except (OSError, RuntimeError, ValueError) as error:
             raise EstimatorError(
                 f"mediapipe does not start ({error}); on Debian it needs the packages libegl1 and "
                 f"libgles2, or use the backend 'onnx'"
             ) from error
-        self._origin: float | None = None
-        self._stamp = 0
 
     def _base_options(self, bundle: Path) -> Any:
         return self._mediapipe.tasks.BaseOptions(model_asset_path=str(bundle))

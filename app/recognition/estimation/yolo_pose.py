@@ -115,18 +115,32 @@ class YoloPose:
             When `image` is not an RGB image of 8 bits.
 
         """
-        check_image(image)
-        letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._model.input_size)
-        planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
-        people = decode_people(self._model.run(planes), self._model.path)
-        chosen = self._subject.choose(people.boxes, people.scores, time)
-        if chosen is None:
-            return None
-        return _body(people.keypoints[chosen], float(people.scores[chosen]), letterbox)
+        return self._look(image, self._subject, time)
+
+    def examine(self, image: Image) -> Body | None:
+        """Return the most prominent body in `image` alone; the tracking is left as it is.
+
+        Raises
+        ------
+        EstimatorError
+            When `image` is not an RGB image of 8 bits.
+
+        """
+        return self._look(image, PersonTracker(), 0.0)
 
     def reset(self) -> None:
         """Reset the tracking."""
         self._subject.reset()
+
+    def _look(self, image: Image, subject: PersonTracker, time: float) -> Body | None:
+        check_image(image)
+        letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._model.input_size)
+        planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
+        people = decode_people(self._model.run(planes), self._model.path)
+        chosen = subject.choose(people.boxes, people.scores, time)
+        if chosen is None:
+            return None
+        return _body(people.keypoints[chosen], float(people.scores[chosen]), letterbox)
 
 
 def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:

@@ -12,7 +12,7 @@ from osg_ros.parameters import Setting
 WATER: Final = Setting(
     "water",
     "auto",
-    "Correct colour and contrast under water: of murky pictures, of all, or of none.",
+    "Correct colour and contrast under water: as the models see most, of all pictures, or of none.",
     choices=get_args(WaterCorrection),
 )
 THREADS: Final = Setting(

@@ -9,6 +9,7 @@ import pytest
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import MediaPipeEstimator, OnnxPoseEstimator
+from app.recognition.estimation.water_sight import Examiner
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 from tests.recognition.strategies import known
@@ -63,3 +64,19 @@ def test_places_in_the_world_are_those_of_our_own_pipeline(
 def test_what_is_no_image_is_refused(library: MediaPipeEstimator) -> None:
     with pytest.raises(EstimatorError, match="image has shape"):
         library.estimate(np.zeros((4, 4), np.uint8), 0.0)
+
+
+def test_an_examination_finds_the_same_and_leaves_the_tracking_alone(
+    library: MediaPipeEstimator, frame: VideoFrame
+) -> None:
+    assert isinstance(library, Examiner)
+    library.reset()
+    first = library.estimate(frame.image, 0.0).body
+    examined = library.examine(frame.image).body
+    library.examine(np.ascontiguousarray(frame.image[:, ::-1]))
+    again = library.estimate(frame.image, 0.04).body
+    assert first is not None
+    assert examined is not None
+    assert again is not None
+    np.testing.assert_allclose(examined.xy[:13], first.xy[:13], atol=5)
+    np.testing.assert_allclose(again.xy[:13], first.xy[:13], atol=5)

@@ -10,7 +10,12 @@ import pytest
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation import FrameLandmarks, OnnxPoseEstimator
+from app.recognition.estimation.composed_estimator import ComposedEstimator, TrackedHands
+from app.recognition.estimation.onnx_estimator import body_tracker, hand_tracker
+from app.recognition.estimation.water import is_murky
 from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.recording.video import VideoFrame
 from benchmarks.accuracy.underwater import degrade
 from tests.recognition.estimation.clip_frames import clip_frames
@@ -28,6 +33,13 @@ def assert_equal(one: FrameLandmarks, other: FrameLandmarks) -> None:
     assert len(one.hands) == len(other.hands)
     for hand, same in zip(one.hands, other.hands, strict=True):
         np.testing.assert_array_equal(hand.xy, same.xy)
+
+
+def murky_with_lamp(image: Image) -> Image:
+    """Return a frame in murk with a lamp at its edge, so that its grey levels look clear."""
+    (murky,) = degrade([image], 0.75, far=False)
+    murky[: len(murky) // 12] = 255
+    return murky
 
 
 def look(
@@ -72,3 +84,16 @@ def test_an_examination_leaves_the_tracking_alone(
 def test_an_unknown_setting_is_refused_before_any_frame(estimator: OnnxPoseEstimator) -> None:
     with pytest.raises(EstimatorError, match="'sea'; there are: auto, on, off"):
         WaterSight(estimator, cast(Any, "sea"))
+
+
+def test_separate_models_for_bodies_and_hands_are_asked_too(
+    installed_models: None, frames: tuple[VideoFrame, ...]
+) -> None:
+    image = murky_with_lamp(frames[0].image)
+    assert not is_murky(image)
+    hands = TrackedHands(hand_tracker(search="palm", threads=1, provider="cpu"))
+    composed = ComposedEstimator(body_tracker(threads=1, provider="cpu"), hands, POSE_LANDMARKS)
+    counts = [
+        len(WaterSight(composed, water).estimate(image, 0.0).hands) for water in ("off", "auto")
+    ]
+    assert counts[1] > counts[0]

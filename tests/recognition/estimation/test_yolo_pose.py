@@ -9,6 +9,7 @@ import pytest
 
 from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
+from app.recognition.estimation.water_sight import Examiner
 from app.recognition.estimation.yolo_pose import YoloPose, decode_people
 from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -180,3 +181,27 @@ def test_a_body_tells_the_paper_s_hands_their_side(tmp_path: Path) -> None:
     }
     assert hand.side == min(wrists, key=lambda side: wrists[side])
     estimator.close()
+
+
+def test_an_examination_finds_who_is_most_prominent_and_follows_the_one_before(
+    small: YoloPose,
+) -> None:
+    small.reset()
+    near, larger = body_at(30, 50), body_at(400, 30, spacing=60)
+    found(small, picture(near))
+    examined = small.examine(picture(near, larger))
+    assert examined is not None
+    np.testing.assert_allclose(examined.xy[COLUMNS], larger, atol=1.5)
+    again = found(small, picture(near, larger), 0.1)
+    np.testing.assert_allclose(again.xy[COLUMNS], near, atol=1.5)
+
+
+def test_it_is_asked_for_the_correction_of_the_water(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    path = save_yolo_pose(tmp_path_factory.mktemp("asked") / "markers.onnx", side=320)
+    estimator = create_estimator(f"yolo-pose:{path}", hands="none")
+    assert isinstance(estimator, Examiner)
+    seen = estimator.examine(picture(body_at(100, 60)))
+    assert seen.body is not None
+    assert seen.hands == ()

@@ -125,6 +125,10 @@ class DiverHands:
         )
         return tuple(sorted((hand for hand in found if hand), key=lambda hand: -hand.size))
 
+    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+        """Return the same as `find`: images are processed independently."""
+        return self.find(image, body)
+
     def reset(self) -> None:
         """Do nothing: images are processed independently."""
 

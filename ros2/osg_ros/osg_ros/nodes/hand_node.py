@@ -7,9 +7,11 @@ from typing import Any
 from osg_interfaces.msg import BodyKeypoints
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation.landmark_models.hands import HandTracker
+from app.recognition.estimation.composed_estimator import ComposedEstimator, TrackedHands
 from app.recognition.estimation.onnx_estimator import hand_tracker
-from app.recognition.estimation.water import correct_colours
+from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
 from osg_ros.nodes.process import spin
@@ -18,6 +20,31 @@ from osg_ros.topics.body_topics import HandTopics
 from osg_ros.topics.image_messages import TRANSPORT, PictureDecoder, select_image_topic
 from osg_ros.topics.stamps import to_nanoseconds
 from osg_ros.topics.synchronization import StampPairs
+
+
+class ReceivedBody:
+    """The body that the pose node found in the picture at hand; a `BodyFinder`.
+
+    Attributes
+    ----------
+    body
+        It, or None where none was seen.
+
+    """
+
+    def __init__(self) -> None:
+        self.body: Body | None = None
+
+    def track(self, image: Image, time: float) -> Body | None:
+        """Return the body."""
+        return self.body
+
+    def examine(self, image: Image) -> Body | None:
+        """Return the body."""
+        return self.body
+
+    def reset(self) -> None:
+        """Do nothing: every picture comes with its own body."""
 
 
 class HandNode(ManagedNode):
@@ -29,20 +56,22 @@ class HandNode(ManagedNode):
     def __init__(self, **options: Any) -> None:
         settings = (TRANSPORT, WATER, THREADS, PROVIDER)
         super().__init__("hand_node", settings, "image, body_keypoints", **options)
-        self._tracker: HandTracker | None = None
+        self._sight: WaterSight | None = None
 
     def prepare(self) -> None:
         """Load the models and create the publishers."""
-        self._water = self.settings["water"]
-        self._tracker = hand_tracker(
+        tracker = hand_tracker(
             search="pose", threads=self.settings["threads"], provider=self.settings["provider"]
         )
+        self._received = ReceivedBody()
+        hands = ComposedEstimator(self._received, TrackedHands(tracker), POSE_LANDMARKS)
+        self._sight = WaterSight(hands, self.settings["water"])
         self._hands = HandTopics(self)
 
     def begin(self) -> None:
         """Process pictures from now on, with tracking reset."""
-        assert self._tracker
-        self._tracker.reset()
+        assert self._sight
+        self._sight.reset()
         self._decoder = PictureDecoder()
         self._pairs: StampPairs[Any, BodyKeypoints] = StampPairs()
         kind, topic = select_image_topic(self.settings["image_transport"])
@@ -51,7 +80,7 @@ class HandNode(ManagedNode):
 
     def release(self) -> None:
         """Release the models."""
-        self._tracker = None
+        self._sight = None
 
     def _take_picture(self, picture: Any) -> None:
         pair = self._pairs.first(to_nanoseconds(picture.header.stamp), picture)
@@ -64,17 +93,17 @@ class HandNode(ManagedNode):
             self._look(*pair)
 
     def _look(self, picture: Any, body: BodyKeypoints) -> None:
-        assert self._tracker
+        assert self._sight
         self.count_input()
         try:
-            image = correct_colours(self._decoder.decode(picture), self._water)
-            followed = self._tracker.follow(image)
-            hands = self._tracker.complete(image, followed, read_body(body))
+            image = self._decoder.decode(picture)
+            self._received.body = read_body(body)
+            found = self._sight.estimate(image, to_nanoseconds(picture.header.stamp) / 1e9)
         except OsgError as error:
             self.report_problem(f"a picture is left out: {error}")
             return
         height, width = image.shape[:2]
-        self._hands.publish(picture.header, (width, height), hands)
+        self._hands.publish(picture.header, (width, height), found.hands)
 
 
 def main() -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from app.recognition.errors import OsgError
-from app.recognition.estimation.landmark_models.body import BodyTracker
+from app.recognition.estimation.composed_estimator import ComposedEstimator
 from app.recognition.estimation.onnx_estimator import body_tracker
-from app.recognition.estimation.water import correct_colours
+from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import NEWEST, ManagedNode
 from osg_ros.nodes.process import spin
@@ -22,21 +23,20 @@ class PoseNode(ManagedNode):
     def __init__(self, **options: Any) -> None:
         settings = (TRANSPORT, WATER, THREADS, PROVIDER)
         super().__init__("pose_node", settings, "image", **options)
-        self._tracker: BodyTracker | None = None
+        self._sight: WaterSight | None = None
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
         """Load the models and create the publishers."""
-        self._water = self.settings["water"]
-        self._tracker = body_tracker(
-            threads=self.settings["threads"], provider=self.settings["provider"]
-        )
+        tracker = body_tracker(threads=self.settings["threads"], provider=self.settings["provider"])
+        bodies = ComposedEstimator(tracker, None, POSE_LANDMARKS)
+        self._sight = WaterSight(bodies, self.settings["water"])
         self._bodies = BodyTopics(self)
 
     def begin(self) -> None:
         """Process pictures from now on, with tracking reset."""
-        assert self._tracker
-        self._tracker.reset()
+        assert self._sight
+        self._sight.reset()
         self._stopwatch = None
         self._decoder = PictureDecoder()
         kind, topic = select_image_topic(self.settings["image_transport"])
@@ -44,22 +44,22 @@ class PoseNode(ManagedNode):
 
     def release(self) -> None:
         """Release the models."""
-        self._tracker = None
+        self._sight = None
 
     def _look(self, message: Any) -> None:
-        assert self._tracker
+        assert self._sight
         self.count_input()
         stamp = to_nanoseconds(message.header.stamp)
         if self._stopwatch is None:
             self._stopwatch = Stopwatch(stamp)
         try:
-            image = correct_colours(self._decoder.decode(message), self._water)
-            body = self._tracker.track(image, self._stopwatch.seconds(stamp))
+            image = self._decoder.decode(message)
+            found = self._sight.estimate(image, self._stopwatch.seconds(stamp))
         except OsgError as error:
             self.report_problem(f"a picture is left out: {error}")
             return
         height, width = image.shape[:2]
-        self._bodies.publish(message.header, (width, height), body)
+        self._bodies.publish(message.header, (width, height), found.body)
 
 
 def main() -> None:
