@@ -1,5 +1,5 @@
 /** The rooms of the page, from the bottom: a room imports from those before it and from itself. */
-const ROOMS = ["core", "clips", "languages", "upload", "export", "gestures", "studio"];
+const ROOMS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
 
 /** Views that build on the rooms; they do not import each other. */
 const VIEWS = ["editor", "health", "live", "phrases", "practice"];

@@ -31,14 +31,14 @@ const STEPS = [
 function picture() {
   return h(
     "div",
-    { className: "live-picture", id: "live-picture" },
+    { className: "camera-picture", id: "live-picture" },
     h("video", {
       id: "live-video",
       muted: true,
       playsInline: true,
       "aria-label": "What the camera sees",
     }),
-    h("p", { className: "live-idle", id: "live-idle" }, "No source is running"),
+    h("p", { className: "camera-idle", id: "live-idle" }, "No source is running"),
     h("p", {
       className: "live-count",
       id: "live-count",
@@ -46,7 +46,7 @@ function picture() {
       "aria-live": "assertive",
       hidden: true,
     }),
-    h("div", { className: "live-problem", id: "live-problem", role: "alert", hidden: true }),
+    h("div", { className: "camera-problem", id: "live-problem", role: "alert", hidden: true }),
   );
 }
 

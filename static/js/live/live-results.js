@@ -7,7 +7,7 @@ import { state } from "../core/state.js";
 import { go } from "../core/views.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
-/** @import { Recognized } from "./live-messages.d.ts" */
+/** @import { Recognized } from "../camera/live-messages.d.ts" */
 
 const MOST = 50; // in the list; a practice session has fewer.
 

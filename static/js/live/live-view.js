@@ -1,5 +1,21 @@
 // The live view: a camera, or a clip played as if live, and what is recognised in it.
 
+import { frameSender } from "../camera/frame-sender.js";
+import { openLink } from "../camera/live-socket.js";
+import { drawSeen, overlay } from "../camera/pose-overlay.js";
+import { countDown, record } from "../camera/recording.js";
+import { drawTrouble } from "../camera/trouble.js";
+import {
+  cameraLost,
+  cameraPossible,
+  offerCameras,
+  release,
+  showCamera,
+  showClip,
+  stepFrames,
+  watchFrames,
+  whyNoCamera,
+} from "../camera/video-source.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { bind } from "../core/keys.js";
@@ -7,29 +23,15 @@ import { follow, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { addFiles } from "../upload/upload-list.js";
-import { countDown, record } from "./camera-recording.js";
 import { panel } from "./live-layout.js";
 import { addResult, clearResults, showNothingRecognised } from "./live-results.js";
-import { openLink } from "./live-socket.js";
 import { drawSpeed, drawState, nameTrigger } from "./live-status.js";
-import { drawSeen, overlay } from "./pose-overlay.js";
-import {
-  CAMERA_LOST,
-  cameraPossible,
-  cameras,
-  grab,
-  release,
-  showCamera,
-  showClip,
-  stepFrames,
-  watchFrames,
-  whyNoCamera,
-} from "./video-source.js";
 
 /** @import { Clip } from "../core/types.d.ts" */
-/** @import { Listening, Recognized, Seen, Trouble } from "./live-messages.d.ts" */
+/** @import { Listening, Recognized, Seen, Trouble } from "../camera/live-messages.d.ts" */
 
 const COUNT = 3; // s: from the button to where the diver stands.
+const INSTEAD = "play a clip as if live";
 const FIRST = "Nothing recognised yet. What is recognised appears here.";
 
 const BETWEEN = {
@@ -46,7 +48,6 @@ const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory 
 let link = null;
 /** @type {(() => void) | null} */
 let stopFrames = null;
-let grabbing = false;
 /** @type {SVGSVGElement | null} */
 let drawing = null;
 /** @type {ReturnType<typeof record> | null} */
@@ -65,16 +66,7 @@ const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
 const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
 
 /** @param {Trouble | null} trouble */
-function problem(trouble) {
-  const box = byId("live-problem");
-  box.hidden = !trouble;
-  if (trouble)
-    box.replaceChildren(
-      h("b", {}, trouble.title),
-      h("p", {}, trouble.text),
-      h("button", { type: "button", onclick: start }, "Try again"),
-    );
-}
+const problem = (trouble) => drawTrouble(byId("live-problem"), trouble, start);
 
 /** Bring the buttons in line with what goes on. */
 function drawControls() {
@@ -113,14 +105,8 @@ function drawClipChoice() {
 
 async function drawCameraChoice() {
   const choice = byId("live-cameras");
-  const found = await cameras();
-  choice.hidden = fromClip() || found.length < 2;
-  const current = video().srcObject?.getVideoTracks()[0]?.getSettings().deviceId;
-  choice.replaceChildren(
-    ...found.map(({ deviceId, label }) =>
-      h("option", { value: deviceId, selected: deviceId === current }, label || "Camera"),
-    ),
-  );
+  await offerCameras(choice, video());
+  choice.hidden ||= fromClip();
 }
 
 function stop() {
@@ -134,32 +120,6 @@ function stop() {
   drawState(null);
   drawSpeed(null, 0);
   drawControls();
-}
-
-/**
- * Look at a frame, unless enough are on their way.
- *
- * @param {number} time
- * @param {number} at
- */
-async function look(time, at) {
-  const sending = link;
-  if (grabbing || !sending?.ready()) return;
-  grabbing = true;
-  const picture = await grab(video());
-  grabbing = false;
-  if (picture) await sending.send(time, at, picture);
-}
-
-/**
- * Look at a frame, and wait for the answer.
- *
- * @param {number} time
- */
-async function lookAndWait(time) {
-  const answered = link?.answered();
-  await look(time, performance.now() / 1000);
-  await answered;
 }
 
 /**
@@ -206,7 +166,7 @@ function listening({ language, gestures, problem: trouble }) {
 
 async function showSource() {
   if (fromClip()) await showClip(video(), api.clips.video(chosenClip().id));
-  else await showCamera(video(), byId("live-cameras").value, () => lost(CAMERA_LOST));
+  else await showCamera(video(), byId("live-cameras").value, () => lost(cameraLost(INSTEAD)));
   byId("live-picture").classList.toggle("mirrored", !fromClip());
   drawing?.remove();
   drawing = overlay(video().videoWidth, video().videoHeight);
@@ -226,7 +186,9 @@ async function start() {
   } catch (error) {
     release(video());
     problem(
-      clip ? { title: "The clip cannot be played", text: error.message } : whyNoCamera(error),
+      clip
+        ? { title: "The clip cannot be played", text: error.message }
+        : whyNoCamera(error, INSTEAD),
     );
     if (cameraPossible()) drawCameraChoice(); // The one that was chosen may be gone.
     return false;
@@ -258,6 +220,13 @@ async function start() {
     if (clip) clipEnded(clip);
   };
   if (clip) video().onerror = () => ended("The clip broke off: the server did not answer.");
+  const look = frameSender(video(), opened);
+  /** @param {number} time */
+  const lookAndWait = async (time) => {
+    const answered = opened.answered();
+    await look(time, performance.now() / 1000);
+    await answered;
+  };
   stopFrames = every ? stepFrames(video(), lookAndWait) : watchFrames(video(), look);
   if (clip && !every) await video().play();
   return true;

@@ -1,18 +1,26 @@
-// Practice: a diver shows a gesture by a clip, learns what to change, and has a record of it.
+// Practice: a diver shows a gesture to the camera or by a clip, learns what to change, and has a
+// record of it.
 
 import { labelInName } from "../clips/clip-label.js";
+import { statusText } from "../clips/clip-store.js";
+import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { h, iconButton, WRITES } from "../core/dom.js";
-import { moment, percent, plural } from "../core/format.js";
+import { h, WRITES } from "../core/dom.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
-import { address, go, here } from "../core/views.js";
 import { addFiles, takeFilesIn } from "../upload/upload-list.js";
+import { practiceCamera } from "./practice-camera.js";
+import { feedback } from "./practice-feedback.js";
+import { recordCard } from "./practice-records.js";
 
-/** @import { PracticeAnswer, PracticeRecord, PracticeTake } from "../core/types.d.ts" */
+/** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
-/** @typedef {(take: PracticeTake) => void} Remove */
+/**
+ * What a diver shows, and to which language.
+ *
+ * @typedef {{ language: string, diver: string, expected: string }} Attempt
+ */
 
 const KEY = "osg-studio.diver"; // sessionStorage: one diver practises in a tab.
 const LONGEST_NAME = 80;
@@ -28,116 +36,14 @@ function shownClips() {
 }
 
 /**
- * What the evidence says, and what is missing, in words.
+ * The last take of a clip that has an end; without one the last that was begun.
  *
- * @param {Omit<PracticeRecord, "diver" | "older" | "shown">} record
+ * @param {string} clip
  */
-export function evidenceOf({ takes, errors, bound, limit: most, reached, more, confidence }) {
-  const counted = `${plural(errors, "error")} in ${plural(takes, "take")}`;
-  const sure = `${percent(confidence)} confidence`;
-  return reached
-    ? `${counted}: under ${percent(most)} errors, by ${sure} at most ${(100 * bound).toFixed(1)} %.`
-    : `${counted}: ${plural(more, "more take")} without an error for under ${percent(most)} errors at ${sure}.`;
-}
-
-/** @param {PracticeTake} take */
-const placeOf = ({ clip_id: clip, recognition_id: recognition }) => ({
-  clip,
-  recognition,
-  take: null,
-  start: null,
-  end: null,
-  frame: null,
-});
-
-/**
- * @param {PracticeTake} take
- * @param {Remove} remove
- */
-function takeRow(take, remove) {
-  const clip = state.clips.find(({ id }) => id === take.clip_id);
-  const place = placeOf(take);
-  return h(
-    "li",
-    { className: take.right ? "right" : "wrong" },
-    h("span", { "aria-hidden": "true" }, take.right ? "\u2713" : "\u2260"),
-    h(
-      "span",
-      {},
-      h("b", {}, take.expected),
-      take.right ? " recognised" : ` read as ${take.label ?? "nothing"}`,
-      h("small", { className: "dim" }, ` revision ${take.revision}`),
-    ),
-    clip
-      ? h(
-          "a",
-          { href: address("studio", place), onclick: here(() => go("studio", place)) },
-          clip.name,
-        )
-      : h("span", { className: "dim" }, "its clip was deleted"),
-    iconButton("close", `Remove this take of ${take.expected}`, () => remove(take), WRITES),
-  );
-}
-
-/**
- * @param {PracticeRecord} record
- * @param {Remove} remove
- */
-function recordCard(record, remove) {
-  const needed = record.takes + record.more;
-  return h(
-    "section",
-    { className: `practice-record${record.reached ? " reached" : ""}`, "aria-label": record.diver },
-    h("h3", {}, record.diver, record.reached ? " \u2713" : ""),
-    h("p", {}, evidenceOf(record)),
-    h("progress", {
-      "aria-label": `Takes of ${record.diver}`,
-      max: Math.max(1, needed),
-      value: record.takes,
-    }),
-    record.older
-      ? h(
-          "p",
-          { className: "dim" },
-          `${plural(record.older, "take")} with older revisions of the language do not count.`,
-        )
-      : null,
-    h(
-      "details",
-      {},
-      h("summary", {}, plural(record.shown.length, "take")),
-      h(
-        "ul",
-        { className: "practice-takes" },
-        record.shown.map((take) => takeRow(take, remove)),
-      ),
-    ),
-  );
-}
-
-/**
- * What to tell the diver about the take that was just shown.
- *
- * @param {PracticeAnswer} answer
- */
-function feedback({ take, sentence, lesson, notes }) {
-  return [
-    h(
-      "p",
-      { className: take.right ? "practice-right" : "practice-wrong" },
-      h("b", {}, take.right ? "\u2713 Right: " : "\u2260 Not yet: "),
-      take.right ? take.expected : sentence,
-    ),
-    lesson
-      ? h(
-          "p",
-          { className: "lesson" },
-          h("b", {}, "Show it again: "),
-          `in this take ${lesson.words}${lesson.start === null ? "" : ` (from ${moment(lesson.start)})`}.`,
-        )
-      : null,
-    ...notes.map((text) => h("p", { className: "dim" }, text)),
-  ].filter((each) => each !== null);
+async function lastTake(clip) {
+  const takes = await api.clips.takes(clip, takesLanguage(state.gestures));
+  const take = takes.findLast(({ closed }) => closed) ?? takes.at(-1);
+  return take ? { start: take.stroke_start, end: take.stroke_end } : null;
 }
 
 /**
@@ -167,6 +73,53 @@ export function open(section) {
     { type: "submit", className: "primary", ...WRITES },
     "Show it by this clip",
   );
+  /** @type {"camera" | "clip" | null} as chosen; null: the camera where there is no clip */
+  let source = null;
+  const by = () => source ?? (clip.options.length ? "clip" : "camera");
+  /**
+   * @param {"camera" | "clip"} name
+   * @param {string} text
+   */
+  const sourceButton = (name, text) =>
+    h(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          source = name;
+          if (name === "clip") camera.stop();
+          draw();
+        },
+      },
+      text,
+    );
+  const [byCamera, byClip] = [sourceButton("camera", "Camera"), sourceButton("clip", "Clip")];
+  /** @type {Map<string, Attempt>} */
+  const awaited = new Map(); // by clip of the camera, until its poses are found
+  /** @returns {Attempt} */
+  const attempted = () => ({
+    language: state.language ?? "",
+    diver: diver.value.trim(),
+    expected: gesture.value,
+  });
+  const camera = practiceCamera({
+    started() {
+      source = "camera";
+    },
+    nameOf: () => `${diver.value.trim()} ${gesture.value}`.replace(/[/\\:]/g, " "),
+    taken(file) {
+      const shown = attempted();
+      if (!shown.diver) {
+        say("Name the diver: this take is not counted.");
+        return;
+      }
+      say(`Sending the take of ${shown.expected}\u2026`);
+      addFiles([file], (id) => {
+        awaited.set(id, shown);
+        workOff();
+      });
+    },
+  });
   const answer = h("div", { className: "practice-answer", role: "status" });
   const records = h("div", { className: "practice-records" });
   const note = h("p", { className: "dim" });
@@ -214,7 +167,7 @@ export function open(section) {
       clip.replaceChildren(...clips.map(({ id, name }) => h("option", { value: id }, name)));
       if (labels.includes(before[0])) gesture.value = before[0];
       if (clips.some(({ id }) => id === before[1])) clip.value = before[1];
-      else followName();
+      else if (by() === "clip") followName();
     }
     drawPicture();
   }
@@ -229,15 +182,84 @@ export function open(section) {
 
   function draw() {
     offer();
+    const byCameraNow = by() === "camera";
     const missing = !gesture.value
       ? "The language has no gestures yet."
-      : !clip.value
-        ? "Record a clip, or drop one: the demonstrations themselves do not count."
+      : !byCameraNow && !clip.value
+        ? "Drop a clip, or use the camera: the demonstrations themselves do not count."
         : diver.value.trim()
           ? ""
           : "Name the diver.";
     note.textContent = missing;
+    note.hidden = !missing;
     show.disabled = Boolean(missing);
+    byCamera.setAttribute("aria-pressed", String(byCameraNow));
+    byClip.setAttribute("aria-pressed", String(!byCameraNow));
+    camera.element.hidden = !byCameraNow;
+    clipField.hidden = show.hidden = byCameraNow;
+    camera.allow(!missing);
+    camera.draw();
+  }
+
+  /** @param {string} text */
+  const say = (text) => answer.replaceChildren(h("p", { className: "dim" }, text));
+
+  /**
+   * Recognise what a diver shows, and tell what to change.
+   *
+   * @param {Attempt} shown
+   * @param {string} id of the clip
+   * @param {{ start: number, end: number } | null} range
+   */
+  async function recognise({ language, diver: name, expected }, id, range) {
+    say("Recognising\u2026");
+    try {
+      const found = await api.practice.show(language, {
+        diver: name,
+        expected,
+        clip_id: id,
+        ...range,
+      });
+      answer.replaceChildren(...feedback(found));
+      answer.scrollIntoView({ block: "nearest" });
+      await load();
+    } catch (error) {
+      answer.replaceChildren();
+      complain(error, "Recognition");
+    }
+  }
+
+  /**
+   * Recognise the take of a clip of the camera.
+   *
+   * @param {string} id
+   * @param {Attempt} shown
+   */
+  async function recogniseCamera(id, shown) {
+    const take = await attempt("Finding the take", () => lastTake(id));
+    if (take) await recognise(shown, id, take);
+    else
+      say(
+        `No take of ${shown.expected} was seen. Step back until hands and hips are in the picture, and show it again.`,
+      );
+  }
+
+  /** Go on with the clips of the camera whose poses are found, and tell how far the others are. */
+  function workOff() {
+    for (const [id, shown] of awaited) {
+      const found = state.clips.find((each) => each.id === id);
+      if (!found) continue;
+      if (found.status === "done") {
+        awaited.delete(id);
+        recogniseCamera(id, shown);
+      } else if (found.status === "failed" || found.status === "cancelled") {
+        awaited.delete(id);
+        say(`The take of ${shown.expected} cannot be judged: ${statusText(found)}`);
+      } else {
+        const text = statusText(found, state.jobs.get(found.job_id));
+        say(`Take of ${shown.expected}: ${text}`);
+      }
+    }
   }
 
   gesture.onchange = drawPicture;
@@ -248,6 +270,7 @@ export function open(section) {
    */
   const field = (label, input) =>
     h("div", { className: "field" }, h("label", { for: input.id }, label), input);
+  const clipField = field("Clip", clip);
   const form = h(
     "form",
     { className: "practice-form" },
@@ -257,36 +280,23 @@ export function open(section) {
       { className: "practice-fields" },
       field("Diver", diver),
       field("Gesture to show", gesture),
-      field("Clip", clip),
       h(
         "div",
-        { className: "practice-actions" },
-        show,
-        h(
-          "button",
-          { type: "button", onclick: () => go("live", { source: null }) },
-          "Record with the camera",
-        ),
+        { className: "segments", role: "group", "aria-label": "Shown by" },
+        byCamera,
+        byClip,
       ),
+      clipField,
+      h("div", { className: "practice-actions" }, show),
       note,
     ),
+    camera.element,
   );
   form.onsubmit = async (event) => {
     event.preventDefault();
+    if (by() === "camera") return; // Enter in a field.
     show.disabled = true;
-    answer.replaceChildren(h("p", { className: "dim" }, "Recognising\u2026"));
-    try {
-      const found = await api.practice.show(state.language ?? "", {
-        diver: diver.value.trim(),
-        expected: gesture.value,
-        clip_id: clip.value,
-      });
-      answer.replaceChildren(...feedback(found));
-      await load();
-    } catch (error) {
-      answer.replaceChildren();
-      complain(error, "Recognition");
-    }
+    await recognise(attempted(), clip.value, null);
     draw();
   };
   section.append(
@@ -307,5 +317,10 @@ export function open(section) {
   );
   takeFilesIn("practice", (files) => addFiles(files));
   follow(["gestures", "clips"], draw);
+  follow(["clips", "jobs"], workOff);
   follow(["view", "gestures"], load);
+  follow(["language"], camera.listen);
+  follow(["view"], ({ view }) => {
+    if (view !== "practice") camera.stop();
+  });
 }

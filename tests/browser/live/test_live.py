@@ -6,14 +6,13 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import av
 import httpx
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
 from app.settings import Settings
 from tests.api.running import Running
-from tests.browser.camera import see_seconds
+from tests.browser.camera import camera_showing, see_seconds, write_feed
 from tests.browser.conftest import OpenPage, started
 from tests.browser.library import add_clip
 
@@ -48,24 +47,14 @@ def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 def feed(clips: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return what the camera shows: a diver who salutes, draws a line and salutes again."""
     path = tmp_path_factory.mktemp("camera") / "line.y4m"
-    with av.open(str(clips / "line-test-2.mp4")) as clip, path.open("wb") as camera:
-        camera.write(f"YUV4MPEG2 W640 H480 F{FEED_RATE}:1 Ip A1:1 C420mpeg2\n".encode())
-        for index, frame in enumerate(clip.decode(video=0)):
-            if index % 2 == 0:
-                camera.write(b"FRAME\n" + frame.to_ndarray(format="yuv420p").tobytes())
-    return path
+    return write_feed(clips / "line-test-2.mp4", path, FEED_RATE)
 
 
 @pytest.fixture(scope="module")
 def browser(browser: Browser, feed: Path) -> Iterator[Browser]:
     """Start a second Chromium, with a camera that shows the feed again and again."""
-    camera = (
-        "--use-fake-device-for-media-stream",
-        "--use-fake-ui-for-media-stream",
-        f"--use-file-for-fake-video-capture={feed}",
-        f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1",
-    )
-    with started(browser.browser_type, *camera) as another:
+    name = f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"
+    with started(browser.browser_type, *camera_showing(feed), name) as another:
         yield another
 
 

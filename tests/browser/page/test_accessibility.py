@@ -20,7 +20,7 @@ SHOWN = {
     "Languages": "role=link[name='accessible']",
     "Phrases": "role=button[name='Add the first phrase']",
     "Health": "role=grid[name=/^Estimated confusions/]",
-    "Practice": "role=button[name='Show it by this clip']",
+    "Practice": "role=button[name='Start the camera']",
     "Live": "role=button[name='Start the camera']",
 }
 """By view what stands in it once all is loaded."""

@@ -1,13 +1,13 @@
 // The source of live frames: a camera, or a clip played as if live.
 
+import { h } from "../core/dom.js";
+
 const LONGEST_SIDE = 960; // px. The models look at a hand in 224; a smaller picture would blur it.
 const QUALITY = 0.8; // of the JPEG: a fifth of the bytes of 0.95, and the same landmarks.
 const CLIP_STEP = 1 / 12; // s. A salute is held for 0.3 s: at least three frames of it are seen.
 
 /** Whether the browser may give this page a camera at all. */
 export const cameraPossible = () => Boolean(navigator.mediaDevices?.getUserMedia);
-
-const INSTEAD = "Without a camera, play a clip as if live.";
 
 /** @type {Record<string, [string, string]>} */
 const REASONS = {
@@ -33,26 +33,31 @@ const REASONS = {
   ],
 };
 
-/** Why a camera that was watched sends nothing any more. */
-export const CAMERA_LOST = {
+/**
+ * Why a camera that was watched sends nothing any more, and what can be done `instead`.
+ *
+ * @param {string} instead
+ */
+export const cameraLost = (instead) => ({
   title: "The camera was lost",
-  text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. ${INSTEAD}`,
-};
+  text: `It was unplugged, or is no longer allowed. What was recorded until then is kept. Without a camera, ${instead}.`,
+});
 
 /**
- * Explain why there is no camera: `{ title, text }`.
+ * Explain why there is no camera, `{ title, text }`, and what can be done `instead`.
  *
  * @param {Error} error
+ * @param {string} instead
  */
-export function whyNoCamera(error) {
+export function whyNoCamera(error, instead) {
   if (!cameraPossible()) {
     return {
       title: "No camera over an open connection",
-      text: `Browsers give cameras only to pages over HTTPS, or from the machine itself (127.0.0.1, localhost). This page comes from ${location.origin}. Open it on that machine or over HTTPS, or play a clip as if live.`,
+      text: `Browsers give cameras only to pages over HTTPS, or from the machine itself (127.0.0.1, localhost). This page comes from ${location.origin}. Open it on that machine or over HTTPS, or ${instead}.`,
     };
   }
   const [title, text] = REASONS[error.name] ?? ["The camera cannot be used", error.message];
-  return { title, text: `${text} ${INSTEAD}` };
+  return { title, text: `${text} Without a camera, ${instead}.` };
 }
 
 /**
@@ -74,10 +79,25 @@ export async function showCamera(video, deviceId, lost) {
   await video.play();
 }
 
-/** The cameras that can be chosen from; the browser names them once one was allowed. */
-export async function cameras() {
+/**
+ * Offer the cameras that there are, of which the one on display is chosen; hidden where there is no
+ * choice. The browser names them once one was allowed.
+ *
+ * @param {HTMLSelectElement} choice
+ * @param {HTMLVideoElement} video
+ */
+export async function offerCameras(choice, video) {
   const devices = await navigator.mediaDevices.enumerateDevices();
-  return devices.filter(({ kind, deviceId }) => kind === "videoinput" && deviceId);
+  const found = devices.filter(({ kind, deviceId }) => kind === "videoinput" && deviceId);
+  const { srcObject } = video;
+  const current =
+    srcObject instanceof MediaStream && srcObject.getVideoTracks()[0]?.getSettings().deviceId;
+  choice.hidden = found.length < 2;
+  choice.replaceChildren(
+    ...found.map(({ deviceId, label }) =>
+      h("option", { value: deviceId, selected: deviceId === current }, label || "Camera"),
+    ),
+  );
 }
 
 /**

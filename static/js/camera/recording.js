@@ -35,17 +35,19 @@ export function countDown(from, show, signal) {
 const two = (/** @type {number} */ number) => String(number).padStart(2, "0");
 
 /**
+ * @param {string} what
  * @param {Date} date
  * @param {string} type
  */
-function nameAt(date, type) {
+function nameAt(what, date, type) {
   const day = [date.getFullYear(), two(date.getMonth() + 1), two(date.getDate())].join("-");
   const hour = [date.getHours(), date.getMinutes(), date.getSeconds()].map(two).join("-");
-  return `camera ${day} ${hour}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`;
+  return `${what} ${day} ${hour}.${type.startsWith("video/mp4") ? "mp4" : "webm"}`;
 }
 
 /**
- * Record a stream; `stop()` resolves with the file, or null when nothing was recorded.
+ * Record a stream; `stop(what)` resolves with the file, called `what` with the time of its begin,
+ * or null when nothing was recorded.
  *
  * @param {MediaStream} stream
  */
@@ -64,12 +66,12 @@ export function record(stream) {
   recorder.start(CHUNK);
   return {
     began,
-    async stop() {
+    async stop(what = "camera") {
       if (recorder.state !== "inactive") recorder.stop();
       await stopped;
       const type = recorder.mimeType || mimeType || "";
       return parts.length
-        ? new File(parts, nameAt(began, type), { type: type.split(";")[0] })
+        ? new File(parts, nameAt(what, began, type), { type: type.split(";")[0] })
         : null;
     },
   };

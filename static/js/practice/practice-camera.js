@@ -1,0 +1,201 @@
+// The camera of practice: it is recorded all the time, and each take that ends becomes a clip.
+
+import { frameSender } from "../camera/frame-sender.js";
+import { openLink } from "../camera/live-socket.js";
+import { drawSeen, overlay } from "../camera/pose-overlay.js";
+import { record } from "../camera/recording.js";
+import { howTo, situation } from "../camera/take-steps.js";
+import { drawTrouble } from "../camera/trouble.js";
+import {
+  cameraLost,
+  cameraPossible,
+  offerCameras,
+  release,
+  showCamera,
+  watchFrames,
+  whyNoCamera,
+} from "../camera/video-source.js";
+import { h, WRITES } from "../core/dom.js";
+import { state } from "../core/state.js";
+
+/** @import { Recognized, Seen } from "../camera/live-messages.d.ts" */
+
+const INSTEAD = "show the gesture by a clip";
+const AFTER_TAKE = 1000; // ms: where nothing is held at the end, the gesture runs out on the clip.
+const LONGEST_WAIT = 60_000; // ms that are recorded at most before a take begins: memory is finite.
+const LONGEST = 5 * 60_000; // ms of one recording.
+
+/**
+ * Make the camera. `started()` is called when it is, `nameOf()` names the clip of a take, and
+ * `taken(file)` is given it.
+ *
+ * @param {{ started: () => void, nameOf: () => string, taken: (file: File) => void }} options
+ */
+export function practiceCamera({ started, nameOf, taken }) {
+  const video = h("video", {
+    muted: true,
+    playsInline: true,
+    "aria-label": "What the camera sees",
+  });
+  const idle = h("p", { className: "camera-idle" }, "The camera is off");
+  const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
+  const picture = h("div", { className: "camera-picture mirrored" }, video, idle, trouble);
+  const words = h("p", { className: "practice-step", role: "status" });
+  const toggle = h("button", { type: "button", ...WRITES });
+  const judge = h(
+    "button",
+    { type: "button", title: "Ends the take, where its end was not seen", hidden: true },
+    "Judge what was shown",
+  );
+  const choice = h("select", { "aria-label": "Camera", hidden: true });
+  const element = h(
+    "div",
+    { className: "practice-camera" },
+    picture,
+    words,
+    h("div", { className: "practice-actions" }, toggle, judge, choice),
+  );
+
+  /** @type {ReturnType<typeof record> | null} */
+  let recording = null;
+  let since = 0; // when it began, by the page's clock
+  /** @type {ReturnType<typeof openLink> | null} */
+  let link = null;
+  /** @type {(() => void) | null} */
+  let stopFrames = null;
+  /** @type {SVGSVGElement | null} */
+  let drawing = null;
+  let ending = 0; // timer of a take's end
+  let ended = false; // a take ended, and what ends takes is still held
+
+  function draw() {
+    const running = recording !== null;
+    toggle.replaceChildren(running ? "Stop the camera" : "Start the camera");
+    toggle.className = running ? "" : "primary";
+    idle.hidden = running;
+    judge.hidden = !running;
+    picture.classList.toggle("recording", running);
+    if (!running) words.textContent = howTo();
+  }
+
+  /** Begin a recording, in place of the one that runs. */
+  function renew() {
+    recording?.stop();
+    const { srcObject } = video;
+    recording = srcObject instanceof MediaStream ? record(srcObject) : null;
+    since = performance.now();
+  }
+
+  /** Hand out what was recorded, and record on. */
+  async function finish() {
+    clearTimeout(ending);
+    ending = 0;
+    const whole = recording;
+    if (!whole) return;
+    recording = null;
+    renew();
+    const file = await whole.stop(nameOf());
+    if (file) taken(file);
+  }
+
+  /** @param {Seen} answer */
+  function seen(answer) {
+    if (drawing) drawSeen(drawing, answer);
+    const [, text] = situation(answer);
+    if (words.textContent !== text) words.textContent = text;
+    // A closing salute is waited out: on the next clip it would begin a take.
+    if (ended && answer.state !== "done") finish();
+    ended = answer.state === "done";
+    const lasted = performance.now() - since;
+    if (lasted > (answer.state === "waiting" && !ending ? LONGEST_WAIT : LONGEST)) renew();
+  }
+
+  /** @param {Recognized} result */
+  function recognized({ closed }) {
+    const kind = state.gestures?.trigger?.kind ?? "salute";
+    if (closed && (kind === "gesture" || kind === "none") && !ending)
+      ending = setTimeout(finish, AFTER_TAKE);
+  }
+
+  /**
+   * The camera goes on without the server's eyes; only the end of a take is not seen any more.
+   *
+   * @param {string} reason
+   */
+  function unwatched(reason) {
+    stopFrames?.();
+    link = stopFrames = null;
+    drawing?.remove();
+    words.textContent = `${reason} Show the gesture, then press \u201cJudge what was shown\u201d.`;
+  }
+
+  function stop() {
+    clearTimeout(ending);
+    stopFrames?.();
+    link?.close();
+    recording?.stop();
+    release(video);
+    drawing?.remove();
+    link = stopFrames = recording = drawing = null;
+    ending = 0;
+    ended = false;
+    draw();
+  }
+
+  async function start() {
+    stop();
+    drawTrouble(trouble, null, start);
+    toggle.disabled = true;
+    try {
+      await showCamera(video, choice.value, () => {
+        stop();
+        drawTrouble(trouble, cameraLost(INSTEAD), start);
+      });
+    } catch (error) {
+      release(video);
+      drawTrouble(trouble, whyNoCamera(error, INSTEAD), start);
+      return;
+    } finally {
+      toggle.disabled = false;
+      if (cameraPossible()) offerCameras(choice, video);
+    }
+    // The browser may ask for long whether the camera is allowed.
+    if (state.view !== "practice") {
+      stop();
+      return;
+    }
+    started();
+    drawing = overlay(video.videoWidth, video.videoHeight);
+    video.after(drawing);
+    renew();
+    draw();
+    picture.scrollIntoView({ block: "nearest" });
+    const opened = openLink({ seen, recognized, listening: () => {}, ended: unwatched });
+    link = opened;
+    link.listen(state.language);
+    await opened.opened;
+    if (link === opened) stopFrames = watchFrames(video, frameSender(video, opened));
+  }
+
+  toggle.onclick = () => (recording ? stop() : start());
+  judge.onclick = finish;
+  choice.onchange = start;
+  addEventListener("pagehide", stop);
+  draw();
+  return {
+    element,
+    stop,
+    draw,
+    /** Ask this language from now on. */
+    listen: () => link?.listen(state.language),
+    /**
+     * Whether it may be started.
+     *
+     * @param {boolean} possible
+     */
+    allow: (possible) => {
+      toggle.disabled = !possible && !recording;
+      judge.disabled = !possible;
+    },
+  };
+}

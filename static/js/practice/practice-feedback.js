@@ -1,0 +1,31 @@
+// What a diver is told about a take that was just shown.
+
+import { h } from "../core/dom.js";
+import { moment } from "../core/format.js";
+
+/** @import { PracticeAnswer } from "../core/types.d.ts" */
+
+/**
+ * Whether it was right, and what to change.
+ *
+ * @param {PracticeAnswer} answer
+ */
+export function feedback({ take, sentence, lesson, notes }) {
+  return [
+    h(
+      "p",
+      { className: take.right ? "practice-right" : "practice-wrong" },
+      h("b", {}, take.right ? "\u2713 Right: " : "\u2260 Not yet: "),
+      take.right ? take.expected : sentence,
+    ),
+    lesson
+      ? h(
+          "p",
+          { className: "lesson" },
+          h("b", {}, "Show it again: "),
+          `in this take ${lesson.words}${lesson.start === null ? "" : ` (from ${moment(lesson.start)})`}.`,
+        )
+      : null,
+    ...notes.map((text) => h("p", { className: "dim" }, text)),
+  ].filter((each) => each !== null);
+}

@@ -1,0 +1,77 @@
+"""Practice before the camera: what is shown is judged and counted, without a clip of one's own."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, expect
+
+from tests.api.running import Running
+from tests.browser.accessibility import faults
+from tests.browser.camera import camera_showing, see_seconds, write_feed
+from tests.browser.conftest import OpenPage, started
+
+pytestmark = pytest.mark.slow
+
+FEED_RATE = 12
+"""Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
+
+ONE_ROUND = 8.0
+"""Seconds in which the camera shows all of the clip."""
+
+ROUNDS = 3
+"""Before the test fails: of a clip that was begun in the middle there may be no whole take."""
+
+JUDGED = re.compile("Right: |Not yet: |No take of ")
+"""What is said of a take in the end."""
+
+JUDGED_MS = 300_000
+"""Longest wait for the poses of a clip of a few seconds on a loaded machine."""
+
+
+@pytest.fixture(scope="module")
+def browser(
+    browser: Browser, clips: Path, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Browser]:
+    """Start a second Chromium, whose camera sees a diver who draws a line between two salutes."""
+    feed = tmp_path_factory.mktemp("camera") / "line.y4m"
+    write_feed(clips / "line-test-2.mp4", feed, FEED_RATE)
+    with started(browser.browser_type, *camera_showing(feed)) as another:
+        yield another
+
+
+def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
+    open_page: OpenPage, server: Running
+) -> None:
+    listed = httpx.get(f"{server.address}/api/v1/languages", timeout=60).json()
+    language = next(each["id"] for each in listed if "Table 2" in each["name"])
+    page = open_page({"view": "practice", "language": language}, scene=False)
+    start = page.get_by_role("button", name="Start the camera")
+    # Without any clip the camera is what there is to show by.
+    expect(start).to_be_disabled()
+    page.get_by_label("Diver").fill("Ana")
+    page.get_by_label("Gesture to show").select_option("line")
+    start.click()
+    expect(page.get_by_role("button", name="Stop the camera")).to_be_visible()
+    expect(page.locator(".practice-camera .bones")).to_have_attribute("d", re.compile("^M.+L"))
+    assert faults(page) == []
+    answer = page.locator(".practice-answer")
+    for _ in range(ROUNDS):
+        see_seconds(page, ONE_ROUND)
+        # A machine that is busy may not have seen the end of the take by itself.
+        if not answer.inner_text():
+            page.get_by_role("button", name="Judge what was shown").click()
+        expect(answer).to_contain_text(JUDGED, timeout=JUDGED_MS)
+        if "Right: line" in answer.inner_text():
+            break
+    # The camera shows it again and again, and so another take may have been counted by now.
+    record = page.get_by_role("region", name="Ana")
+    expect(record).to_contain_text(re.compile(r"0 errors in \d+ takes?:"))
+    page.get_by_role("button", name="Stop the camera").click()
+    expect(page.get_by_text("The camera is off")).to_be_visible()
+    names = [each.clip.name for each in server.studio.clips.all()]
+    assert any(re.match(r"Ana line \d{4}-\d\d-\d\d", name) for name in names), names
