@@ -81,11 +81,11 @@ function drawEverything() {
     ["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded", "role"],
     drawWelcome,
   );
-  follow(["languages", "language"], drawPicker);
+  follow(["languages", "language", "loaded"], drawPicker);
   follow(["gestures"], drawExportButton);
   follow(["gestures"], drawTuning);
   follow(["gestures"], drawTrigger);
-  follow(["gestures", "result", "clip", "clips"], drawGestures);
+  follow(["gestures", "languages", "loaded", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
   follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);

@@ -128,12 +128,12 @@ function drawCarried(language) {
 }
 
 /** @param {State} state */
-export function drawGestures({ gestures, result }) {
+export function drawGestures({ gestures, result, languages, loaded }) {
   const members = gestures?.gestures ?? [];
   byId("gesture-count").textContent = members.length ? String(members.length) : "";
   drawCarried(gestures);
   const empty = byId("gestures-empty");
-  empty.hidden = members.length > 0;
+  empty.hidden = members.length > 0 || (!gestures && (!loaded || languages.length > 0));
   empty.textContent = gestures
     ? "No gestures yet. Select a take of a clip and press \u201cSave as gesture\u201d: one demonstration is enough."
     : "No language yet. Make one with +, or drop a language file (.json).";

@@ -6,10 +6,10 @@ import { choose, newLanguage } from "./language-store.js";
 /** @import { State } from "../core/types.d.ts" */
 
 /** @param {State} state */
-export function drawPicker({ languages, language }) {
+export function drawPicker({ languages, language, loaded }) {
   const picker = byId("language");
   picker.replaceChildren(...languages.map((each) => h("option", { value: each.id }, each.name)));
-  if (!languages.length) picker.append(h("option", { value: "" }, "No language yet"));
+  if (!languages.length) picker.append(h("option", { value: "" }, loaded ? "No language yet" : ""));
   picker.disabled = !languages.length;
   picker.value = language ?? "";
 }

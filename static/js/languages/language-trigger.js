@@ -121,8 +121,9 @@ async function save(draft) {
  * The gestures that begin and end a take; the same one unless another is chosen.
  *
  * @param {Choice} choice
+ * @param {() => void} changed
  */
-function labelChoice({ labels = [], draft }) {
+function labelChoice({ labels = [], draft }, changed) {
   /** @param {"start_label" | "stop_label"} end */
   const choose = (end) => {
     const same = end === "stop_label" ? [h("option", { value: "" }, "the same")] : [];
@@ -137,6 +138,7 @@ function labelChoice({ labels = [], draft }) {
     );
     select.onchange = () => {
       if (draft) draft[end] = select.value;
+      changed();
     };
     return select;
   };
@@ -157,21 +159,31 @@ function openTrigger() {
   const offered = choices();
   const submit = h("button", { type: "submit", className: "primary", ...WRITES }, "Save");
   submit.disabled = true;
+  const present = language.trigger?.kind ?? "salute";
   /** @type {Choice | null} */
   let chosen = null;
   const rows = offered.map((choice) => {
     const input = h("input", { type: "radio", name: "trigger", value: choice.name });
     input.disabled = !choice.draft;
-    input.onchange = () => {
+    // Choosing a pose again takes it from the range on display, so it must be possible to choose.
+    input.checked = choice.name === present && choice.name !== "pose";
+    const choose = () => {
+      input.checked = true;
       chosen = choice;
       submit.disabled = false;
     };
+    input.onchange = choose;
     return h(
       "label",
       {},
       input,
-      h("span", {}, h("b", {}, choice.text), h("small", { className: "dim" }, choice.more)),
-      choice.labels?.length ? labelChoice(choice) : null,
+      h(
+        "span",
+        {},
+        h("b", {}, choice.text),
+        h("small", { className: "dim" }, choice.more),
+        choice.labels?.length ? labelChoice(choice, choose) : null,
+      ),
     );
   });
   const form = h(

@@ -1,9 +1,12 @@
 // The tour of a first visit: a card that points at parts of the page, which stays usable.
 
 import { byId, h } from "../core/dom.js";
+import { follow, selectedClip } from "../core/state.js";
 import { go } from "../core/views.js";
+import { showExample } from "./welcome.js";
 
-/** @typedef {{ title: string, text: string, places: string[] }} Step */
+/** `onClip`: it is about a clip, so that without one the example is offered. */
+/** @typedef {{ title: string, text: string, places: string[], onClip?: boolean }} Step */
 
 const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
 const GAP = 12; // px between the card and what it points at.
@@ -27,11 +30,13 @@ const STEPS = [
     title: "2. Save the take as a gesture",
     text: "The take between two salutes appears on the timeline. Save it as a gesture, or recognise it.",
     places: ["#clip-bar", "#stage"],
+    onClip: true,
   },
   {
     title: "3. Ask why",
     text: "Every voter has a distance to every gesture: see which voters were wrong, and which change would help.",
     places: ["#why", ".lab"],
+    onClip: true,
   },
   {
     title: "4. Keep it in a language",
@@ -46,6 +51,7 @@ let card = null;
 let pointed = null; // what the card points at
 /** @type {HTMLElement | null} */
 let came = null; // where the focus was
+let at = 0; // the step on display
 
 const seen = () => {
   try {
@@ -135,6 +141,7 @@ function end() {
  */
 function show(number, focus) {
   const step = STEPS[number];
+  at = number;
   const last = number === STEPS.length - 1;
   const place = placeOf(step);
   place?.scrollIntoView({ block: "center" });
@@ -152,6 +159,9 @@ function show(number, focus) {
   card?.replaceChildren(
     h("h2", { id: "tour-title" }, step.title),
     h("p", { id: "tour-text" }, step.text),
+    step.onClip && !selectedClip()
+      ? h("button", { type: "button", onclick: showExample }, "Open the example")
+      : "",
     h(
       "div",
       { className: "tour-actions" },
@@ -168,6 +178,14 @@ function show(number, focus) {
   position();
   if (focus) onward.focus();
 }
+
+/** Point at what appeared meanwhile, such as the example. */
+function refresh() {
+  if (card && placeOf(STEPS[at]) !== pointed) show(at, card.contains(document.activeElement));
+  else position();
+}
+
+follow(["clip", "takes", "result", "why"], refresh);
 
 /** @param {boolean} focus */
 function begin(focus) {

@@ -37,6 +37,7 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
     expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
     page.get_by_role("button", name="Trigger", exact=True).click()
     dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
+    expect(dialog.get_by_role("radio", name="A Vulcan salute")).to_be_checked()
     expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
     dialog.get_by_role("radio", name="A held pose of the arms").check()
     assert faults(page) == []
@@ -84,3 +85,8 @@ def test_one_gesture_begins_takes_and_another_one_ends_them(
         page.get_by_role("button", name="Trigger", exact=True).click()
         expect(dialog.get_by_label("Gesture that begins a take")).to_have_value("line")
         expect(dialog.get_by_label("Gesture that ends a take")).to_have_value("circle")
+        expect(dialog.get_by_role("radio", name="A gesture of the language")).to_be_checked()
+        # Another gesture at the end is a change by itself.
+        expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
+        dialog.get_by_label("Gesture that ends a take").select_option("the same")
+        expect(dialog.get_by_role("button", name="Save")).to_be_enabled()

@@ -35,15 +35,20 @@ def sample_id(client: httpx.Client) -> str:
     return next(str(each["id"]) for each in listed if each["name"] == SAMPLE)
 
 
+def add_example(server: Running, clips: Path) -> None:
+    """Add the example's clip, unless it is there; how poses are found is another test's subject."""
+    video = clips / f"{MISREAD}.mp4"
+    if not any(each.clip.name == video.name for each in server.studio.clips.all()):
+        found = Recording.load(RECORDINGS / "avx512" / f"{MISREAD}.npz")
+        add_clip(server, name=video.name, video=video, recording=found)
+
+
 def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
     page = open_page(scene=False)
     expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
-    # Its poses were found before: how they are found is another test's subject.
-    found = Recording.load(RECORDINGS / "avx512" / f"{MISREAD}.npz")
-    video = clips / f"{MISREAD}.mp4"
-    add_clip(server, name=video.name, video=video, recording=found)
+    add_example(server, clips)
     add_clip(server, "circle", name="mine.mp4")
     page.reload()
     expect(page.get_by_role("heading", name="mine.mp4")).to_be_visible()
@@ -51,6 +56,32 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     page.get_by_role("button", name="Example").click()
     why = page.get_by_role("region", name="Why")
     expect(why).to_contain_text("instead of 'triangle'")
+
+
+def test_the_tour_shows_its_steps_on_the_example(
+    open_page: OpenPage, server: Running, clips: Path
+) -> None:
+    add_example(server, clips)
+    page = open_page(scene=False)
+    # Nothing is shown but the tour: as on a first visit, whatever other tests left.
+    page.evaluate("import('/static/js/core/state.js').then(({ update }) => update({ clip: null }))")
+    page.keyboard.press("?")
+    page.get_by_role("button", name="Tour").click()
+    tour = page.locator(".tour")
+    for number in (1, 2):
+        expect(tour).to_contain_text(f"{number} of 5")
+        page.keyboard.press("Enter")
+    tour.get_by_role("button", name="Open the example").click()
+    # What appears is pointed at, and the keyboard goes on from where it was.
+    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'triangle'")
+    expect(tour.get_by_role("button", name="Open the example")).to_have_count(0)
+    expect(tour.get_by_role("button", name="Next")).to_be_focused()
+    page.keyboard.press("Enter")
+    expect(tour).to_contain_text("4 of 5")
+    why, ring = (page.locator(each).bounding_box() for each in ("#why", "#tour-ring"))
+    assert why is not None
+    assert ring is not None
+    assert ring["y"] == pytest.approx(why["y"] - 4, abs=2)
 
 
 def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is_chosen(
