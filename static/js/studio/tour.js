@@ -52,6 +52,7 @@ let pointed = null; // what the card points at
 /** @type {HTMLElement | null} */
 let came = null; // where the focus was
 let at = 0; // the step on display
+let offering = false; // the example, on it
 
 const seen = () => {
   try {
@@ -75,6 +76,9 @@ const visible = (element) => element.checkVisibility() && element.getBoundingCli
 /** @param {Step} step */
 const placeOf = (step) =>
   step.places.flatMap((place) => [...document.querySelectorAll(place)]).find(visible) ?? null;
+
+/** @param {Step} step */
+const offersExample = ({ onClip }) => Boolean(onClip) && !selectedClip();
 
 /** Put the card where it hides nothing of what it points at, as far as the window has room. */
 function position() {
@@ -142,6 +146,7 @@ function end() {
 function show(number, focus) {
   const step = STEPS[number];
   at = number;
+  offering = offersExample(step);
   const last = number === STEPS.length - 1;
   const place = placeOf(step);
   place?.scrollIntoView({ block: "center" });
@@ -159,9 +164,7 @@ function show(number, focus) {
   card?.replaceChildren(
     h("h2", { id: "tour-title" }, step.title),
     h("p", { id: "tour-text" }, step.text),
-    step.onClip && !selectedClip()
-      ? h("button", { type: "button", onclick: showExample }, "Open the example")
-      : "",
+    offering ? h("button", { type: "button", onclick: showExample }, "Open the example") : "",
     h(
       "div",
       { className: "tour-actions" },
@@ -181,11 +184,14 @@ function show(number, focus) {
 
 /** Point at what appeared meanwhile, such as the example. */
 function refresh() {
-  if (card && placeOf(STEPS[at]) !== pointed) show(at, card.contains(document.activeElement));
+  if (!card) return;
+  if (placeOf(STEPS[at]) !== pointed || offersExample(STEPS[at]) !== offering)
+    show(at, card.contains(document.activeElement));
   else position();
 }
 
-follow(["clip", "takes", "result", "why"], refresh);
+// Once all else is drawn.
+follow(["clip", "clips", "takes", "result", "why"], () => requestAnimationFrame(refresh));
 
 /** @param {boolean} focus */
 function begin(focus) {

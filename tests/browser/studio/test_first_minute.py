@@ -63,7 +63,8 @@ def test_the_tour_shows_its_steps_on_the_example(
 ) -> None:
     add_example(server, clips)
     page = open_page(scene=False)
-    # Nothing is shown but the tour: as on a first visit, whatever other tests left.
+    expect(page.get_by_text("Connected")).to_be_visible()
+    # As on a first visit, whatever clips other tests left.
     page.evaluate("import('/static/js/core/state.js').then(({ update }) => update({ clip: null }))")
     page.keyboard.press("?")
     page.get_by_role("button", name="Tour").click()
