@@ -12,11 +12,16 @@ from app.recognition.errors import GestureError, PoseError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.hand_image import draw_hands
 from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Drawing, draw
+from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands, rests_between_ends
+from app.recognition.preprocessing.held_hands import (
+    find_held_hands,
+    find_second_shape,
+    rests_between_ends,
+)
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -124,8 +129,8 @@ class Demonstration:
         Raises
         ------
         GestureError
-            When the take is too short, nothing moves in it and no hand shape is held, or `salient`
-            does not fit it.
+            When the take is too short, nothing moves in it and no hand shape, or more than one, is
+            held, or `salient` does not fit it.
 
         """
         if len(poses) < MIN_FRAMES:
@@ -157,6 +162,7 @@ class Demonstration:
         kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
+            _refuse_two_shapes(label, seen, SIDES)
             raise GestureError(_explain_nothing_moves(label, trajectory, names))
         return cls(kept, names, drawing.image, describe_drawing(drawing, PAPER_VOTERS), diver)
 
@@ -170,6 +176,7 @@ class Demonstration:
         diver: str,
     ) -> Demonstration:
         """Create a demonstration of a held hand shape."""
+        _refuse_two_shapes(label, poses, [hand.side for hand in held])
         if poor := find_fault(poses, ()):
             raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor}")
         few = trajectory.fill_gaps().resample_in_time(min(len(trajectory), HELD_MOMENTS))
@@ -308,6 +315,15 @@ def _choose_kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tu
     others = [name for name in names if name not in salient and name not in known]
     kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
     return tuple(name for name in names if name in kept)
+
+
+def _refuse_two_shapes(label: str, poses: PoseSequence, sides: Sequence[Side]) -> None:
+    changes = find_second_shape(poses, sides)
+    if changes is not None:
+        raise GestureError(
+            f"the demonstration of {label!r} shows two hand shapes, the second from "
+            f"{changes:.1f} s on; save each as a gesture of its own, and make a phrase of them"
+        )
 
 
 def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:
