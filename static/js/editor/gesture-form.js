@@ -110,7 +110,7 @@ export function texts(taken) {
       "The name that the recogniser returns: circle, ascend, follow me.",
     );
     const { problem, kind } = read(values.command);
-    annotate(command, problem, `${kind}. Words, or a JSON object for the robot.`);
+    annotate(command, problem, `For the robot, in words or as a JSON object; now: ${kind}.`);
   }
   return {
     element: h(

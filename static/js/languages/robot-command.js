@@ -21,13 +21,13 @@ export const written = (command) =>
  */
 export function read(text) {
   const trimmed = text.trim();
-  if (!trimmed) return { command: null, kind: "No command" };
-  if (!/^[{[]/.test(trimmed)) return { command: trimmed, kind: "Words" };
+  if (!trimmed) return { command: null, kind: "none" };
+  if (!/^[{[]/.test(trimmed)) return { command: trimmed, kind: "words" };
   try {
     const command = JSON.parse(trimmed);
     if (Array.isArray(command))
       return { problem: 'A JSON command is an object: put the list in one, {"steps": [\u2026]}.' };
-    return { command, kind: "JSON object" };
+    return { command, kind: "a JSON object" };
   } catch (error) {
     return {
       problem: `This begins like a JSON object but is none: ${error.message}. Correct it, or begin with a word.`,
