@@ -49,12 +49,11 @@ def running(
 ) -> Iterator[Running]:
     """Serve on a free port of loopback until the context ends, behind what `wrap` adds."""
     app = create_app(settings)
+    if wrap:
+        # Inside the app: the server asks the app itself for the guard of its connections.
+        app.add_middleware(wrap)
     config = uvicorn.Config(
-        wrap(app) if wrap else app,
-        host="127.0.0.1",
-        port=0,
-        log_level="error",
-        timeout_graceful_shutdown=1,
+        app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
     )
     server = StudioServer(config, app)
     thread = threading.Thread(target=server.run, daemon=True)
