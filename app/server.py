@@ -43,6 +43,7 @@ from app.api.routes import events, server_state
 from app.api.routes.administration import audit, sign_in
 from app.api.routes.administration import metrics as metrics_routes
 from app.api.routes.clips import (
+    clip_lists,
     clips,
     extraction_jobs,
     mcap_exports,
@@ -137,6 +138,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
     every, api = APIRouter(), APIRouter(prefix=API)
     for router in (
         server_state.router,
+        clip_lists.router,
         clips.router,
         resumable_uploads.router,
         timelines.router,

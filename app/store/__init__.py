@@ -1,7 +1,7 @@
 """Store of clips, languages, jobs and recognitions: a database, and files beside it."""
 
 from app.store.audit import AuditStore
-from app.store.clips import ClipStore, ClipWithJob
+from app.store.clips import ClipPage, ClipQuery, ClipStore, ClipWithJob
 from app.store.database import Database
 from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
@@ -34,6 +34,8 @@ __all__ = [
     "AuditEntry",
     "AuditStore",
     "Clip",
+    "ClipPage",
+    "ClipQuery",
     "ClipStore",
     "ClipWithJob",
     "Conflict",

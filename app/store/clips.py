@@ -9,9 +9,11 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
-from sqlalchemy import ColumnElement
+from sqlalchemy import ColumnElement, exists, or_
 from sqlalchemy.exc import IntegrityError
-from sqlmodel import Session, col, select
+from sqlalchemy.orm import aliased
+from sqlmodel import Session, col, func, select
+from sqlmodel.sql.expression import SelectOfScalar
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.clip_folder import ClipFolder
@@ -36,6 +38,49 @@ class ClipWithJob:
 
     clip: Clip
     job: Job
+
+
+@dataclass(frozen=True)
+class ClipQuery:
+    """Which clips a page is of, and where it begins.
+
+    Attributes
+    ----------
+    limit
+        Most clips of it.
+    after
+        Id of the clip that it follows, the last one of the page before; None is the first page.
+    name
+        What the clips' names contain, in any case; empty is any name.
+    statuses
+        Where the newest job of each stands; empty is anywhere.
+    ids
+        Only these; empty is all.
+
+    """
+
+    limit: int
+    after: str | None = None
+    name: str = ""
+    statuses: tuple[JobStatus, ...] = ()
+    ids: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ClipPage:
+    """Some of the clips, newest first.
+
+    Attributes
+    ----------
+    clips
+        Those of this page.
+    more
+        Whether another page follows.
+
+    """
+
+    clips: list[ClipWithJob]
+    more: bool
 
 
 class ClipStore:
@@ -141,6 +186,46 @@ class ClipStore:
             # Not by their ids: a statement has 32 766 values at most.
             jobs = _newest_jobs(col(Clip.deleted).is_(None), session)
             return [ClipWithJob(clip, jobs[clip.id]) for clip in clips]
+
+    def page(self, query: ClipQuery) -> ClipPage:
+        """Return a page of the clips that are not deleted, newest first.
+
+        Pages have neither gaps nor repetitions when clips come and go between them.
+
+        Raises
+        ------
+        NotFound
+            When the clip that the page follows is purged, or never existed.
+
+        """
+        with self._database.reading() as session:
+            wanted = select(Clip).where(col(Clip.deleted).is_(None))
+            if query.after is not None:
+                if (last := session.get(Clip, query.after)) is None:
+                    raise NotFound(f"there is no clip {query.after!r} to go on after")
+                # Not one row comparison: a database walks its index by the first condition.
+                wanted = wanted.where(
+                    col(Clip.created) <= last.created,
+                    or_(col(Clip.created) < last.created, col(Clip.id) > last.id),
+                )
+            if query.name:
+                wanted = wanted.where(col(Clip.name).icontains(query.name, autoescape=True))
+            if query.statuses:
+                wanted = wanted.where(col(Clip.id).in_(_standing(query.statuses)))
+            if query.ids:
+                wanted = wanted.where(col(Clip.id).in_(query.ids))
+            wanted = wanted.order_by(col(Clip.created).desc(), col(Clip.id))
+            found = session.exec(wanted.limit(query.limit + 1)).all()
+            clips = found[: query.limit]
+            jobs = _newest_jobs(col(Clip.id).in_([clip.id for clip in clips]), session)
+            return ClipPage(
+                [ClipWithJob(clip, jobs[clip.id]) for clip in clips], len(found) > len(clips)
+            )
+
+    def count(self) -> int:
+        """Return the number of clips that are not deleted."""
+        with self._database.reading() as session:
+            return session.exec(select(func.count()).where(col(Clip.deleted).is_(None))).one()
 
     def by_idempotency_key(self, key: str) -> ClipWithJob | None:
         """Return the clip that an upload with this key made, also when deleted since."""
@@ -281,6 +366,20 @@ class ClipStore:
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key
         return None if key is None else self.by_idempotency_key(key)
+
+
+def _standing(statuses: tuple[JobStatus, ...]) -> SelectOfScalar[str]:
+    """Select the ids of the clips whose newest job stands at one of `statuses`."""
+    newer = aliased(Job)
+    return (
+        select(Job.clip_id)
+        .where(col(Job.status).in_([status.value for status in statuses]))
+        .where(
+            ~exists().where(
+                col(newer.clip_id) == col(Job.clip_id), col(newer.created) > col(Job.created)
+            )
+        )
+    )
 
 
 def _newest_jobs(which: ColumnElement[bool], session: Session) -> dict[str, Job]:

@@ -235,6 +235,8 @@ def _take_turn(connection: Connection) -> None:
 def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
     # Transactions are begun by `_begin`, so that "acknowledged" means "one transaction on disk".
     connection.isolation_level = None
+    # SQLite's own knows ASCII alone, and a name is looked for in any case.
+    connection.create_function("lower", 1, str.lower, deterministic=True)
     for pragma in (
         "journal_mode=WAL",
         "synchronous=FULL",

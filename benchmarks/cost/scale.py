@@ -1,8 +1,9 @@
 """Scale: what a library of a million clips and thousands of watchers cost one server.
 
 ``python -m benchmarks.cost.scale`` fills a database of its own with rows of clips, as many as told,
-and measures what grows with them: the list, one clip, a new job and its start, a quota, the look
-for jobs that other servers left. With ``--database URL`` it does so in an empty PostgreSQL. Then it
+and measures what grows with them: the whole list, pages of it and searches as the studio's page
+asks for them, one clip, a new job and its start, a quota, the look for jobs that other servers
+left. With ``--database URL`` it does so in an empty PostgreSQL. Then it
 gives events to watchers, through the code that writes their streams, without a network.
 """
 
@@ -13,23 +14,34 @@ import asyncio
 import tempfile
 import time
 from collections.abc import Callable
+from datetime import timedelta
 from pathlib import Path
 from statistics import median
 from typing import Any
 
+from pydantic import TypeAdapter
 from sqlalchemy import insert
 from starlette.types import Message
 
+from app.api.http.schemas.clips import ClipView
+from app.api.routes.clips.clip_lists import read_page
 from app.api.routes.events import follow_changes
 from app.api.services.studio import open_studio
 from app.settings import Settings
-from app.store import Clip, ClipStore, Database, Job, JobStatus, JobStore, QuotaStore
+from app.store import Clip, ClipQuery, ClipStore, Database, Job, JobStatus, JobStore, QuotaStore
 from app.store.models import now
 
 AT_ONCE = 10_000
 """Rows written at a time."""
 
 REPEATS = 5
+
+CLIPS_OF_A_PAGE = 500
+"""As in ``static/js/core/api.js``."""
+
+OPEN = (JobStatus.QUEUED, JobStatus.RUNNING)
+
+LISTED = TypeAdapter(list[ClipView])
 
 CLIENTS = 100
 """Addresses that the jobs come from."""
@@ -47,7 +59,11 @@ def fill(database: Database, first: int, last: int) -> None:
             moment = {"created": now()}
             session.execute(
                 insert(Clip),
-                [{**clip, **moment, "id": f"{n:032x}", "owner": f"{n % CLIENTS}"} for n in numbers],
+                [
+                    {**clip, "id": f"{n:032x}", "owner": f"{n % CLIENTS}", "name": f"dive {n}.mp4"}
+                    | {"created": moment["created"] + n * timedelta(microseconds=1)}
+                    for n in numbers
+                ],
             )
             session.execute(
                 insert(Job),
@@ -59,14 +75,15 @@ def fill(database: Database, first: int, last: int) -> None:
             )
 
 
-def milliseconds(work: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Return the median time of some work."""
-    taken = []
+def milliseconds(work: Callable[[], object], repeats: int = REPEATS) -> str:
+    """Return the median time of some work, and the processor time of this process."""
+    taken, spent = [], []
     for _ in range(repeats):
-        began = time.perf_counter()
+        began, before = time.perf_counter(), time.process_time()
         work()
-        taken.append(time.perf_counter() - began)
-    return 1000 * median(taken)
+        taken.append(1000 * (time.perf_counter() - began))
+        spent.append(1000 * (time.process_time() - before))
+    return f"{median(taken):.1f} ms, {median(spent):.1f} ms of a core"
 
 
 def measure_rows(database: Database, folder: Path, clips: int, longest_list: int) -> None:
@@ -83,7 +100,17 @@ def measure_rows(database: Database, folder: Path, clips: int, longest_list: int
         jobs.complete(added.job.id, 1, ())
         store.delete(clip.id)
 
+    def read(**asked: Any) -> None:
+        views, _ = read_page(store, ClipQuery(CLIPS_OF_A_PAGE, **asked))
+        LISTED.dump_json(views)
+
     works: dict[str, Callable[[], object]] = {
+        "the first page of the list": read,
+        "a page from its middle": lambda: read(after=clip_id),
+        "the clips whose poses are not found": lambda: read(statuses=OPEN),
+        "a name that few have": lambda: read(name=f"DIVE {clips // 2}."),
+        "a name that none has": lambda: read(name="wreck"),
+        "the number of clips": store.count,
         "one clip": lambda: store.get(clip_id),
         "add a clip, run and end its job, delete it": add,
         "look for jobs that others left": jobs.take_over,
@@ -92,9 +119,9 @@ def measure_rows(database: Database, folder: Path, clips: int, longest_list: int
         "number of changes": lambda: store.changes,
     }
     for name, work in works.items():
-        print(f"{clips:9,d} clips: {name}: {milliseconds(work):.1f} ms")
+        print(f"{clips:9,d} clips: {name}: {milliseconds(work)}", flush=True)
     if clips <= longest_list:
-        print(f"{clips:9,d} clips: the list: {milliseconds(store.all, 1) / 1000:.2f} s")
+        print(f"{clips:9,d} clips: the rows of the whole list: {milliseconds(store.all, 1)}")
 
 
 async def measure_watchers(counts: list[int], events: int) -> None:

@@ -2,7 +2,8 @@
 
 import { drawBatch } from "./clips/batch-card.js";
 import { drawClips, findClips } from "./clips/clip-list.js";
-import { followJob, reloadClip, reloadClips } from "./clips/clip-store.js";
+import { knowReferences, reloadClips } from "./clips/clip-pages.js";
+import { followJob, reloadClip } from "./clips/clip-store.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
 import * as api from "./core/api.js";
 import { copyLink } from "./core/clipboard.js";
@@ -72,7 +73,7 @@ const VIEWS = [
 function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
-  follow(["clips", "jobs", "clip"], drawClips);
+  follow(["clips", "jobs", "clip", "library"], drawClips);
   follow(["clips", "jobs"], drawBatch);
   follow(["clips", "gestures"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
@@ -172,17 +173,18 @@ async function start() {
   stageButtons();
   followTheme();
   drawEverything();
-  const [clips, samples] = await Promise.all([
-    attempt("Loading the clips", api.clips.list),
+  const [loaded, samples] = await Promise.all([
+    reloadClips(),
     attempt("Loading the samples", api.samples.list),
     reloadLanguages(),
     openWorkspace().catch(() => null),
   ]);
-  update({ clips: clips ?? [], samples: samples ?? [], loaded: true });
-  if (linked && clips) reportMissing({ clip, language });
-  if (state.clip && clips && !selectedClip())
+  update({ samples: samples ?? [], loaded: true });
+  if (linked && loaded) reportMissing({ clip, language });
+  if (state.clip && loaded && !selectedClip())
     update({ clip: null, take: null, start: null, end: null, recognition: null });
-  if (!state.clip && clips?.length) update({ clip: clips[0].id });
+  if (!state.clip && state.clips.length) update({ clip: state.clips[0].id });
+  follow(["clip", "pending", "gestures", "library"], knowReferences);
   loadWithSelection();
   followTestSet();
   followServer({

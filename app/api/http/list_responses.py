@@ -25,6 +25,7 @@ class Counted(Hashable, Protocol):
 
 Store = TypeVar("Store", bound=Counted)
 View = TypeVar("View")
+Query = TypeVar("Query", bound=Hashable)
 
 
 def _tags(
@@ -56,16 +57,47 @@ def list_response(
 
     """
 
-    @lru_cache(1)
-    def written(store: Store, _changes: int) -> bytes:
-        return adapter.dump_json(views(store))
+    def read(store: Store, _query: None) -> tuple[list[View], dict[str, str]]:
+        return views(store), {}
+
+    answer_page = page_response(read, adapter, kept=1)
 
     def answer(store: Store, known: frozenset[str]) -> Response:
+        return answer_page(store, known, None)
+
+    return answer
+
+
+def page_response(
+    read: Callable[[Store, Query], tuple[list[View], dict[str, str]]],
+    adapter: TypeAdapter[list[View]],
+    kept: int,
+) -> Callable[[Store, frozenset[str], Query], Response]:
+    """Return a function that answers with a part of the list of what is in a store.
+
+    Parameters
+    ----------
+    read
+        Reads the part that a query names, and the headers that say where it stands.
+    adapter
+        Writes it.
+    kept
+        Parts that are kept written, until the store changes.
+
+    """
+
+    @lru_cache(kept)
+    def written(store: Store, _changes: int, query: Query) -> tuple[bytes, dict[str, str]]:
+        views, headers = read(store, query)
+        return adapter.dump_json(views), headers
+
+    def answer(store: Store, known: frozenset[str], query: Query) -> Response:
         # Before reading: what changes meanwhile makes this list old, never a new one taken for old.
         changes = store.changes
         headers = {"ETag": f'"{changes}"', "Cache-Control": "private, no-cache"}
         if headers["ETag"] in known:
             return Response(status_code=304, headers=headers)
-        return Response(written(store, changes), media_type="application/json", headers=headers)
+        content, place = written(store, changes, query)
+        return Response(content, media_type="application/json", headers=headers | place)
 
     return answer

@@ -6,12 +6,21 @@ import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
 import { BUSY } from "./busy.js";
-import { needsTopic, reloadClips, select, statusText } from "./clip-store.js";
+import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
+import { needsTopic, reloadClip, select, statusText } from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
 
 /** @import { Clip, Job, State } from "../core/types.d.ts" */
 
 const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
+let scrolling = false; // by the page itself
+const TYPING = 200; // ms without a key before the server is asked
+/**
+ * The name that was looked for last, and the last clip of the page that was found if more follow.
+ *
+ * @type {{ text: string, last: string | null }}
+ */
+let searched = { text: "", last: null };
 /** @type {string | null} */
 let inView = null; // the clip that the list was last scrolled to
 
@@ -23,7 +32,7 @@ async function remove(clip) {
   });
   if (!done) return;
   const at = state.clips.findIndex(({ id }) => id === clip.id);
-  await reloadClips();
+  forget(clip.id);
   // The next one moves up to its place, as in every list.
   if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
   recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
@@ -33,7 +42,7 @@ async function remove(clip) {
 /** @param {Clip} clip */
 async function retry(clip) {
   await attempt("Retrying", () => api.clips.retry(clip.id));
-  await reloadClips();
+  await reloadClip(clip.id);
 }
 
 /** @param {Clip} clip */
@@ -187,17 +196,59 @@ function draw(clip, element) {
 }
 
 /** @param {State} state */
-export function drawClips({ clips, clip: chosen }) {
-  byId("clip-count").textContent = clips.length ? String(clips.length) : "";
+export function drawClips(state) {
+  const { clips, clip: chosen } = state;
+  byId("clip-count").textContent = clips.length ? countAll(state).toLocaleString() : "";
   const search = byId("find-clip");
   search.hidden = clips.length <= SEEN_AT_ONCE;
   const wanted = search.hidden ? "" : search.value.trim().toLowerCase();
-  const shown = clips.filter(({ name }) => name.toLowerCase().includes(wanted));
+  const shown = clips.filter((clip) =>
+    wanted ? clip.name.toLowerCase().includes(wanted) : isListed(clip, state) || clip.id === chosen,
+  );
   const list = byId("clips");
   reconcile(list, shown, (clip) => clip.id, draw);
+  drawMore(state, wanted);
   byId("no-clip").textContent =
-    clips.length && !shown.length ? `No clip is called \u201c${search.value.trim()}\u201d.` : "";
+    clips.length && !shown.length && searched.text === wanted
+      ? `No clip is called \u201c${search.value.trim()}\u201d.`
+      : "";
   if (chosen !== inView && list.clientHeight) bringIntoView(list, chosen);
+}
+
+/**
+ * Show the button that loads more clips, of all or of those that are found.
+ *
+ * @param {State} state
+ * @param {string} wanted
+ */
+function drawMore({ library }, wanted) {
+  const more = byId("more-clips");
+  more.hidden = wanted ? searched.text !== wanted || !searched.last : !library.last;
+  more.textContent = wanted
+    ? "More clips of this name"
+    : `Older clips (${library.older.toLocaleString()})`;
+}
+
+/**
+ * Look for a name on the server, where not all clips are known.
+ *
+ * @param {string} text
+ * @param {string} [after]
+ */
+async function search(text, after) {
+  const page =
+    text && state.library.last ? await searchClips(text, after) : { clips: [], more: false };
+  if (!page || text !== wantedName()) return; // Something else is typed by now.
+  searched = { text, last: page.more ? (page.clips.at(-1)?.id ?? null) : null };
+  drawClips(state);
+}
+
+const wantedName = () => byId("find-clip").value.trim().toLowerCase();
+
+/** Load the clips that follow those in the list. */
+function loadMore() {
+  if (wantedName()) return search(wantedName(), searched.last ?? undefined);
+  return loadOlder();
 }
 
 /**
@@ -214,13 +265,31 @@ function bringIntoView(list, chosen) {
   const top = item.offsetTop - list.offsetTop;
   const seen =
     top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
-  if (!seen) list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
+  if (!seen) {
+    scrolling = true;
+    list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
+  }
 }
 
 /** Let the clips be found by their names. */
 export function findClips() {
+  let typed = 0;
   byId("find-clip").oninput = () => {
     inView = null; // Where the clip on display is among those found is another place.
+    if (state.library.last) {
+      clearTimeout(typed);
+      typed = setTimeout(() => search(wantedName()), TYPING);
+    } else searched = { text: wantedName(), last: null };
     drawClips(state);
+  };
+  byId("more-clips").onclick = loadMore;
+  const list = byId("clips");
+  list.onscroll = () => {
+    // A clip that is brought into view may be the last one that is known.
+    const byItself = scrolling;
+    scrolling = false;
+    if (byItself) return;
+    const left = list.scrollHeight - list.scrollTop - list.clientHeight;
+    if (left < list.clientHeight && !wantedName()) loadOlder();
   };
 }

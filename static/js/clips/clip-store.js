@@ -4,9 +4,9 @@ import * as api from "../core/api.js";
 import { duration, plural, timeLeft } from "../core/format.js";
 import { refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
 import { registerUndo } from "../core/undo.js";
 import { placeInQueue } from "./batch-card.js";
+import { forget, newestFirst, take } from "./clip-pages.js";
 import { BUSY } from "./busy.js";
 
 /** @import { Clip, Job } from "../core/types.d.ts" */
@@ -19,11 +19,6 @@ const STAGES = {
   saving: "Saving",
 };
 
-export async function reloadClips() {
-  const clips = await attempt("Loading the clips", api.clips.list);
-  if (clips) update({ clips });
-}
-
 /**
  * Load one clip that changed.
  *
@@ -33,8 +28,7 @@ export const reloadClip = (id) =>
   refresh(id, {
     load: api.clips.get,
     current: () => state.clips,
-    order: (one, other) =>
-      other.created.localeCompare(one.created) || one.id.localeCompare(other.id),
+    order: newestFirst,
     take: (clips) => update({ clips }),
   });
 
@@ -101,7 +95,7 @@ registerUndo("clip", {
   undo: ({ id }) =>
     api.clips
       .restore(id)
-      .then(reloadClips)
+      .then(take)
       .then(() => select(id)),
-  redo: ({ id }) => api.clips.remove(id).then(reloadClips),
+  redo: ({ id }) => api.clips.remove(id).then(() => forget(id)),
 });

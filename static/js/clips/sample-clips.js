@@ -3,7 +3,8 @@
 import * as api from "../core/api.js";
 import { byId, h, icon, WRITES } from "../core/dom.js";
 import { attempt } from "../core/toasts.js";
-import { reloadClips, select } from "./clip-store.js";
+import { loadClip } from "./clip-pages.js";
+import { select } from "./clip-store.js";
 
 /** @import { Sample, State } from "../core/types.d.ts" */
 
@@ -25,7 +26,7 @@ export async function addSampleClip(sample, button) {
   const accepted = await attempt("Adding the sample", () => api.samples.add(sample.name));
   button.disabled = false;
   if (!accepted) return null;
-  await reloadClips();
+  await attempt("Loading the clip", () => loadClip(accepted.id));
   select(accepted.id);
   return accepted.id;
 }

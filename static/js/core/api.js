@@ -1,8 +1,10 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, ClipAccepted, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
+/** @import { Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 const BASE = "/api/v1";
+
+const CLIPS_OF_A_PAGE = 500; // Half a megabyte, and a twentieth of a second of the server.
 
 export class ApiError extends Error {
   /**
@@ -57,7 +59,17 @@ export async function problemOf(response) {
  * @param {{ body?: any, headers?: Record<string, string>, raw?: boolean, signal?: AbortSignal }} [options]
  * @returns {Promise<any>}
  */
-async function request(method, path, { body, headers = {}, raw = false, signal } = {}) {
+async function request(method, path, options) {
+  const response = await send(method, path, options);
+  return response.status === 204 ? null : response.json();
+}
+
+/**
+ * @param {string} method
+ * @param {string} path
+ * @param {{ body?: any, headers?: Record<string, string>, raw?: boolean, signal?: AbortSignal }} [options]
+ */
+async function send(method, path, { body, headers = {}, raw = false, signal } = {}) {
   /** @type {RequestInit & { headers: Record<string, string> }} */
   const options = { method, headers: { ...headers }, signal };
   if (body !== undefined) {
@@ -71,7 +83,7 @@ async function request(method, path, { body, headers = {}, raw = false, signal }
     throw unreachable();
   }
   if (!response.ok) throw new ApiError(await problemOf(response), response.status);
-  return response.status === 204 ? null : response.json();
+  return response;
 }
 
 const id = encodeURIComponent;
@@ -98,8 +110,24 @@ export const session = {
 };
 
 export const clips = {
-  /** @type {() => Promise<Clip[]>} */
-  list: () => request("GET", "/clips"),
+  /**
+   * A page of the clips, newest first: those after a clip, those whose name contains `q`, those in
+   * a state, or those of some ids.
+   *
+   * @param {{ after?: string, q?: string, status?: string[], id?: string[] }} [which]
+   * @returns {Promise<ClipPage>}
+   */
+  page: async (which = {}) => {
+    const query = new URLSearchParams({ limit: String(CLIPS_OF_A_PAGE) });
+    for (const [name, value] of Object.entries(which))
+      for (const each of [value].flat()) query.append(name, each);
+    const response = await send("GET", `/clips?${query}`);
+    return {
+      clips: await response.json(),
+      more: response.headers.has("Link"),
+      total: Number(response.headers.get("X-Total-Count")),
+    };
+  },
   /** @type {(clip: string, by?: string | null) => Promise<Timeline>} */
   timeline: (clip, by = null) => request("GET", `/clips/${id(clip)}/timeline${triggered(by)}`),
   /** @type {(clip: string) => string} */
@@ -112,7 +140,7 @@ export const clips = {
   takes: (clip, by = null) => request("GET", `/clips/${id(clip)}/takes${triggered(by)}`),
   /** @type {(clip: string) => Promise<unknown>} */
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
-  /** @type {(clip: string) => Promise<unknown>} */
+  /** @type {(clip: string) => Promise<Clip>} */
   restore: (clip) => request("POST", `/clips/${id(clip)}/restore`),
   /** @type {(clip: string) => Promise<unknown>} */
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),

@@ -31,6 +31,7 @@ const values = {
   view: null,
   source: null,
   clips: [],
+  library: { last: null, older: 0 },
   uploads: [],
   jobs: new Map(),
   takes: null,

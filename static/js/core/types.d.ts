@@ -51,6 +51,15 @@ export type Tuning = Schemas["TuningEntry"];
 export type Problem = Partial<Schemas["Problem"]>;
 export type PhrasePart = GesturesPart | SlotPart | GroupPart;
 
+/** Some of the clips, newest first. */
+export interface ClipPage {
+  clips: Clip[];
+  /** Whether another page follows. */
+  more: boolean;
+  /** The number of all clips, on the first page of all. */
+  total: number;
+}
+
 /** An estimated rate with its 95 % interval, each in [0, 1]. */
 export interface Rate {
   rate: number;
@@ -313,10 +322,20 @@ export interface PendingClip {
   expected: string | null;
 }
 
+/** How much of the library is known. */
+export interface Library {
+  /** The clip up to which all newer ones are known; null where all are. */
+  last: Clip | null;
+  /** The number of clips older than that. */
+  older: number;
+}
+
 export interface State {
   view: string | null;
   source: string | null;
+  /** The clips that are known: the newest, those that were asked for, those that something names. */
   clips: Clip[];
+  library: Library;
   uploads: Upload[];
   jobs: Map<string, Job>;
   takes: Take[] | null;

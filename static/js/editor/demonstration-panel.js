@@ -1,6 +1,7 @@
 // The panel of the demonstration: its clip, its take, its frames, and its two ends to move.
 
 import { filmstrip } from "../clips/filmstrip.js";
+import { olderClipsButton } from "../clips/older-clips.js";
 import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
@@ -344,6 +345,7 @@ export function take({ language, gesture, drawn, pick }) {
         { className: "choose" },
         h("label", { className: "visually-hidden", for: "editor-clip" }, "Clip"),
         clips,
+        olderClipsButton(drawChoices),
       ),
       h(
         "span",

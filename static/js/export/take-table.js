@@ -1,5 +1,6 @@
 // The table of all takes of clips: recognised at once, sorted, filtered, and kept as CSV.
 
+import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/session-export.js";
 import { select } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
@@ -156,22 +157,34 @@ function resultOf({ rows, csv }) {
 
 /** The clips to choose from; all are chosen at first. */
 function clipChoice() {
-  const ready = state.clips.filter(({ status }) => status === "done");
-  const boxes = ready.map((clip) =>
-    h("input", { type: "checkbox", value: clip.id, checked: true }),
-  );
+  /** @type {Map<string, HTMLInputElement>} */
+  const boxes = new Map();
   const every = h("input", { type: "checkbox", checked: true });
   every.onchange = () => {
-    for (const box of boxes) box.checked = every.checked;
+    for (const box of boxes.values()) box.checked = every.checked;
   };
+  const words = h("b");
+  const rows = h("div", { className: "take-clip-rows" });
+  /** Offer the clips that are known; what is chosen among them stays. */
+  const offer = () => {
+    const ready = state.clips.filter(({ status }) => status === "done");
+    for (const { id } of ready)
+      if (!boxes.has(id))
+        boxes.set(id, h("input", { type: "checkbox", value: id, checked: every.checked }));
+    words.textContent = `All ${plural(ready.length, "clip")}`;
+    rows.replaceChildren(...ready.map(({ id, name }) => h("label", {}, boxes.get(id) ?? "", name)));
+  };
+  offer();
   const element = h(
     "fieldset",
     { className: "take-clips" },
     h("legend", {}, "Clips"),
-    h("label", {}, every, h("b", {}, `All ${plural(ready.length, "clip")}`)),
-    ready.map((clip, at) => h("label", {}, boxes[at], clip.name)),
+    h("label", {}, every, words),
+    rows,
+    olderClipsButton(offer),
   );
-  return { element, chosen: () => boxes.filter((box) => box.checked).map(({ value }) => value) };
+  const chosen = () => [...boxes.values()].filter((box) => box.checked).map(({ value }) => value);
+  return { element, chosen };
 }
 
 /** Open the dialog that recognises all takes. */

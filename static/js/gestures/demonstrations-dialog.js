@@ -1,5 +1,6 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
+import { olderClipsButton } from "../clips/older-clips.js";
 import { endName, takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
@@ -214,6 +215,7 @@ function addForm(label) {
     { className: "demonstration-add", "aria-label": "Another demonstration" },
     h("h3", {}, "Another demonstration, best by another diver"),
     field("Clip", clips),
+    olderClipsButton(),
     field("Range", takes),
     field("Diver", diver),
     button,

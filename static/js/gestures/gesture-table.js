@@ -1,6 +1,7 @@
 // The table that makes gestures of several clips: named in one place, saved in one undoable step.
 
 import { BUSY } from "../clips/busy.js";
+import { olderClipsButton } from "../clips/older-clips.js";
 import { heldName, takesLanguage } from "../clips/salutes.js";
 import { statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
@@ -302,6 +303,7 @@ export function openGestureTable() {
     ),
     element,
     list,
+    olderClipsButton(),
     h(
       "div",
       { className: "dialog-actions" },

@@ -1,5 +1,6 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
+import { olderClipsButton } from "../clips/older-clips.js";
 import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
@@ -170,6 +171,7 @@ function libraryChoice() {
       "div",
       { className: "library-boxes" },
       boxes.map(({ row }) => row),
+      olderClipsButton(),
     ),
     add,
   );
@@ -305,7 +307,10 @@ export function batchSection() {
       .join();
     if (now === offered) return;
     offered = now;
-    choice.replaceChildren(libraryChoice() ?? "");
+    const open = choice.querySelector("details")?.open ?? false;
+    const drawnAnew = libraryChoice();
+    if (drawnAnew) drawnAnew.open = open;
+    choice.replaceChildren(drawnAnew ?? "");
   };
   const draw = () => {
     /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();

@@ -1,5 +1,6 @@
 // The elements of the view, before anything is seen.
 
+import { olderClipsButton } from "../clips/older-clips.js";
 import { h, WRITES } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
 
@@ -62,6 +63,7 @@ function controls() {
     ),
     h("select", { id: "live-cameras", "aria-label": "Camera", hidden: true }),
     h("select", { id: "live-clips", "aria-label": "Clip", hidden: true }),
+    olderClipsButton(),
     check(
       "live-every",
       "Every frame",

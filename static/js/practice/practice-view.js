@@ -3,6 +3,7 @@
 
 import { labelInName } from "../clips/clip-label.js";
 import { statusText } from "../clips/clip-store.js";
+import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
@@ -271,6 +272,7 @@ export function open(section) {
   const field = (label, input) =>
     h("div", { className: "field" }, h("label", { for: input.id }, label), input);
   const clipField = field("Clip", clip);
+  clipField.append(olderClipsButton());
   const form = h(
     "form",
     { className: "practice-form" },

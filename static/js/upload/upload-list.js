@@ -1,8 +1,8 @@
 // Files dropped anywhere in the window: clips are uploaded two at a time, languages imported.
 
+import { loadClip } from "../clips/clip-pages.js";
 import { needsTopic, select } from "../clips/clip-store.js";
 import { openTopics } from "../clips/topic-dialog.js";
-import * as api from "../core/api.js";
 import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
 import { bytes, timeLeft } from "../core/format.js";
 import { state, update } from "../core/state.js";
@@ -121,12 +121,11 @@ async function start(upload) {
   try {
     const id = await call.done;
     forget(upload.key);
-    update({ clips: await api.clips.list() });
+    const clip = await loadClip(id);
     // Of several files the first is shown; the others must not take its place one after the other.
     if (upload.uploaded) upload.uploaded(id);
     else if (upload.first) select(id);
-    const clip = state.clips.find((each) => each.id === id);
-    if (clip && needsTopic(clip)) openTopics(clip);
+    if (needsTopic(clip)) openTopics(clip);
   } catch (error) {
     if (error.code === "cancelled") forget(upload.key);
     else change(upload.key, { status: "failed", error: error.message, refused: error });

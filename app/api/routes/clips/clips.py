@@ -1,4 +1,4 @@
-"""Routes of clips: upload, read, extract again, delete, restore."""
+"""Routes of a clip: upload, read, extract again, delete, restore."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ from typing import Annotated
 import numpy as np
 from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
-from pydantic import TypeAdapter
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.images import picture_responses, send_picture
-from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
 from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
@@ -26,7 +24,7 @@ from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
-from app.store import ClipStore, ClipWithJob, JobStatus
+from app.store import ClipWithJob, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -122,12 +120,6 @@ async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> Cli
         )
         raise ProblemError(409, "clip_deleted", detail, clip_id=earlier.clip.id)
     return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
-
-
-@router.get("", response_model=list[ClipView], responses={**problem_responses(), **NOT_SENT_AGAIN})
-def list_clips(studio: CurrentStudio, known: KnownTags) -> Response:
-    """List the clips, newest first."""
-    return _listed(studio.clips, known)
 
 
 @router.get("/{clip_id}", responses=problem_responses(404))
@@ -248,13 +240,6 @@ def get_takes(
     """List what lies between the salutes, or other triggers of a language."""
     state = None if language_id is None else studio.languages.get(language_id)
     return [TakeView(**vars(take)) for take in find_takes(studio, clip_id, state)]
-
-
-def _views(clips: ClipStore) -> list[ClipView]:
-    return [view_clip(found) for found in clips.all()]
-
-
-_listed = list_response(_views, TypeAdapter(list[ClipView]))
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

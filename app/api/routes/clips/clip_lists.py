@@ -1,0 +1,104 @@
+"""Route of the list of clips, whole or in pages."""
+
+from __future__ import annotations
+
+from typing import Annotated, Final
+from urllib.parse import urlencode
+
+from fastapi import APIRouter, Query, Response
+from pydantic import TypeAdapter
+
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response, page_response
+from app.api.http.problems import problem_responses
+from app.api.http.schemas.clips import ClipView
+from app.api.services.clip_responses import view_clip
+from app.api.services.studio import CurrentStudio
+from app.store import ClipQuery, ClipStore, JobStatus
+
+MOST_LISTED: Final = 1000
+"""Clips of a page; a statement of SQLite has more values than that."""
+
+LONGEST_NAME: Final = 200
+"""Characters of a clip's name."""
+
+KEPT_PAGES: Final = 16
+"""Pages that are kept written: open pages begin with the same one, and each has half a megabyte."""
+
+PAGE_HEADERS: Final = {
+    "Link": {
+        "description": 'With `limit`: the address of the next page, `rel="next"`; not on the last',
+        "schema": {"type": "string"},
+    },
+    "X-Total-Count": {
+        "description": "With `limit` alone: the number of all clips",
+        "schema": {"type": "integer"},
+    },
+}
+
+router = APIRouter(prefix="/clips", tags=["clips"])
+
+
+@router.get(
+    "",
+    response_model=list[ClipView],
+    responses={
+        **problem_responses(404),
+        **NOT_SENT_AGAIN,
+        200: {"description": "The clips", "headers": PAGE_HEADERS},
+    },
+)
+def list_clips(
+    studio: CurrentStudio,
+    known: KnownTags,
+    limit: Annotated[
+        int | None, Query(ge=1, le=MOST_LISTED, description="Most clips; by default all of them")
+    ] = None,
+    after: Annotated[
+        str | None, Query(max_length=64, description="The id of the last clip of the page before")
+    ] = None,
+    q: Annotated[
+        str, Query(max_length=LONGEST_NAME, description="What their names contain, in any case")
+    ] = "",
+    status: Annotated[
+        list[JobStatus] | None, Query(description="Where their jobs stand; may be repeated")
+    ] = None,
+    id: Annotated[
+        list[Annotated[str, Query(max_length=64)]] | None,
+        Query(max_length=MOST_LISTED, description="Only these clips; may be repeated"),
+    ] = None,
+) -> Response:
+    """List the clips, newest first: all of them, or a page of those that are asked for."""
+    query = ClipQuery(limit or MOST_LISTED, after, q.strip(), tuple(status or ()), tuple(id or ()))
+    if limit is None and query == ClipQuery(MOST_LISTED):
+        return _list_all(studio.clips, known)
+    return _list_page(studio.clips, known, query)
+
+
+def _read_all(clips: ClipStore) -> list[ClipView]:
+    return [view_clip(found) for found in clips.all()]
+
+
+def read_page(clips: ClipStore, query: ClipQuery) -> tuple[list[ClipView], dict[str, str]]:
+    """Return the clips of a page, and the headers that say where it stands."""
+    page, headers = clips.page(query), {}
+    if page.more:
+        headers["Link"] = f'<?{_write_query(query, page.clips[-1].clip.id)}>; rel="next"'
+    if query == ClipQuery(query.limit):
+        headers["X-Total-Count"] = str(clips.count())
+    return [view_clip(found) for found in page.clips], headers
+
+
+def _write_query(query: ClipQuery, after: str) -> str:
+    """Return the query of the address of the page that follows the clip `after`."""
+    given = {
+        "q": query.name,
+        "status": [status.value for status in query.statuses],
+        "id": query.ids,
+        "limit": query.limit,
+        "after": after,
+    }
+    return urlencode({name: value for name, value in given.items() if value}, doseq=True)
+
+
+_list_all = list_response(_read_all, TypeAdapter(list[ClipView]))
+_list_page = page_response(read_page, TypeAdapter(list[ClipView]), KEPT_PAGES)

@@ -1,0 +1,189 @@
+// The clips that are known of a library that may hold many more: they come page by page.
+
+import * as api from "../core/api.js";
+import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { BUSY } from "./busy.js";
+
+/** @import { Clip, ClipPage, State } from "../core/types.d.ts" */
+
+const NAMED_AT_ONCE = 100; // ids in one address
+
+/** @type {Set<string>} */
+const named = new Set(); // clips that were asked for by their ids
+
+/**
+ * The order of all lists of clips.
+ *
+ * @param {Pick<Clip, "id" | "created">} one
+ * @param {Pick<Clip, "id" | "created">} other
+ */
+export const newestFirst = (one, other) =>
+  other.created.localeCompare(one.created) || one.id.localeCompare(other.id);
+
+/**
+ * Whether a clip belongs to the part of the library that is known without gaps.
+ *
+ * @param {Clip} clip
+ * @param {Pick<State, "library">} state
+ */
+export const isListed = (clip, { library: { last } }) => !last || newestFirst(clip, last) <= 0;
+
+/**
+ * The number of all clips.
+ *
+ * @param {Pick<State, "clips" | "library">} known
+ */
+export const countAll = (known) =>
+  known.clips.filter((clip) => isListed(clip, known)).length + known.library.older;
+
+/**
+ * Clips with others, each once as it was loaded last.
+ *
+ * @param {Clip[]} clips
+ * @param {Clip[]} loaded
+ */
+export const merged = (clips, loaded) =>
+  [...new Map([...clips, ...loaded].map((clip) => [clip.id, clip])).values()].sort(newestFirst);
+
+/**
+ * Load clips by their ids; those that are gone are left out.
+ *
+ * @param {string[]} ids
+ */
+async function loadNamed(ids) {
+  /** @type {Clip[]} */
+  const found = [];
+  for (let at = 0; at < ids.length; at += NAMED_AT_ONCE) {
+    const page = await api.clips.page({ id: ids.slice(at, at + NAMED_AT_ONCE) });
+    found.push(...page.clips);
+  }
+  return found;
+}
+
+/**
+ * Load the newest clips, as many as were listed before, and beyond them those that are busy, on
+ * display or named by something.
+ */
+async function loadKnown() {
+  const wanted = state.clips.filter((clip) => isListed(clip, state)).length;
+  let page = await api.clips.page();
+  const { total } = page;
+  let { clips } = page;
+  while (page.more && clips.length < wanted) {
+    page = await api.clips.page({ after: /** @type {Clip} */ (clips.at(-1)).id });
+    clips = [...clips, ...page.clips];
+  }
+  if (!page.more) return { clips, library: { last: null, older: 0 } };
+  const last = clips.at(-1) ?? null;
+  const listed = new Set(clips.map(({ id }) => id));
+  const ids = [...named, state.clip].filter((id) => id !== null && !listed.has(id));
+  const busy = await api.clips.page({ status: [...BUSY] });
+  const others = [...busy.clips, ...(await loadNamed(/** @type {string[]} */ (ids)))];
+  return { clips: merged(others, clips), library: { last, older: total - listed.size } };
+}
+
+/** Load the clips; resolves to whether they came. */
+export async function reloadClips() {
+  const known = await attempt("Loading the clips", loadKnown);
+  if (known) update(known);
+  return known !== null;
+}
+
+/**
+ * Load one clip that was added; resolves to it once it is known.
+ *
+ * @param {string} id
+ */
+export async function loadClip(id) {
+  const clip = await api.clips.get(id);
+  take(clip);
+  return clip;
+}
+
+/**
+ * Know a clip.
+ *
+ * @param {Clip} clip
+ */
+export const take = (clip) => update({ clips: merged(state.clips, [clip]) });
+
+/**
+ * Forget a clip that was deleted.
+ *
+ * @param {string} id
+ */
+export const forget = (id) => update({ clips: state.clips.filter((clip) => clip.id !== id) });
+
+/** @type {Promise<void> | null} */
+let loading = null;
+
+/** Load the page of clips that follows those that are listed. */
+export function loadOlder() {
+  loading ??= loadNext().finally(() => {
+    loading = null;
+  });
+  return loading;
+}
+
+async function loadNext() {
+  const { last, older } = state.library;
+  if (!last) return;
+  /** @type {ClipPage | null} */
+  const page = await attempt("Loading older clips", () => api.clips.page({ after: last.id }));
+  if (!page) return;
+  update({
+    clips: merged(state.clips, page.clips),
+    library: {
+      last: page.more ? (page.clips.at(-1) ?? null) : null,
+      older: page.more ? Math.max(0, older - page.clips.length) : 0,
+    },
+  });
+}
+
+/**
+ * Look on the server for clips whose name contains `text`, after the clip `after` if one is given;
+ * resolves to the page, whose clips are known then.
+ *
+ * @param {string} text
+ * @param {string} [after]
+ */
+export async function searchClips(text, after) {
+  const page = await attempt("Looking for clips", () =>
+    api.clips.page(after ? { q: text, after } : { q: text }),
+  );
+  if (page) update({ clips: merged(state.clips, page.clips) });
+  return page;
+}
+
+/**
+ * Load clips that something names, where they are not known yet.
+ *
+ * @param {Iterable<string | null | undefined>} ids
+ */
+export async function knowClips(ids) {
+  if (!state.library.last) return;
+  const known = new Set(state.clips.map(({ id }) => id));
+  const missing = [...new Set(ids)].filter((id) => id && !known.has(id) && !named.has(id));
+  if (!missing.length) return;
+  for (const id of missing) named.add(/** @type {string} */ (id));
+  const found = await attempt("Loading the clips", () =>
+    loadNamed(/** @type {string[]} */ (missing)),
+  );
+  if (found?.length) update({ clips: merged(state.clips, found) });
+}
+
+/**
+ * Know the clips that the page refers to: the one on display, those that wait for the test, and
+ * those that the demonstrations come from.
+ *
+ * @param {Pick<State, "clip" | "pending" | "gestures">} state
+ */
+export const knowReferences = ({ clip, pending, gestures }) =>
+  knowClips([
+    clip,
+    ...pending.map((each) => each.clip),
+    ...(gestures?.gestures ?? []).flatMap(({ demonstrations }) =>
+      demonstrations.map(({ source }) => source?.clip_id),
+    ),
+  ]);
