@@ -62,7 +62,8 @@ def extract(
             stage = f"{progress.clips} of {len(clips)} clips, kB"
             advance(progress.done_bytes // _KILOBYTE, footage.total_bytes // _KILOBYTE, stage)
 
-        processes = Workers(settings)
+        # The clips of a batch are files of a folder, wherever a studio keeps its own.
+        processes = Workers(settings.model_copy(update={"storage": None}))
         footage = Footage(clips, recordings_dir(), processes, show)
         ended = asyncio.run(_work(footage, processes, workers or _cores()))
     _tell(folder.absolute(), ended, output)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Iterable, Sequence
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
 from uuid import uuid4
 
-from app.api.workers.executor import ExecutorLost, Lines
+from app.api.workers.executor import ExecutorLost, Lines, TaskFiles
+from app.api.workers.task_folders import Contents, OwnFolders
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -24,39 +25,52 @@ LOOK_SECONDS: Final = 1.0
 LAST_LINES_SECONDS: Final = 10.0
 """How long the last lines of a task may take after it has ended: they come by another way."""
 
+RESULT_SECONDS: Final = 600.0
+"""How long the files of a task may take to come; a made video of a gigabyte takes a minute."""
+
+Told = tuple[str, Any]
+"""What a task tells: what it is about, and a line or a file."""
+
 logger = logging.getLogger(__name__)
 
 
 class DaskCluster:
     """Runs worker processes as tasks of a Dask cluster.
 
-    Its machines see the clips' folder under the same path, and have the same version installed.
-    Dask runs a task again whose machine vanishes.
+    Its machines have the same version installed, and see the clips' folder under the same path or
+    the object store of the clips. Dask runs a task again whose machine vanishes.
 
     Parameters
     ----------
     address
         The scheduler's ``HOST:PORT``.
+    own
+        The server's folders, where its machines do not see them.
 
     """
 
-    def __init__(self, address: str) -> None:
+    def __init__(self, address: str, own: OwnFolders | None = None) -> None:
         self._address = address
+        self._own = own
         self._topic = f"osg-{uuid4().hex}"
-        self._lines: dict[str, asyncio.Queue[tuple[str, str]]] = {}
+        self._lines: dict[str, asyncio.Queue[Told]] = {}
         self._client: Client | None = None
         self._connecting = asyncio.Lock()
 
     @asynccontextmanager
-    async def start(self, arguments: Sequence[str]) -> AsyncIterator[Lines]:
+    async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
         """Run a process on a machine that has a place; see `Executor`."""
         from app.api.workers.dask_task import end_worker, run_worker
 
+        workspace = None
+        if self._own is not None:
+            workspace = await asyncio.to_thread(self._own.describe, files)
         client, task = await self._connected(), f"osg-{uuid4().hex}"
         queue = self._lines[task] = asyncio.Queue()
-        future = client.submit(run_worker, list(arguments), task, self._topic, key=task, pure=False)
+        given = (list(arguments), task, self._topic, workspace)
+        future = client.submit(run_worker, *given, key=task, pure=False)
         try:
-            lines = _TaskLines(client, future, queue)
+            lines = _TaskLines(client, future, queue, self._own)
             await lines.wait_for_start()
             yield lines
         finally:
@@ -70,7 +84,9 @@ class DaskCluster:
             with contextlib.suppress(Exception):
                 await asyncio.wait_for(self._client.close(), CONNECT_SECONDS)
 
-    async def _end(self, client: Client, future: Future[None], end_worker: Any, task: str) -> None:
+    async def _end(
+        self, client: Client, future: Future[Contents], end_worker: Any, task: str
+    ) -> None:
         if not future.done():
             await future.cancel()
             # Cancelling keeps a task from beginning; one that has begun is ended where it runs.
@@ -102,40 +118,81 @@ class DaskCluster:
             return self._client
 
     def _hear(self, event: tuple[float, Any]) -> None:
-        task, kind, line = event[1]
+        task, kind, content = event[1]
         if task in self._lines:
-            self._lines[task].put_nowait((kind, line))
+            self._lines[task].put_nowait((kind, content))
 
 
 class _TaskLines:
     """The lines that a task tells."""
 
     def __init__(
-        self, client: Client, future: Future[None], queue: asyncio.Queue[tuple[str, str]]
+        self,
+        client: Client,
+        future: Future[Contents],
+        queue: asyncio.Queue[Told],
+        own: OwnFolders | None,
     ) -> None:
-        self._client, self._future, self._queue = client, future, queue
+        self._client, self._future, self._queue, self._own = client, future, queue, own
         self._silence = 0.0
+        self._held: str | None = None
+        self._ended = False
 
     async def wait_for_start(self) -> None:
         """Wait until the task has a place and begins."""
-        from app.api.workers.dask_task import STARTED
+        from app.api.workers.dask_task import ENDED, LOST, STARTED
 
-        while (await self._next())[0] != STARTED:
-            pass
+        while True:
+            kind, content = await self._next()
+            if kind == LOST:
+                raise ExecutorLost(content)
+            if kind == ENDED:
+                self._ended = True
+            if kind in (STARTED, ENDED):
+                return
 
     async def readline(self) -> bytes:
         """Return the next line; see `Lines`."""
-        from app.api.workers.dask_task import ENDED, LINE
+        from app.api.workers.dask_task import ENDED, FILE, LINE, LOST
 
-        while True:
-            kind, line = await self._next()
+        while not self._ended:
+            kind, content = await self._next()
+            if kind == LINE and self._own is None:
+                return str(content).encode()
             if kind == LINE:
-                return line.encode()
-            if kind == ENDED:
-                return b""
+                # The last one says that all is written, and what is large comes after it.
+                held, self._held = self._held, content
+                if held is not None:
+                    return held.encode()
+            elif kind == FILE:
+                await self._put([content])
+            elif kind == LOST:
+                raise ExecutorLost(content)
+            elif kind == ENDED:
+                self._ended = True
+                if self._own is not None:
+                    await self._put((await self._result()).items())
             # Begun again on another machine: what it tells is told again.
+        held, self._held = self._held, None
+        return b"" if held is None else held.encode()
 
-    async def _next(self) -> tuple[str, str]:
+    async def _result(self) -> Contents:
+        """Return the files that a task gives back at its end."""
+        if self._future.status == "error":
+            return {}
+        try:
+            found: Contents = await asyncio.wait_for(self._future, RESULT_SECONDS)
+        except Exception as error:
+            raise ExecutorLost(f"what a task has written did not come: {error}") from error
+        return found
+
+    async def _put(self, files: Iterable[tuple[str, bytes]]) -> None:
+        """Write files where the process would have written them on this machine."""
+        assert self._own is not None
+        for path, content in files:
+            await asyncio.to_thread(self._own.put, path, content)
+
+    async def _next(self) -> Told:
         from app.api.workers.dask_task import ENDED
 
         while True:

@@ -4,22 +4,64 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
 
 from distributed import get_worker
 
 from app.api.workers.executor import COMMAND, PACKAGE_PARENT
+from app.api.workers.task_folders import Contents, Workspace, Written
+from app.store.errors import StoreUnavailable
 
-STARTED, LINE, ENDED = "started", "line", "ended"
-"""What a message is about."""
+STARTED, LINE, FILE, ENDED, LOST = "started", "line", "file", "ended", "lost"
+"""What a message is about; the last one: the clip cannot be fetched now."""
+
+MOST_TOLD = 64 * 1024
+"""Bytes of a file that is told as a message: the scheduler keeps the newest thousand messages."""
 
 _processes: dict[str, subprocess.Popen[bytes]] = {}
 """The running processes of this Dask worker by task."""
 
 
-def run_worker(arguments: Sequence[str], task: str, topic: str) -> None:
-    """Run a worker process to its end; tell each line as ``(task, kind, line)`` under `topic`."""
-    worker = get_worker()
+def run_worker(
+    arguments: Sequence[str], task: str, topic: str, workspace: Workspace | None
+) -> Contents:
+    """Run a worker process to its end; tell each step as ``(task, kind, content)`` under `topic`.
+
+    Where it works in a folder of its own, small files that it has written are told before the line
+    that follows them; the others are returned.
+    """
+    tell = partial(_tell, topic, task)
+    if workspace is None:
+        for line in _lines(arguments, task, tell):
+            tell(LINE, line)
+        tell(ENDED, "")
+        return {}
+    with tempfile.TemporaryDirectory(prefix="osg-task-") as place:
+        folder = Path(place)
+        try:
+            own = workspace.prepare(folder, arguments)
+        except StoreUnavailable as error:
+            tell(LOST, str(error))
+            return {}
+        written = Written(folder, workspace)
+        for line in _lines(own, task, tell):
+            for path, content in written.take(MOST_TOLD):
+                tell(FILE, (path, content))
+            tell(LINE, line)
+        result = dict(written.take())
+        tell(ENDED, "")
+        return result
+
+
+def _tell(topic: str, task: str, kind: str, content: str | tuple[str, bytes]) -> None:
+    get_worker().log_event(topic, (task, kind, content))
+
+
+def _lines(arguments: Sequence[str], task: str, tell: Callable[[str, str], None]) -> Iterator[str]:
+    """Yield the lines of a worker process."""
     process = subprocess.Popen(
         [sys.executable, *COMMAND, *arguments],
         stdin=subprocess.PIPE,
@@ -28,11 +70,10 @@ def run_worker(arguments: Sequence[str], task: str, topic: str) -> None:
     )
     _processes[task] = process
     try:
-        worker.log_event(topic, (task, STARTED, ""))
+        tell(STARTED, "")
         assert process.stdout is not None
         for line in process.stdout:
-            worker.log_event(topic, (task, LINE, line.decode()))
-        worker.log_event(topic, (task, ENDED, ""))
+            yield line.decode()
     finally:
         _processes.pop(task, None)
         process.kill()

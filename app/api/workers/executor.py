@@ -8,6 +8,7 @@ import sys
 from asyncio.subprocess import PIPE
 from collections.abc import AsyncIterator, Sequence
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
@@ -39,13 +40,33 @@ class Lines(Protocol):
         ...
 
 
+@dataclass(frozen=True)
+class TaskFiles:
+    """The files that a worker process reads and writes.
+
+    Attributes
+    ----------
+    inputs
+        What it reads.
+    outputs
+        What it writes: files, or folders of files.
+
+    """
+
+    inputs: tuple[Path, ...]
+    outputs: tuple[Path, ...]
+
+
 class Executor(Protocol):
     """Runs worker processes."""
 
-    def start(self, arguments: Sequence[str]) -> AbstractAsyncContextManager[Lines]:
+    def start(
+        self, arguments: Sequence[str], files: TaskFiles
+    ) -> AbstractAsyncContextManager[Lines]:
         """Run a worker process with these arguments; it is ended at the end of the context.
 
-        The context begins when the process does, which may have to wait for a place.
+        The context begins when the process does, which may have to wait for a place. What the
+        process has written is in the files here before the line is heard that says so.
 
         Raises
         ------
@@ -64,7 +85,7 @@ class LocalProcesses:
     """Runs worker processes on this machine."""
 
     @asynccontextmanager
-    async def start(self, arguments: Sequence[str]) -> AsyncIterator[Lines]:
+    async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
         """Run a process; see `Executor`."""
         process = await asyncio.create_subprocess_exec(
             sys.executable,

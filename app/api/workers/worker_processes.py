@@ -6,13 +6,13 @@ import asyncio
 import contextlib
 import logging
 import tempfile
-from collections.abc import AsyncGenerator, Iterator
-from contextlib import aclosing
+from collections.abc import AsyncGenerator, Callable, Collection, Iterator
+from contextlib import AbstractContextManager, aclosing, nullcontext
 from pathlib import Path
 
 from app.api.observation.metrics import Metrics
 from app.api.workers.clip_files import ClipFiles
-from app.api.workers.executor import Executor, ExecutorLost, Lines, LocalProcesses
+from app.api.workers.executor import Executor, ExecutorLost, Lines, LocalProcesses, TaskFiles
 from app.api.workers.test_takes import RecognizedTake, TestRunRequest, answer_file
 from app.api.workers.worker_messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
@@ -63,6 +63,10 @@ _BROKEN_OFF = Failed(
 )
 
 
+def _hold_nothing(_files: Collection[Path]) -> AbstractContextManager[None]:
+    return nullcontext()
+
+
 class Workers:
     """Starts worker processes with the limits of the settings, by the executor of the settings.
 
@@ -72,12 +76,20 @@ class Workers:
         Limits of memory, time and file size, and whether colours are corrected.
     metrics
         Counts the processes that are ended for their silence.
+    hold
+        Keeps files on this machine for processes that wait for their turn.
 
     """
 
-    def __init__(self, settings: Settings, metrics: Metrics | None = None) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        metrics: Metrics | None = None,
+        hold: Callable[[Collection[Path]], AbstractContextManager[None]] = _hold_nothing,
+    ) -> None:
         self._settings = settings
         self._metrics = metrics or Metrics()
+        self._hold = hold
         self._here = LocalProcesses()
         self._executor = _executor_of(settings, self._here)
         self._short = asyncio.Semaphore(MOST_SHORT_WORKERS)
@@ -92,7 +104,12 @@ class Workers:
         command = ["probe", source.name, str(file)]
         # Here: the sender waits for it, and the file may be on this machine alone.
         messages = self._run(
-            command, file.parent, source.probe_seconds, options, executor=self._here
+            command,
+            file.parent,
+            source.probe_seconds,
+            TaskFiles((file,), ()),
+            options,
+            executor=self._here,
         )
         async with self._short, aclosing(messages):
             async for message in messages:
@@ -107,7 +124,9 @@ class Workers:
         options = options.model_copy(update={"water": self._settings.water})
         command = ["record", source.name, str(file), *files.arguments]
         silence = self._settings.worker_silence_seconds
-        messages = self._run(command, file.parent, silence, options)
+        made = (files.video,) if source.makes_video else ()
+        used = TaskFiles((file,), (*made, files.recording, files.poster, files.filmstrip))
+        messages = self._run(command, file.parent, silence, used, options)
         async with aclosing(_steps(messages)) as steps:
             async for step in steps:
                 yield step
@@ -121,7 +140,8 @@ class Workers:
         """
         command = ["landmarks", source.name, str(file), str(recording), f"--threads={threads}"]
         silence = self._settings.worker_silence_seconds
-        messages = self._run(command, recording.parent, silence, options)
+        used = TaskFiles((file,), (recording,))
+        messages = self._run(command, recording.parent, silence, used, options)
         async with aclosing(_steps(messages)) as steps:
             async for step in steps:
                 yield step
@@ -130,11 +150,13 @@ class Workers:
         self, request: bytes, bag: Path, files: ClipFiles
     ) -> AsyncGenerator[Step, None]:
         """Write a clip and its recognitions as MCAP; `request`: a `BagExportRequest` as JSON."""
-        with _scratch_folder(bag.parent) as folder:
+        parts = files.video, files.recording
+        with _scratch_folder(bag.parent) as folder, self._hold(parts):
             wanted = folder / "request.json"
             await asyncio.to_thread(wanted.write_bytes, request)
             command = ["session", str(wanted), str(bag), *files.arguments]
-            messages = self._run(command, folder, self._settings.worker_silence_seconds)
+            used = TaskFiles((wanted, *parts), (bag,))
+            messages = self._run(command, folder, self._settings.worker_silence_seconds, used)
             async with self._short, aclosing(_steps(messages)) as steps:
                 async for step in steps:
                     yield step
@@ -145,7 +167,12 @@ class Workers:
             target = folder / "language.json"
             command = ["import", str(file), str(target), f"--name={name}"]
             messages = self._run(
-                command, folder, IMPORT_SECONDS, cpu_seconds=IMPORT_SECONDS, hangs=_TOO_LONG
+                command,
+                folder,
+                IMPORT_SECONDS,
+                TaskFiles((file,), (target,)),
+                cpu_seconds=IMPORT_SECONDS,
+                hangs=_TOO_LONG,
             )
             async with self._short, aclosing(messages):
                 async for message in messages:
@@ -166,6 +193,7 @@ class Workers:
                 ["check", str(file), str(target)],
                 scratch,
                 CHECK_SILENCE_SECONDS,
+                TaskFiles((file,), (target,)),
                 cpu_seconds=CHECK_SECONDS,
                 hangs=_TOO_LONG,
             )
@@ -184,12 +212,14 @@ class Workers:
         self, request: TestRunRequest, folder: Path
     ) -> AsyncGenerator[RecognizedTake | Failed, None]:
         """Recognise takes; yield the answers in order, and last why not all of them are there."""
-        with _scratch_folder(folder) as scratch:
+        recordings = tuple(dict.fromkeys(take.recording for take in request.takes))
+        with _scratch_folder(folder) as scratch, self._hold(recordings):
             wanted, answers = scratch / "request.json", scratch / "answers"
             answers.mkdir()
             await asyncio.to_thread(wanted.write_text, request.model_dump_json(), "utf-8")
             command = ["test", str(wanted), str(answers)]
-            messages = self._run(command, scratch, CHECK_SILENCE_SECONDS, hangs=_BROKEN_OFF)
+            used = TaskFiles((wanted, *recordings), (answers,))
+            messages = self._run(command, scratch, CHECK_SILENCE_SECONDS, used, hangs=_BROKEN_OFF)
             done = 0
             async with self._checks, aclosing(messages):
                 async for message in messages:
@@ -210,6 +240,7 @@ class Workers:
         command: list[str],
         folder: Path,
         silence_seconds: float,
+        files: TaskFiles,
         options: ReadOptions | None = None,
         *,
         cpu_seconds: int | None = None,
@@ -232,7 +263,7 @@ class Workers:
             with _scratch_folder(folder) as scratch:
                 own = [f"--scratch={scratch}", f"--options={given}"]
                 try:
-                    async with executor.start([*arguments, *own, *command]) as lines:
+                    async with executor.start([*arguments, *own, *command], files) as lines:
                         async with aclosing(_messages(lines, silence_seconds)) as messages:
                             async for message in messages:
                                 yield message
@@ -277,8 +308,12 @@ def _executor_of(settings: Settings, here: LocalProcesses) -> Executor:
     if settings.executor is None:
         return here
     from app.api.workers.dask_cluster import DaskCluster
+    from app.api.workers.task_folders import OwnFolders
 
-    return DaskCluster(settings.executor.removeprefix(DASK))
+    own = None
+    if settings.objects is not None:
+        own = OwnFolders(settings.data_dir, settings.clips, settings.objects)
+    return DaskCluster(settings.executor.removeprefix(DASK), own)
 
 
 @contextlib.contextmanager
