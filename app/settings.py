@@ -72,6 +72,10 @@ class Settings(BaseSettings):
     ``s3://BUCKET/PREFIX``, of which each keeps a copy in its `data_dir`. ``None`` is ``clips`` in
     `data_dir`."""
 
+    storage_copy_bytes: Annotated[int, Field(ge=0)] = 0
+    """Bytes of the copies of clips that a server keeps beside an ``s3://`` `storage`; those not
+    used for longest go first, and are fetched again when they are needed. 0 is any number."""
+
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
 

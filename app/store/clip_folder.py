@@ -13,6 +13,7 @@ from app.store.atomic_files import PARTIAL_SUFFIX, publish
 from app.store.errors import StoreUnavailable
 from app.store.models import new_id
 from app.store.objects import ObjectStore
+from app.store.objects.clip_copies import ClipCopies
 
 logger = logging.getLogger(__name__)
 
@@ -29,12 +30,15 @@ class ClipFolder:
         The folder on this machine.
     objects
         Keeps the files for all servers.
+    copies
+        Removes copies from the folder when they are too large.
 
     """
 
-    def __init__(self, path: Path, objects: ObjectStore) -> None:
+    def __init__(self, path: Path, objects: ObjectStore, copies: ClipCopies) -> None:
         self.path = path
         self._objects = objects
+        self._copies = copies
         self._fetching: WeakValueDictionary[Path, Lock] = WeakValueDictionary()
         self._choosing = Lock()
         path.mkdir(parents=True, exist_ok=True)
@@ -53,12 +57,12 @@ class ClipFolder:
 
         """
         target = self.home(clip_id) / name
-        if target.is_file():
+        if self._copies.use(target):
             return target
         with self._choosing:
             fetching = self._fetching.setdefault(target, Lock())
         with fetching:
-            if not target.is_file():
+            if not self._copies.use(target):
                 self._fetch(target, f"{clip_id}/{name}")
         return target
 
@@ -74,6 +78,7 @@ class ClipFolder:
         for name in names:
             if (file := self.home(clip_id) / name).is_file():
                 self._objects.upload(file, f"{clip_id}/{name}")
+                self._copies.add(file)
 
     def note(self, clip_id: str) -> None:
         """Note that a clip's files are to be removed, in case that is interrupted."""
@@ -101,5 +106,6 @@ class ClipFolder:
         try:
             if self._objects.download(name, partial):
                 publish(partial, target)
+                self._copies.add(target)
         finally:
             partial.unlink(missing_ok=True)

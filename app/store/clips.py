@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from contextlib import suppress
+from collections.abc import Collection
+from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -21,6 +22,7 @@ from app.store.database import Database
 from app.store.errors import NotFound
 from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
+from app.store.objects.clip_copies import ClipCopies
 from app.store.quotas import Allowance, release_in, usage_of
 
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
@@ -95,14 +97,23 @@ class ClipStore:
         and uploads under way as ``<folder>/<id>.part``.
     objects
         Keeps the files for all servers; by default the folder is what they share.
+    most_copied
+        Bytes of the files in `folder` that `objects` has as well, see `ClipCopies`; 0 is any
+        number.
 
     """
 
     def __init__(
-        self, database: Database, folder: Path, objects: ObjectStore | None = None
+        self,
+        database: Database,
+        folder: Path,
+        objects: ObjectStore | None = None,
+        most_copied: int = 0,
     ) -> None:
         self._database = database
-        self._files = ClipFolder(folder, objects or SharedFolder())
+        objects = objects or SharedFolder()
+        self._copies = ClipCopies(folder, objects, most_copied, self._at_rest)
+        self._files = ClipFolder(folder, objects, self._copies)
         self.folder = folder
 
     def new_partial(self) -> Path:
@@ -362,6 +373,21 @@ class ClipStore:
     def filmstrip(self, clip_id: str) -> Path:
         """Return where the thumbnails along the clip are, once its job is done."""
         return self._files.find(clip_id, FILMSTRIP)
+
+    def hold(self, files: Collection[Path]) -> AbstractContextManager[None]:
+        """Keep files on this machine until the context ends: a process opens them later."""
+        return self._copies.hold(files)
+
+    def make_room(self) -> int:
+        """Remove copies of files that are too large together; return how many went."""
+        return self._copies.make_room()
+
+    def _at_rest(self, clip_ids: Collection[str]) -> set[str]:
+        """Return those clips that have a row and no job that waits or runs."""
+        opened = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
+        busy = exists().where(col(Job.clip_id) == Clip.id, col(Job.status).in_(opened))
+        with self._database.reading() as session:
+            return set(session.exec(select(Clip.id).where(col(Clip.id).in_(clip_ids), ~busy)))
 
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key

@@ -228,7 +228,12 @@ def _opened(settings: Settings) -> Iterator[Database]:
 async def _studio(
     settings: Settings, database: Database, metrics: Metrics
 ) -> AsyncIterator[Studio]:
-    clips = ClipStore(database, settings.clips, open_object_store(settings.objects))
+    clips = ClipStore(
+        database,
+        settings.clips,
+        open_object_store(settings.objects),
+        settings.storage_copy_bytes if settings.objects else 0,
+    )
     jobs = JobStore(database, identity_of(settings.data_dir))
     languages = LanguageStore(database)
 
@@ -241,7 +246,7 @@ async def _studio(
                 extractions.look()
 
     broadcast = Broadcast(partial(open_messages, database), hear)
-    workers, runner = Workers(settings, metrics), JobRunner(broadcast, metrics)
+    workers, runner = Workers(settings, metrics, clips.hold), JobRunner(broadcast, metrics)
     extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
     watching = [asyncio.create_task(each) for each in (metrics.watch_loop(), keep_trimmed())]
     studio = Studio(

@@ -31,6 +31,17 @@ class ObjectStore(Protocol):
         """
         ...
 
+    def size(self, name: str) -> int | None:
+        """Return the bytes of what is kept under `name`; None when there is nothing.
+
+        Raises
+        ------
+        StoreUnavailable
+            When the store does not answer.
+
+        """
+        ...
+
     def remove(self, clip_id: str) -> None:
         """Remove all that is kept of a clip; nothing happens when that is nothing.
 

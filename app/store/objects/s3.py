@@ -65,10 +65,21 @@ class S3Objects:
             try:
                 self._client.download_file(self._bucket, self._prefix + name, str(target))
             except ClientError as error:
-                if error.response.get("Error", {}).get("Code") in _NOTHING:
+                if _is_missing(error):
                     return False
                 raise
         return True
+
+    def size(self, name: str) -> int | None:
+        """Return the bytes of an object; None when there is none."""
+        with self._errors():
+            try:
+                found = self._client.head_object(Bucket=self._bucket, Key=self._prefix + name)
+            except ClientError as error:
+                if _is_missing(error):
+                    return None
+                raise
+        return int(found["ContentLength"])
 
     def remove(self, clip_id: str) -> None:
         """Remove the objects of a clip."""
@@ -90,3 +101,8 @@ class S3Objects:
                 f"the object store s3://{self._bucket} cannot be used now: {reason}; try again, or "
                 "look at AWS_ENDPOINT_URL and the credentials"
             ) from error
+
+
+def _is_missing(error: ClientError) -> bool:
+    """Return whether S3 says that there is no such object."""
+    return error.response.get("Error", {}).get("Code") in _NOTHING

@@ -15,5 +15,9 @@ class SharedFolder:
         """Return False: what is not in the folder is nowhere."""
         return False
 
+    def size(self, name: str) -> int | None:
+        """Return None: there is no copy beside the one in the folder."""
+        return None
+
     def remove(self, clip_id: str) -> None:
         """Do nothing: the files go with their folder."""

@@ -57,7 +57,7 @@ def test_requests_at_the_same_time_fetch_a_file_once(
     fetched: list[str] = []
 
     class Counting:
-        upload, remove = objects.upload, objects.remove
+        upload, remove, size = objects.upload, objects.remove, objects.size
 
         def download(self, name: str, target: Path) -> bool:
             fetched.append(name)
