@@ -15,6 +15,7 @@ from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import running
 from tests.command_line import OsgStudio
+from tests.postgres import Cluster
 from tests.s3 import BUCKET, S3Server
 
 
@@ -131,3 +132,41 @@ def test_clips_in_a_folder_of_their_own_are_backed_up(
     monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "new"))
     assert osg_studio("restore", str(tmp_path / "kept.zip")).code == 0
     assert (tmp_path / "others" / clip / "recording.npz").is_file()
+
+
+def test_a_library_moves_to_postgresql_and_back(
+    kept: Path,
+    postgres: Cluster,
+    tmp_path: Path,
+    osg_studio: OsgStudio,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    url = postgres.new_database()
+    monkeypatch.setenv("OSG_SAMPLES_DIR", str(tmp_path / "none"))
+    monkeypatch.setenv("OSG_DATABASE_URL", url)
+    monkeypatch.setenv("OSG_DATA_DIR", str(tmp_path / "postgresql"))
+    damaged = tmp_path / "damaged.zip"
+    damaged.write_bytes(kept.read_bytes()[:-100])
+    assert osg_studio("restore", str(damaged)).code == 2
+    moved = osg_studio("restore", str(kept))
+    assert (moved.code, "1 clips and all languages" in moved.error) == (0, True)
+    with running(Settings()) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        (clip,) = client.get("/api/v1/clips").json()
+        assert len(client.get(f"/api/v1/clips/{clip['id']}/takes").json()) == 1
+        # Numbers go on after those of the entries that were copied.
+        assert client.post(LANGUAGES, json={"name": "on PostgreSQL"}).status_code == 201
+        numbers = [entry["id"] for entry in client.get("/api/v1/audit").json()]
+        assert numbers == sorted(set(numbers), reverse=True)
+        back = tmp_path / "back.zip"
+        assert osg_studio("backup", str(back)).code == 0
+    again = osg_studio("restore", str(kept), "--data-dir", str(tmp_path / "again"))
+    assert (again.code, "holds clips or languages already" in again.error) == (2, True)
+    assert not (tmp_path / "again" / "clips").exists()
+    monkeypatch.delenv("OSG_DATABASE_URL")
+    settings = Settings(data_dir=tmp_path / "sqlite")
+    assert restore_backup(back, settings.data_dir) == 1
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        assert [each["name"] for each in client.get(LANGUAGES).json()] == ["pool", "on PostgreSQL"]
+        assert client.get("/api/v1/clips").json() == [clip]
+        assert len(client.get("/api/v1/recognitions").json()) == 1
+        assert [entry["id"] for entry in client.get("/api/v1/audit").json()] == numbers

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -11,16 +11,13 @@ from app.cli.administration.data_folder import DataDir, settings_of
 from app.cli.terminal import people
 from app.recognition.errors import OsgError
 
-if TYPE_CHECKING:
-    from app.settings import Settings
-
 
 def backup(
     file: Annotated[Path, typer.Argument(metavar="FILE.zip", help="File to write.")],
     data_dir: DataDir = None,
 ) -> None:
     """Write database, clips and keypoints to one file, also while the studio runs."""
-    settings = _settings(data_dir)
+    settings = settings_of(data_dir)
     from app.store import StoreError
     from app.store.backup import write_backup
     from app.store.objects import open_object_store
@@ -28,7 +25,11 @@ def backup(
     try:
         objects = open_object_store(settings.objects)
         clips = write_backup(
-            settings.data_dir, file.absolute(), clips=settings.clips, objects=objects
+            settings.data_dir,
+            file.absolute(),
+            clips=settings.clips,
+            objects=objects,
+            url=settings.database_url,
         )
     except StoreError as error:
         raise OsgError(str(error)) from error
@@ -39,27 +40,22 @@ def restore(
     file: Annotated[Path, typer.Argument(metavar="FILE.zip", help="File that `backup` wrote.")],
     data_dir: DataDir = None,
 ) -> None:
-    """Restore a backup into a data folder that is empty; every file is verified."""
-    settings = _settings(data_dir)
+    """Restore a backup into a data folder or database that is empty; every file is verified."""
+    settings = settings_of(data_dir)
     from app.store import StoreError
     from app.store.backup import restore_backup
     from app.store.objects import open_object_store
 
-    folder = settings.data_dir
     try:
         objects = open_object_store(settings.objects)
-        clips = restore_backup(file, folder, clips=settings.clips, objects=objects)
+        clips = restore_backup(
+            file,
+            settings.data_dir,
+            clips=settings.clips,
+            objects=objects,
+            url=settings.database_url,
+        )
     except StoreError as error:
         raise OsgError(str(error)) from error
-    people.print(f"{clips} clips and all languages are in {folder}", markup=False, highlight=False)
-
-
-def _settings(given: Path | None) -> Settings:
-    """Return the settings, whose database must be in the data folder."""
-    settings = settings_of(given)
-    if settings.database_url is not None:
-        raise OsgError(
-            "OSG_DATABASE_URL names another database, which its own tools back up; copy the "
-            "folder of the clips beside it"
-        )
-    return settings
+    place = "the database of OSG_DATABASE_URL" if settings.database_url else settings.data_dir
+    people.print(f"{clips} clips and all languages are in {place}", markup=False, highlight=False)

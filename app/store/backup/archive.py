@@ -1,7 +1,8 @@
-"""Backup of a data folder: one file with the database, the clips and a manifest of both.
+"""Archive of a library: one file with the database, the clips and a manifest of both.
 
 It may be written while a server works. The database is copied first, as one consistent state; every
 file that a row of it refers to is on disk by then, and stays until the next start of the server.
+Whatever database the library has, the archive's is SQLite, so that it goes into any other.
 """
 
 from __future__ import annotations
@@ -14,14 +15,18 @@ import shutil
 import sqlite3
 import tempfile
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import IO, Any
 
+from sqlalchemy.exc import ProgrammingError
+
 from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.backup.rows import copy_rows, snapshot
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.database import Database
 from app.store.models import VIDEO, JobStatus
 from app.store.objects import ObjectStore, SharedFolder
 
@@ -40,19 +45,22 @@ def write_backup(
     *,
     clips: Path | None = None,
     objects: ObjectStore | None = None,
+    url: str | None = None,
 ) -> int:
-    """Write a backup of a data folder, also of one that a server uses.
+    """Write a backup of a library, also of one that a server uses.
 
     Parameters
     ----------
     data_dir
-        The folder; its database must be SQLite.
+        Its folder.
     target
         The file to write; one that exists is replaced once the new one is complete.
     clips
         Folder of the clips' files, by default the one in `data_dir`.
     objects
         Has the files that are not in that folder.
+    url
+        SQLAlchemy URL of the database, by default SQLite's file in `data_dir`.
 
     Returns
     -------
@@ -63,22 +71,19 @@ def write_backup(
     OsgError
         When there is no database, it is damaged, or a file of a clip is missing.
     StoreUnavailable
-        When the object store does not answer.
+        When the object store or the database does not answer.
 
     """
     source = _ClipFiles(clips or data_dir / "clips", objects or SharedFolder())
-    database = data_dir / DATABASE
-    if not database.is_file():
-        raise OsgError(f"{data_dir} holds no {DATABASE}; give the data folder with --data-dir")
     partial = target.with_name(target.name + PARTIAL_SUFFIX)
     try:
         with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
-            snapshot = Path(scratch) / DATABASE
-            _copy_database(database, snapshot)
-            kept = _files_by_clip(snapshot)
+            copy = Path(scratch) / DATABASE
+            _copy_database(data_dir, url, copy)
+            kept = _files_by_clip(copy)
             # Videos and recordings are compressed already.
             with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
-                digests = {DATABASE: _add(archive, DATABASE, snapshot)}
+                digests = {DATABASE: _add(archive, DATABASE, copy)}
                 for clip_id, names in kept.items():
                     for name in names:
                         place = f"clips/{clip_id}/{name}"
@@ -103,12 +108,13 @@ def restore_backup(
     *,
     clips: Path | None = None,
     objects: ObjectStore | None = None,
+    url: str | None = None,
 ) -> int:
-    """Restore a backup into a data folder that holds no database.
+    """Restore a backup into a data folder that holds no database, or into an empty PostgreSQL.
 
     Every file is verified before the database appears, so that a restore that is broken off leaves
-    an empty folder to a server, and can be repeated. `clips` and `objects` are as of a backup; what
-    an object store has is replaced.
+    an empty library to a server, and can be repeated. `clips`, `objects` and `url` are as of a
+    backup; what an object store has is replaced.
 
     Returns
     -------
@@ -117,13 +123,13 @@ def restore_backup(
     Raises
     ------
     OsgError
-        When the file is no backup, is damaged, or the folder holds a database.
+        When the file is no backup, is damaged, or the database is there and holds something.
     StoreUnavailable
-        When the object store does not answer.
+        When the object store or the database does not answer.
 
     """
     objects = objects or SharedFolder()
-    if (data_dir / DATABASE).exists():
+    if url is None and (data_dir / DATABASE).exists():
         raise OsgError(f"{data_dir} holds a database already; restore into an empty folder")
     data_dir.mkdir(parents=True, exist_ok=True, mode=0o700)
     clips = clips or data_dir / "clips"
@@ -141,15 +147,22 @@ def restore_backup(
                 if _copy(packed, file) != digest:
                     raise OsgError(f"{name} in {source.name} is damaged; use another backup")
         _check_database(folder / DATABASE)
-        for name in digests:
-            if name != DATABASE:
-                objects.upload(folder / name, name.removeprefix("clips/"))
-        if (folder / "clips").is_dir():
-            shutil.rmtree(clips, ignore_errors=True)
-            # Perhaps to another disk: a rename alone would not do.
-            shutil.move(folder / "clips", clips)
-        sync_directory(data_dir)
-        publish(folder / DATABASE, data_dir / DATABASE)
+
+        def place_clips() -> None:
+            for name in digests:
+                if name != DATABASE:
+                    objects.upload(folder / name, name.removeprefix("clips/"))
+            if (folder / "clips").is_dir():
+                shutil.rmtree(clips, ignore_errors=True)
+                # Perhaps to another disk: a rename alone would not do.
+                shutil.move(folder / "clips", clips)
+
+        if url is None:
+            place_clips()
+            sync_directory(data_dir)
+            publish(folder / DATABASE, data_dir / DATABASE)
+        else:
+            _restore_rows(folder / DATABASE, url, place_clips)
     return len({name.split("/")[1] for name in digests if name.startswith("clips/")})
 
 
@@ -182,7 +195,54 @@ class _ClipFiles:
             fetched.unlink()
 
 
-def _copy_database(database: Path, target: Path) -> None:
+def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
+    """Copy the database of a library into a file of SQLite."""
+    if url is not None:
+        with _opened(url) as source:
+            file = source.file
+            if file is None:
+                _copy_rows(source, target)
+                return
+    else:
+        file = data_dir / DATABASE
+    if not file.is_file():
+        raise OsgError(f"{file.parent} holds no {file.name}; give the data folder with --data-dir")
+    _copy_file(file, target)
+
+
+def _copy_rows(source: Database, target: Path) -> None:
+    with _opened(f"sqlite:///{target}") as copy:
+        try:
+            snapshot(source, copy)
+        except ProgrammingError as error:
+            reason = " ".join(str(error.orig).split())
+            raise OsgError(
+                f"the database is not of this version ({reason}); start a server of this version "
+                "on it once, or run the version that uses it"
+            ) from error
+    _check_database(target)
+
+
+def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None:
+    """Copy the rows of a restored file into another database, and then place the clips."""
+    with _opened(f"sqlite:///{file}") as source, _opened(url) as target:
+        if not target.shared:
+            raise OsgError("OSG_DATABASE_URL names SQLite; restore into a data folder instead")
+        for database in (source, target):
+            database.migrate()
+        with source.reading() as rows, target.writing() as written:
+            copy_rows(rows, written)
+            # Before the rows are there for good: none refers to what is not kept.
+            place_clips()
+
+
+@contextmanager
+def _opened(url: str) -> Iterator[Database]:
+    with closing(Database(url)) as database:
+        yield database
+
+
+def _copy_file(database: Path, target: Path) -> None:
     with (
         closing(sqlite3.connect(f"{database.resolve().as_uri()}?mode=ro", uri=True)) as source,
         closing(sqlite3.connect(target)) as copy,
@@ -206,9 +266,9 @@ def _check_database(database: Path) -> None:
         raise OsgError(f"the database is damaged ({verdict})")
 
 
-def _files_by_clip(snapshot: Path) -> dict[str, list[str]]:
+def _files_by_clip(database: Path) -> dict[str, list[str]]:
     """Return the names of the files of each clip that the database refers to."""
-    with closing(sqlite3.connect(snapshot)) as connection:
+    with closing(sqlite3.connect(database)) as connection:
         rows = connection.execute(
             "SELECT clip.id, clip.source, EXISTS (SELECT 1 FROM job WHERE job.clip_id = clip.id "
             "AND job.status = ?) FROM clip",

@@ -1,0 +1,63 @@
+"""Rows of a whole database, copied to one of another kind."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from sqlalchemy import Connection, insert, select, text
+from sqlmodel import Session, SQLModel, col
+
+from app.recognition.errors import OsgError
+from app.store.database import Database
+from app.store.models import AuditEntry, ChangeCount, Clip, LanguageRecord, UploadReservation
+
+AT_ONCE: Final = 100
+"""Rows read and written at a time: the document of a language has up to 64 MB, most have 100 kB."""
+
+OF_A_SERVER: Final = (ChangeCount, UploadReservation)
+"""Tables that say nothing about the library: what runs now, and what was read before."""
+
+
+def copy_rows(source: Session, target: Session) -> None:
+    """Copy the rows of all tables; both databases have the tables of this version.
+
+    Raises
+    ------
+    OsgError
+        When the target holds clips or languages.
+
+    """
+    for kept in (col(Clip.id), col(LanguageRecord.id)):
+        if target.execute(select(kept).limit(1)).first() is not None:
+            raise OsgError(
+                "the database of OSG_DATABASE_URL holds clips or languages already; "
+                "name an empty one, which no server has used"
+            )
+    reading, writing = source.connection(), target.connection()
+    # Others refer to the first ones.
+    for table in SQLModel.metadata.sorted_tables:
+        if table.name in {each.__tablename__ for each in OF_A_SERVER}:
+            continue
+        rows = reading.execution_options(yield_per=AT_ONCE).execute(select(table))
+        for some in rows.mappings().partitions():
+            writing.execute(insert(table), [dict(row) for row in some])
+    if writing.dialect.name == "postgresql":
+        _continue_numbers(writing)
+
+
+def snapshot(database: Database, target: Database) -> None:
+    """Copy a database into an empty one, as one consistent state, also while servers use it."""
+    target.migrate()
+    with database.reading() as source, target.writing() as copy:
+        copy_rows(source, copy)
+
+
+def _continue_numbers(connection: Connection) -> None:
+    """Have PostgreSQL number further entries after those that were copied."""
+    table = AuditEntry.__tablename__
+    connection.execute(
+        text(
+            f"SELECT setval(pg_get_serial_sequence('{table}', 'id'), "
+            f"(SELECT coalesce(max(id), 0) + 1 FROM {table}), false)"
+        )
+    )
