@@ -1,11 +1,13 @@
-"""Crash rounds: kills a server and its workers while clients write, and checks what is left.
+"""Crash rounds: kills a server and what it uses while clients write, and checks what is left.
 
 ``python -m benchmarks.crash --rounds 60`` starts a server on one folder again and again. In each
 round three clients upload clips (whole and in parts), create, rename and delete languages, and
-import language files, until the server, or a worker and then the server, is killed by SIGKILL at
-a random moment. After the next start everything that was acknowledged must be there, what was not
-must be there wholly or not at all, and no file may be without its row. At the end every job must
-come to an end. The exit code is 1 where anything is lost.
+import language files, until the server is killed by SIGKILL at a random moment, in most rounds
+after something else: a worker process, or a part of the backends that ``--with postgres dask s3``
+gives the server, which is then started again. After the next start everything that was acknowledged
+must be there, what was not must be there wholly or not at all, and no file may be without its row.
+At the end every job must have come to an end, those that are done with all frames of their clip.
+The exit code is 1 where anything is lost.
 """
 
 from __future__ import annotations
@@ -21,15 +23,18 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import httpx
+import pytest
 
 from app.resources import samples_dir
+from benchmarks.backends import BACKENDS, Backends, backends
 from benchmarks.cost.load import SERVE, small_clip
 
 DATABASE: Final = "OSG_DATABASE_URL"
@@ -40,10 +45,18 @@ API: Final = "/api/v1"
 FEWEST_SECONDS, MOST_SECONDS = 0.2, 3.0
 """When a kill comes after the clients have begun: a request takes milliseconds, a job seconds."""
 
+MOST_SURVIVAL_SECONDS = 3.0
+"""How long a server may go on after something else was killed: it notices within two seconds."""
+
+FRAMES = 10
+"""Of the clip that is uploaded."""
+
 MOST_CLIPS = 12
 """Clips that are kept; further ones are deleted, which is a change to check as well."""
 
 FINAL: Final = ("done", "failed", "cancelled")
+
+WORKER: Final = "worker process"
 
 
 @dataclass
@@ -66,6 +79,10 @@ class Written:
         Number of uploads that were refused because the process that probed them was killed.
     lost
         What is missing or wrong, in words.
+    kills
+        By what was killed, in how many rounds.
+    ends
+        By how the jobs of the kept clips ended, how many.
 
     """
 
@@ -76,6 +93,8 @@ class Written:
     acknowledged: int = 0
     refused: int = 0
     lost: list[str] = field(default_factory=list)
+    kills: Counter[str] = field(default_factory=Counter)
+    ends: Counter[str] = field(default_factory=Counter)
 
 
 Client = Callable[[httpx.Client, Written, random.Random], None]
@@ -83,7 +102,10 @@ Client = Callable[[httpx.Client, Written, random.Random], None]
 
 def edit(client: httpx.Client, written: Written, draw: random.Random) -> None:
     """Create, rename or delete a language."""
-    kept = [key for key, state in written.languages.items() if state is not None]
+    # Not what was sent without an answer: whether that was done shows after the next start.
+    kept = [
+        key for key, state in written.languages.items() if state and key not in written.attempts
+    ]
     chosen = draw.choice(kept) if kept and draw.random() < 0.8 else None
     name = f"language {draw.randrange(10**9)}"
     if chosen is None:
@@ -114,7 +136,7 @@ def import_file(client: httpx.Client, written: Written, draw: random.Random) -> 
 
 def upload(client: httpx.Client, written: Written, draw: random.Random, clip: bytes) -> None:
     """Add a clip at once or in two parts, or delete one."""
-    kept = [key for key, state in written.clips.items() if state]
+    kept = [key for key, state in written.clips.items() if state and key not in written.deleting]
     if len(kept) >= MOST_CLIPS:
         chosen = draw.choice(kept)
         written.deleting.add(chosen)
@@ -236,13 +258,16 @@ def _check_files(folder: Path, written: Written) -> None:
             written.lost.append(f"orphan: {path.name}")
 
 
-def crash(rounds: int, seed: int) -> Written:
-    """Run the rounds, and return what was written and lost."""
+def crash(rounds: int, seed: int, names: Collection[str] = ()) -> Written:
+    """Run the rounds with the named backends, and return what was written and lost."""
     written, draw = Written(), random.Random(seed)
-    kills = {"server": 0, "worker and server": 0}
-    with tempfile.TemporaryDirectory() as place:
+    with (
+        tempfile.TemporaryDirectory() as place,
+        backends(names, Path(place), draw) as beside,
+        _environment(beside),
+    ):
         folder = Path(place) / "data"
-        clip = small_clip(Path(place) / "dive.mkv", frames=10)
+        clip = small_clip(Path(place) / "dive.mkv", frames=FRAMES)
         digest = hashlib.sha256(clip).hexdigest()
 
         def add(client: httpx.Client, state: Written, chance: random.Random) -> None:
@@ -261,13 +286,7 @@ def crash(rounds: int, seed: int) -> Written:
                 for thread in threads:
                     thread.start()
                 time.sleep(draw.uniform(FEWEST_SECONDS, MOST_SECONDS))
-                workers = workers_of(process.pid)
-                both = bool(workers) and draw.random() < 0.4
-                if both:
-                    with suppress(ProcessLookupError):
-                        os.kill(draw.choice(workers), signal.SIGKILL)
-                    time.sleep(draw.uniform(0, 0.5))
-                kills["worker and server" if both else "server"] += 1
+                written.kills[_kill_beside(process.pid, beside, draw)] += 1
                 process.kill()
                 stop.set()
                 for thread in threads:
@@ -281,8 +300,33 @@ def crash(rounds: int, seed: int) -> Written:
         with serving(folder) as (address, _):
             check(address, folder, written, digest)
             _wait_for_jobs(address, written)
-    print(f"kills: {kills}")
     return written
+
+
+@contextmanager
+def _environment(beside: Backends) -> Iterator[None]:
+    """Let the servers that are started here use the backends."""
+    with pytest.MonkeyPatch.context() as environment:
+        for name, value in beside.environment.items():
+            environment.setenv(name, value)
+        yield
+
+
+def _kill_beside(server: int, beside: Backends, draw: random.Random) -> str:
+    """Kill something beside the server, or nothing; return what is dead when the server is."""
+    chosen = draw.choice(["", WORKER, *beside.faults])
+    if chosen == WORKER:
+        workers = [each for pid in (server, *beside.dask_workers()) for each in workers_of(pid)]
+        if not workers:
+            return "server"
+        with suppress(ProcessLookupError):
+            os.kill(draw.choice(workers), signal.SIGKILL)
+    elif chosen:
+        beside.faults[chosen]()
+    else:
+        return "server"
+    time.sleep(draw.uniform(0, MOST_SURVIVAL_SECONDS))
+    return f"{chosen}, then server"
 
 
 def _wait_for_jobs(address: str, written: Written, seconds: float = 300.0) -> None:
@@ -293,6 +337,7 @@ def _wait_for_jobs(address: str, written: Written, seconds: float = 300.0) -> No
             clips = client.get(f"{API}/clips").json()
             still = [each["id"] for each in clips if each["status"] not in FINAL]
             if not still:
+                _check_ends(client, clips, written)
                 return
             if time.monotonic() > end:
                 written.lost.append(f"jobs without an end: {still}")
@@ -300,13 +345,26 @@ def _wait_for_jobs(address: str, written: Written, seconds: float = 300.0) -> No
             time.sleep(1)
 
 
+def _check_ends(client: httpx.Client, clips: list[dict[str, Any]], written: Written) -> None:
+    """Note how the jobs ended; one that is done has found what is in all frames, once."""
+    for each in clips:
+        written.ends[each["error_code"] or each["status"]] += 1
+        if each["status"] == "done":
+            found = len(client.get(f"{API}/clips/{each['id']}/poses").json()["time"])
+            if (found, each["frames"]) != (FRAMES, FRAMES):
+                written.lost.append(f"poses of clip {each['id']}: {found} frames")
+
+
 def main() -> None:
     """Run the rounds and print what they found."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--with", dest="backends", nargs="+", choices=BACKENDS, default=())
     given = parser.parse_args()
-    written = crash(given.rounds, given.seed)
+    written = crash(given.rounds, given.seed, given.backends)
+    for name, counted in (("kills", written.kills), ("jobs", written.ends)):
+        print(f"{name}: {', '.join(f'{each} {number}' for each, number in counted.most_common())}")
     print(
         f"{given.rounds} rounds, {written.acknowledged} changes acknowledged, {written.refused} "
         "uploads refused whose probing process was killed"
