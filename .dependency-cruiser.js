@@ -2,7 +2,7 @@
 const ROOMS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
 
 /** Views that build on the rooms; they do not import each other. */
-const VIEWS = ["editor", "health", "live", "phrases", "practice"];
+const VIEWS = ["administration", "editor", "health", "live", "phrases", "practice"];
 
 const inside = (names) => `^static/js/(${names.join("|")})/`;
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 
 from sqlmodel import col, select
 
@@ -32,7 +33,13 @@ class AuditStore:
             session.add(entry)
 
     def newest(
-        self, limit: int = 100, *, before: int | None = None, name: str | None = None
+        self,
+        limit: int = 100,
+        *,
+        before: int | None = None,
+        name: str | None = None,
+        since: datetime | None = None,
+        until: datetime | None = None,
     ) -> Sequence[AuditEntry]:
         """Return entries, the newest first.
 
@@ -44,6 +51,8 @@ class AuditStore:
             Only entries with a smaller id: the next page.
         name
             Only those of this name.
+        since, until
+            Only those from this moment on, and before that one.
 
         """
         query = select(AuditEntry).order_by(col(AuditEntry.id).desc())
@@ -51,5 +60,9 @@ class AuditStore:
             query = query.where(col(AuditEntry.id) < before)
         if name is not None:
             query = query.where(AuditEntry.name == name)
+        if since is not None:
+            query = query.where(col(AuditEntry.time) >= since)
+        if until is not None:
+            query = query.where(col(AuditEntry.time) < until)
         with self._database.reading() as session:
             return session.exec(query.limit(min(limit, MOST_LISTED))).all()

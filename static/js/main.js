@@ -3,6 +3,7 @@
 import { drawBatch } from "./clips/batch-card.js";
 import { drawClips, findClips } from "./clips/clip-list.js";
 import { knowReferences, reloadClips } from "./clips/clip-pages.js";
+import { drawQuota, followQuota } from "./clips/quota-line.js";
 import { followJob, reloadClip } from "./clips/clip-store.js";
 import { drawSampleClips } from "./clips/sample-clips.js";
 import * as api from "./core/api.js";
@@ -77,6 +78,8 @@ function drawEverything() {
   follow(["clips", "jobs"], drawBatch);
   follow(["clips", "gestures"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
+  follow(["quota"], drawQuota);
+  follow(["quota", "clips", "uploads"], followQuota);
   follow(["samples"], drawSampleClips);
   follow(
     ["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded", "role"],
@@ -163,6 +166,13 @@ async function start() {
   byId("record-clip").onclick = () => go("live", { source: null });
   byId("make-gestures").onclick = openGestureTable;
   byId("all-takes").onclick = openTakeTable;
+  byId("audit-log").onclick = async () => {
+    const log = await attempt(
+      "Loading the audit log",
+      () => import("./administration/audit-log.js"),
+    );
+    log?.openAuditLog();
+  };
   bindUndo();
   reserveToasts();
   showSession();

@@ -1505,6 +1505,26 @@ export interface components {
             voters: string[];
         };
         /**
+         * QuotaView
+         * @description What somebody keeps, uploads under way included, and may keep.
+         */
+        QuotaView: {
+            /** Clips */
+            clips: number;
+            /**
+             * Most Clips
+             * @description 0 is any number
+             */
+            most_clips: number;
+            /** Bytes */
+            bytes: number;
+            /**
+             * Most Bytes
+             * @description 0 is any number
+             */
+            most_bytes: number;
+        };
+        /**
          * RateView
          * @description Rate of right answers, with Wilson's 95 % interval; null without any answer.
          */
@@ -1746,6 +1766,8 @@ export interface components {
              * @description Whether a cookie keeps the token, so that one can log out
              */
             signed_in: boolean;
+            /** @description null where nothing limits what the name keeps */
+            quota: components["schemas"]["QuotaView"] | null;
         };
         /**
          * SettingsView

@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
+/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -107,6 +107,11 @@ export const session = {
   /** @type {() => Promise<Session>} */
   get: () => request("GET", "/session"),
   end: () => request("DELETE", "/session"),
+};
+
+export const audit = {
+  /** @type {(query: Record<string, string>) => Promise<AuditEntry[]>} */
+  list: (query) => request("GET", `/audit?${new URLSearchParams(query)}`),
 };
 
 export const clips = {

@@ -48,10 +48,11 @@ function holdToReading() {
 /** Show who is signed in, with a button to log out where a cookie keeps the token. */
 export async function showSession() {
   const session = await attempt("Reading who is signed in", api.session.get);
-  update({ role: session?.role ?? null });
+  update({ role: session?.role ?? null, quota: session?.quota ?? null });
   if (!mayWrite()) holdToReading();
   if (!session?.name) return;
   byId("session-name").textContent = describeSession(session);
+  byId("audit-log").hidden = session.role !== "admin";
   byId("log-out").hidden = !session.signed_in;
   byId("log-out").onclick = () =>
     attempt("Logging out", async () => {

@@ -46,6 +46,7 @@ const values = {
   trial: null,
   question: null,
   role: null,
+  quota: null,
   connected: null,
   returns: 0,
   loaded: false,

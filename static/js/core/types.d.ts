@@ -14,6 +14,8 @@ export type Poses = Schemas["PosesView"];
 export type Sample = Schemas["SampleView"];
 export type SampleLanguage = Schemas["SampleLanguageView"];
 export type Session = Schemas["SessionView"];
+export type Quota = Schemas["QuotaView"];
+export type AuditEntry = Schemas["AuditView"];
 export type Language = Schemas["LanguageView"];
 export type LanguageSummary = Schemas["LanguageSummary"];
 export type Gesture = Schemas["GestureView"];
@@ -352,6 +354,8 @@ export interface State {
   question: { clip: string; expected: string } | null;
   /** What the token may do; null until the server has told. */
   role: Session["role"] | null;
+  /** What the token's name keeps and may keep; null where nothing limits it. */
+  quota: Quota | null;
   connected: boolean | null;
   /** How often the server came back: what could not be asked meanwhile is asked then. */
   returns: number;

@@ -101,3 +101,40 @@ def test_a_reader_is_told_who_can_open_the_example(browser: Browser, tmp_path: P
         expect(page.locator("#clip-name")).to_have_text(MISREAD)
         expect(page.locator("#outcome")).to_contain_text("ecognised")
         page.context.close()
+
+
+def test_an_administrator_reads_who_changed_what_and_an_editor_what_is_left(
+    browser: Browser, tmp_path: Path
+) -> None:
+    settings = Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "none")
+    tokens = TokenFile(settings.tokens)
+    admin, editor = tokens.add("Mia", Role.ADMIN), tokens.add("Eve", Role.EDIT, quota_clips=5)
+    with running(settings) as server:
+        headers = {"Authorization": f"Bearer {editor}"}
+        with httpx.Client(base_url=server.address, headers=headers, timeout=60) as client:
+            client.post("/api/v1/languages", json={"name": "pool"})
+        page = browser.new_context(base_url=server.address).new_page()
+        page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+        page.route("**/viser/**", lambda route: route.fulfill(body=""))
+        page.goto(f"/?token={admin}")
+        page.get_by_role("button", name="Audit log").click()
+        dialog = page.get_by_role("dialog", name="Audit log")
+        change = dialog.get_by_role("row").nth(1)
+        expect(change).to_contain_text("Eve")
+        expect(change).to_contain_text("POST /api/v1/languages")
+        nothing = dialog.get_by_text("Nobody has changed anything of that kind.")
+        for field, value in (("Name", "Mia"), ("From", "2999-01-01"), ("To", "1999-12-31")):
+            control = dialog.get_by_label(field, exact=True)
+            control.fill(value)
+            control.blur()
+            expect(nothing).to_be_visible()
+            control.fill("")
+            control.blur()
+            expect(change).to_contain_text("Eve")
+        page.goto("/")
+        page.get_by_role("button", name="Log out").click()
+        page.get_by_label("Token").fill(editor)
+        page.get_by_role("button", name="Sign in").click()
+        expect(page.locator("#quota")).to_have_text("Your quota: 0 of 5 clips used")
+        expect(page.locator("#audit-log")).to_be_hidden()
+        page.context.close()

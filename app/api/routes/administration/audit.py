@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from app.api.http.problems import problem_responses
 from app.api.services.studio import CurrentStudio
 from app.store.audit import MOST_LISTED
+
+Moment = Annotated[
+    AwareDatetime, Field(ge=datetime(1970, 1, 1, tzinfo=UTC), lt=datetime(9000, 1, 1, tzinfo=UTC))
+]
+"""A moment with its offset from UTC, which every database knows."""
 
 router = APIRouter(prefix="/audit", tags=["administration"])
 
@@ -39,7 +44,9 @@ def list_audit(
         int | None, Query(ge=1, le=2**31 - 1, description="Only smaller ids: the next page")
     ] = None,
     name: Annotated[str | None, Query(max_length=80, description="Only of this name")] = None,
+    since: Annotated[Moment | None, Query(description="Only from this moment on")] = None,
+    until: Annotated[Moment | None, Query(description="Only before this moment")] = None,
 ) -> list[AuditView]:
     """List changes, the newest first; only for the role admin where tokens are needed."""
-    entries = studio.audit.newest(limit, before=before, name=name)
+    entries = studio.audit.newest(limit, before=before, name=name, since=since, until=until)
     return [AuditView.model_validate(entry) for entry in entries]

@@ -8,9 +8,19 @@ from pydantic import BaseModel, Field
 from app.api.http.problems import problem_responses
 from app.api.middleware.access import COOKIE
 from app.api.middleware.identities import identity_of
+from app.api.services.studio import CurrentStudio
 from app.store import Role
 
 router = APIRouter(prefix="/session", tags=["administration"])
+
+
+class QuotaView(BaseModel):
+    """What somebody keeps, uploads under way included, and may keep."""
+
+    clips: int
+    most_clips: int = Field(description="0 is any number")
+    bytes: int
+    most_bytes: int = Field(description="0 is any number")
 
 
 class SessionView(BaseModel):
@@ -19,14 +29,28 @@ class SessionView(BaseModel):
     name: str = Field(description="Of the token; empty where the server needs none")
     role: Role = Field(description="read, edit or admin; each includes the ones before it")
     signed_in: bool = Field(description="Whether a cookie keeps the token, so that one can log out")
+    quota: QuotaView | None = Field(description="null where nothing limits what the name keeps")
 
 
 @router.get("", responses=problem_responses())
-def get_session(request: Request) -> SessionView:
-    """Return the name and the role of the token in use."""
+def get_session(request: Request, studio: CurrentStudio) -> SessionView:
+    """Return the name and the role of the token in use, and what is left of its quota."""
     identity = identity_of(request.scope)
-    signed_in = bool(identity.name) and COOKIE in request.cookies
-    return SessionView(name=identity.name, role=identity.role, signed_in=signed_in)
+    quota = None
+    if identity.quota_bytes or identity.quota_clips:
+        usage = studio.quotas.usage(identity.name)
+        quota = QuotaView(
+            clips=usage.clips,
+            most_clips=identity.quota_clips,
+            bytes=usage.bytes,
+            most_bytes=identity.quota_bytes,
+        )
+    return SessionView(
+        name=identity.name,
+        role=identity.role,
+        signed_in=bool(identity.name) and COOKIE in request.cookies,
+        quota=quota,
+    )
 
 
 @router.delete("", status_code=204, responses=problem_responses())

@@ -22,6 +22,7 @@ from tests.api.running import Running, assert_problem, running
 
 API = "/api/v1"
 LANGUAGES, CLIPS, UPLOADS = f"{API}/languages", f"{API}/clips", f"{API}/uploads"
+UNLIMITED = {"quota": None}
 ADMIN = "correct-horse-battery"
 TUS = {"Tus-Resumable": "1.0.0"}
 
@@ -46,7 +47,7 @@ def client_with(server: Running, token: str) -> httpx.Client:
 def test_a_token_of_the_settings_administers(guarded: Running) -> None:
     with client_with(guarded, ADMIN) as admin:
         session = admin.get(f"{API}/session").json()
-        assert session == {"name": "admin", "role": "admin", "signed_in": False}
+        assert session == UNLIMITED | {"name": "admin", "role": "admin", "signed_in": False}
         assert admin.post(LANGUAGES, json={"name": "pool"}).status_code == 201
         assert admin.get(f"{API}/audit").status_code == 200
         assert admin.get("/metrics").status_code == 200
@@ -100,7 +101,7 @@ def test_a_browser_signs_in_and_out(guarded: Running, tokens: TokenFile) -> None
     with httpx.Client(base_url=guarded.address, timeout=60) as browser:
         assert browser.get("/", params={"token": secret}).status_code == 303
         session = browser.get(f"{API}/session").json()
-        assert session == {"name": "Eve", "role": "edit", "signed_in": True}
+        assert session == UNLIMITED | {"name": "Eve", "role": "edit", "signed_in": True}
         assert secret not in str(browser.cookies)
         assert browser.delete(f"{API}/session").status_code == 204
         assert_problem(browser.get(f"{API}/session"), 401, "token_required")
@@ -111,6 +112,7 @@ def test_without_tokens_everybody_administers(client: httpx.Client) -> None:
         "name": "",
         "role": "admin",
         "signed_in": False,
+        "quota": None,
     }
     assert client.get("/metrics").status_code == 200
     assert client.get(f"{API}/audit").json() == []
@@ -137,6 +139,11 @@ def test_changes_are_noted_by_name_and_refusals_are_not(
         assert older == [added]
         assert admin.get(f"{API}/audit", params={"name": "Gus"}).json() == []
         assert len(admin.get(f"{API}/audit", params={"limit": 1}).json()) == 1
+        between = {"since": added["time"], "until": deleted["time"]}
+        assert admin.get(f"{API}/audit", params=between).json() == [added]
+        for moment in ("0001-01-01T00:00:00+14:00", "2026-11-24T12:00:00"):
+            answer = admin.get(f"{API}/audit", params={"since": moment})
+            assert_problem(answer, 422, "request_invalid")
 
 
 @pytest.mark.slow
@@ -169,6 +176,12 @@ def test_a_quota_of_clips_is_kept_and_deleting_makes_room(
         refused = assert_problem(upload(editor, small_clip), 507, "quota_exceeded")
         assert refused["used"] == {"clips": 1, "bytes": small_clip.stat().st_size}
         assert refused["limit"] == 1
+        assert editor.get(f"{API}/session").json()["quota"] == {
+            "clips": 1,
+            "most_clips": 1,
+            "bytes": small_clip.stat().st_size,
+            "most_bytes": 0,
+        }
         headers = TUS | {"Upload-Length": "10"}
         assert_problem(editor.post(UPLOADS, headers=headers), 507, "quota_exceeded")
         assert editor.delete(f"{CLIPS}/{first.json()['id']}").status_code == 204
