@@ -258,8 +258,13 @@ def _check_files(folder: Path, written: Written) -> None:
             written.lost.append(f"orphan: {path.name}")
 
 
-def crash(rounds: int, seed: int, names: Collection[str] = ()) -> Written:
-    """Run the rounds with the named backends, and return what was written and lost."""
+def crash(
+    rounds: int, seed: int, names: Collection[str] = (), longest: float = MOST_SECONDS
+) -> Written:
+    """Run the rounds with the named backends, and return what was written and lost.
+
+    `longest`: most seconds of a round before the first kill.
+    """
     written, draw = Written(), random.Random(seed)
     with (
         tempfile.TemporaryDirectory() as place,
@@ -285,7 +290,7 @@ def crash(rounds: int, seed: int, names: Collection[str] = ()) -> Written:
                 ]
                 for thread in threads:
                     thread.start()
-                time.sleep(draw.uniform(FEWEST_SECONDS, MOST_SECONDS))
+                time.sleep(draw.uniform(FEWEST_SECONDS, longest))
                 written.kills[_kill_beside(process.pid, beside, draw)] += 1
                 process.kill()
                 stop.set()
@@ -361,8 +366,14 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--with", dest="backends", nargs="+", choices=BACKENDS, default=())
+    parser.add_argument(
+        "--longest",
+        type=float,
+        default=MOST_SECONDS,
+        help="seconds of a round; more where jobs hardly come to an end, as on a loaded machine",
+    )
     given = parser.parse_args()
-    written = crash(given.rounds, given.seed, given.backends)
+    written = crash(given.rounds, given.seed, given.backends, given.longest)
     for name, counted in (("kills", written.kills), ("jobs", written.ends)):
         print(f"{name}: {', '.join(f'{each} {number}' for each, number in counted.most_common())}")
     print(
