@@ -166,6 +166,7 @@ async function start() {
   byId("record-clip").onclick = () => go("live", { source: null });
   byId("make-gestures").onclick = openGestureTable;
   byId("all-takes").onclick = openTakeTable;
+  byId("audit-log").append(icon("list"));
   byId("audit-log").onclick = async () => {
     const log = await attempt(
       "Loading the audit log",

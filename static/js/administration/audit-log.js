@@ -106,7 +106,7 @@ export function openAuditLog() {
     ),
     h(
       "div",
-      { className: "audit-scroll", tabIndex: 0, role: "region", "aria-label": "Changes" },
+      { className: "table-scroll", tabIndex: 0, role: "region", "aria-label": "Changes" },
       table,
     ),
     note,

@@ -149,7 +149,7 @@ function resultOf({ rows, csv }) {
     ),
     h(
       "div",
-      { className: "take-scroll", tabIndex: 0, role: "region", "aria-label": "Table of takes" },
+      { className: "table-scroll", tabIndex: 0, role: "region", "aria-label": "Table of takes" },
       h("table", {}, h("thead", {}, h("tr", {}, heads)), body),
     ),
   ];
