@@ -205,7 +205,8 @@ class _TaskLines:
                 raise ExecutorLost("the Dask scheduler is gone")
             if self._future.status == "error":
                 # It took several machines with it: what it does to them it does again.
-                logger.warning("a task of the Dask cluster failed: %s", self._future.key)
+                reason = await self._future.exception()
+                logger.warning("a task of the Dask cluster failed: %r", reason)
                 return ENDED, ""
             if self._future.status == "finished" and self._silence > LAST_LINES_SECONDS:
                 raise ExecutorLost("the last lines of a task were not heard")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -115,9 +117,17 @@ def test_every_kind_of_job_runs_without_a_folder_in_common(
     s3: S3Server,
     cluster: Cluster,
     tmp_path: Path,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
-    ids = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()
     machine = cluster.workers[0].pid
+    os.kill(machine, signal.SIGSTOP)
+    ids = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()
+    # What cannot be fetched now is asked for again.
+    kept = (studio.clips.place(ids["id"], "video"), f"{ids['id']}/video")
+    s3.client().delete_object(Bucket=BUCKET, Key=f"pool/{kept[1]}")
+    os.kill(machine, signal.SIGCONT)
+    until(lambda: f"holds no {kept[1]}" in caplog.text)
+    open_object_store(STORAGE).upload(*kept)
     until(lambda: workers_of(machine, "record"))
     (worker,) = workers_of(machine, "record")
     command = Path(f"/proc/{worker}/cmdline").read_text()
