@@ -60,10 +60,11 @@ def backends(names: Collection[str], folder: Path, draw: Random) -> Iterator[Bac
         try:
             if "postgres" in names:
                 _add_postgres(found, running)
-            if "dask" in names:
-                _add_dask(found, running, folder, draw)
             if "s3" in names:
                 _add_s3(found, running)
+            # After it: the machines of the cluster know the bucket by this environment.
+            if "dask" in names:
+                _add_dask(found, running, folder, draw)
         except pytest.skip.Exception as error:
             raise SystemExit(str(error)) from error
         yield found
