@@ -160,7 +160,8 @@ function drawExpected(members, result) {
       clip?.name ?? "",
       members.map(({ label }) => label),
     );
-  shown = { result: result?.id ?? null, clip: clip?.id };
+  // Without labels nothing was proposed: the language may come after the clip.
+  shown = { result: result?.id ?? null, clip: members.length ? clip?.id : null };
   expected.replaceChildren(
     h("option", { value: "" }, "not known"),
     ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),

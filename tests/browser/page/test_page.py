@@ -287,6 +287,22 @@ def test_what_is_expected_is_proposed_by_the_clips_name_and_forgotten_with_it(
     expect(outcome).to_be_empty()
 
 
+def test_what_is_expected_is_proposed_once_the_language_is_there(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="line-late.mp4")
+    page = open_page({"language": library.language}, scene=False)
+    expect(page.get_by_text("Take 1 of 1")).to_be_visible()
+    held: list[Route] = []
+    page.route(f"**/languages/{library.language}", lambda route: held.append(route))
+    page.reload()
+    page.get_by_role("button", name="Show line-late.mp4").click()
+    while not held:
+        page.wait_for_timeout(10)
+    held[0].continue_()
+    expect(page.get_by_label("Expected", exact=True)).to_have_value("line")
+
+
 def test_nothing_acts_on_another_clip_before_its_own_takes_are_there(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
