@@ -86,6 +86,10 @@ def _add_dask(found: Backends, running: ExitStack, folder: Path, draw: Random) -
 
     def restart_scheduler() -> None:
         cluster.restart_scheduler()
+        # They end by themselves when they miss it, some seconds later.
+        for process in cluster.workers:
+            process.kill()
+            process.wait()
         _fill(cluster)
 
     def replace_worker() -> None:
