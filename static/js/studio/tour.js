@@ -17,8 +17,8 @@ const GAP = 12; // px between the card and what it points at.
 /** @type {Step[]} */
 const STEPS = [
   {
-    title: "One demonstration makes a gesture",
-    text: "One clip of a gesture is enough for the robot to recognise it. The four steps:",
+    title: "New here?",
+    text: "Four steps lead from a clip to a file for the robot. The page stays usable meanwhile.",
     places: [],
   },
   {
