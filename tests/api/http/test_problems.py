@@ -90,6 +90,7 @@ TUS = {
 
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("PATCH", "/api/v1/languages/{language_id}"): {"name": "x"},
+    ("POST", "/api/v1/clips/{clip_id}/session.mcap"): {"id": "mine"},
     ("POST", "/api/v1/clips/{clip_id}/topic"): {"topic": "/camera"},
     ("PUT", "/api/v1/languages/{language_id}/trigger"): {"kind": "none"},
     ("POST", "/api/v1/languages/{language_id}/revert"): {"revision": 1},
