@@ -83,12 +83,29 @@ async function loadKnown() {
   return { clips: merged(others, clips), library: { last, older: total - listed.size } };
 }
 
-/** Load the clips; resolves to whether they came. */
-export async function reloadClips() {
-  const known = await attempt("Loading the clips", loadKnown);
-  if (known) update(known);
-  return known !== null;
+/** @type {Promise<unknown>} */
+let turn = Promise.resolve();
+
+/**
+ * Load one part of the list after the other: each goes on where the one before ended.
+ *
+ * @template T
+ * @param {() => Promise<T>} load
+ * @returns {Promise<T>}
+ */
+function inTurn(load) {
+  const loaded = turn.then(load, load);
+  turn = loaded;
+  return loaded;
 }
+
+/** Load the clips; resolves to whether they came. */
+export const reloadClips = () =>
+  inTurn(async () => {
+    const known = await attempt("Loading the clips", loadKnown);
+    if (known) update(known);
+    return known !== null;
+  });
 
 /**
  * Load one clip that was added; resolves to it once it is known.
@@ -120,7 +137,7 @@ let loading = null;
 
 /** Load the page of clips that follows those that are listed. */
 export function loadOlder() {
-  loading ??= loadNext().finally(() => {
+  loading ??= inTurn(loadNext).finally(() => {
     loading = null;
   });
   return loading;
