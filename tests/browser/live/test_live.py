@@ -69,6 +69,7 @@ def test_the_camera_shows_landmarks_and_what_the_salute_does(
     open_page: OpenPage, language: str, picture: Callable[[Page, str], Path]
 ) -> None:
     page = open_page({"language": language, "view": "live"}, scene=False)
+    expect(page.get_by_role("heading", name="Live recognition")).to_be_visible()
     expect(page.get_by_role("button", name="Start the camera")).to_be_visible()
     page.keyboard.press("Space")
     expect(page.get_by_text("any of 8 gestures of \u201cTable 2")).to_be_visible()
