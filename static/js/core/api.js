@@ -72,6 +72,9 @@ async function request(method, path, options) {
 async function send(method, path, { body, headers = {}, raw = false, signal } = {}) {
   /** @type {RequestInit & { headers: Record<string, string> }} */
   const options = { method, headers: { ...headers }, signal };
+  // Chromium's cache makes a change wait, for 20 s at most, until a read of the same address has
+  // ended: a check could not be cancelled.
+  if (method !== "GET") options.cache = "no-store";
   if (body !== undefined) {
     options.body = raw ? body : JSON.stringify(body);
     options.headers["Content-Type"] = "application/json";
