@@ -48,11 +48,11 @@ test: $(VENV)/.development models  ## Check and test everything
 
 # For every change: style, types, layers, the page, and the tests that take no video, browser or process
 # of their own.
-check: $(VENV)/.development models  ## Check the source and run the quick tests, in two to three minutes
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes and a half
 	@$(MAKE) --jobs 2 lint quick
 
 quick: $(VENV)/.development $(PAGE_TOOLS) models
-	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci -m "not slow" -q
+	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci -m "not slow" -q
 
 # What the tests execute, by branch, in their processes too; takes longer than the tests alone. Of the
 # quick tests alone: make coverage TESTS='-m "not slow"'.
