@@ -49,3 +49,17 @@ export const firstMoment = (video) =>
       video.requestVideoFrameCallback((now, { mediaTime }) => resolve(mediaTime));
     else video.addEventListener("loadeddata", () => resolve(video.currentTime), { once: true });
   });
+
+/**
+ * Send a video to a moment, and draw over it once it shows that moment's frame. While a seek is
+ * under way nothing is done: a seek that is cut short by the next shows nothing.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {number} moment
+ * @param {() => void} draw
+ */
+export function drawAt(video, moment, draw) {
+  if (video.seeking) return;
+  video.onseeked = draw;
+  video.currentTime = moment;
+}

@@ -6,7 +6,7 @@ import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
 import { byId, h, icon, WRITES } from "../core/dom.js";
-import { firstMoment } from "../clips/frame-times.js";
+import { drawAt, firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { mayWrite } from "../core/session.js";
 import { selectedClip, state, update, whenLoaded } from "../core/state.js";
@@ -228,12 +228,9 @@ function showPose(panel, clip, { time, pose }) {
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
   const skeletonDrawing = /** @type {SVGSVGElement} */ (panel.querySelector(".skeleton"));
   if (!playable || time === null) return drawPose(skeletonDrawing, pose);
-  // A seek that is cut short by the next shows nothing, so the next waits; the pose is drawn with
-  // its own frame.
-  if (video.seeking || !video.dataset.start) return undefined;
-  video.onseeked = () => drawPose(skeletonDrawing, pose);
-  video.currentTime = Number(video.dataset.start) + time;
-  return undefined;
+  if (!video.dataset.start) return undefined;
+  const moment = Number(video.dataset.start) + time;
+  return drawAt(video, moment, () => drawPose(skeletonDrawing, pose));
 }
 
 /**

@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { countAll, isListed, merged } from "../../../static/js/clips/clip-pages.js";
+import {
+  countAll,
+  isListed,
+  loadOlder,
+  merged,
+  reloadClips,
+} from "../../../static/js/clips/clip-pages.js";
+import { state } from "../../../static/js/core/state.js";
 
 const clip = (number, status = "done") => ({
   id: `c${number}`,
@@ -22,4 +29,28 @@ test("a clip beyond those that are known without gaps is not listed, and counted
   assert.equal(countAll(known), 5);
   const all = { ...known, library: { last: null, older: 0 } };
   assert.equal(countAll(all), 3);
+});
+
+test("older clips that are asked for while the list loads anew are not undone by it", async (t) => {
+  /** Whether the list's answers are held until `release`. */
+  let held = false;
+  const waiting = [];
+  const release = () => waiting.splice(0).forEach((go) => go());
+  t.mock.method(globalThis, "fetch", async (address) => {
+    const { searchParams } = new URL(address, "http://studio");
+    const page = searchParams.get("after") ? [clip(1)] : searchParams.get("status") ? [] : [3, 2];
+    const clips = page.map((each) => (typeof each === "number" ? clip(each) : each));
+    const older = clips.length === 2 ? { Link: "<older>" } : {};
+    if (held && clips.length === 2) await new Promise((go) => waiting.push(go));
+    return Response.json(clips, { headers: { "X-Total-Count": "3", ...older } });
+  });
+  await reloadClips();
+  assert.deepEqual(ids(state.clips), ["c3", "c2"]);
+  held = true;
+  const both = Promise.all([reloadClips(), loadOlder()]);
+  await new Promise(setImmediate);
+  release();
+  await both;
+  assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
+  assert.deepEqual(state.library, { last: null, older: 0 });
 });
