@@ -30,6 +30,7 @@ from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -249,11 +250,19 @@ def define_gesture(
 
 
 def describe_shown(gesture: Gesture) -> str:
-    """Return what a gesture of one demonstration is made of: landmarks, or held hands."""
-    if gesture.trajectory is not None and gesture.is_held:
-        sides = " and ".join(hand.side for hand in gesture.trajectory.hands)
-        return f"held hand shape: {sides} hand"
-    return f"salient: {', '.join(gesture.salient)}"
+    """Return what a gesture of one demonstration is made of: landmarks and hand shapes."""
+    followed = f"salient: {', '.join(gesture.salient)}"
+    if gesture.trajectory is None:
+        return followed
+    if gesture.is_held:
+        return f"held hand shape: {_name_sides(gesture.trajectory.hands)} hand"
+    if not gesture.trajectory.moving_hands:
+        return followed
+    return f"{followed}; hand shape seen: {_name_sides(gesture.trajectory.moving_hands)} hand"
+
+
+def _name_sides(hands: Sequence[HandShape]) -> str:
+    return " and ".join(hand.side for hand in hands)
 
 
 def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:

@@ -44,7 +44,9 @@ class TakeEntry(_Entry):
     confidence: Share
     votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]
     weights: Annotated[dict[str, float], Field(description="Per voter its normalised weight.")]
-    findings: Annotated[list[str], Field(description="Repairs of keypoints, as sentences.")]
+    findings: Annotated[
+        list[str], Field(description="Repairs of keypoints, and an unseen hand, as sentences.")
+    ]
     fault: Annotated[
         str | None, Field(description="Why the keypoints are too poor to judge; null: they are not")
     ]

@@ -25,8 +25,10 @@ from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_held_hands
+from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
+from app.recognition.voters.registry import HAND_VOTER_NAMES
 
 _VOTES: Final[dict[ProfileName, Callable[[Sequence[Gesture], Tuning], Vote]]] = {
     "paper": MajorityVote,
@@ -71,6 +73,8 @@ class Recognizer:
         self._reads_hands = traits.compares_motion and any(
             gesture.is_held for gesture in language.gestures
         )
+        counting = map(self.vote.sensitivity, range(len(self.language.gestures)))
+        self._reads_moving_hands = any(each is not None and each.hand_shape for each in counting)
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
 
@@ -84,7 +88,8 @@ class Recognizer:
         rejected where it is beyond its thresholds, see `rejection`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
-        still of insufficient quality get no label, and `fault` gives the reason.
+        still of insufficient quality get no label, and `fault` gives the reason. A hand that is not
+        seen, though its shape counts, is a finding; a fault where the switch is on.
 
         Raises
         ------
@@ -109,11 +114,14 @@ class Recognizer:
         query = self._condense(seen, repair.trajectory if repair else Trajectory.from_poses(poses))
         table = self.compare(query)
         result = self.decide(table)
-        if repair:
-            poor, findings = self._fault(repair, table, result.nearest), repair.findings
-            if poor or findings:
-                label = None if poor else result.label
-                result = replace(result, label=label, findings=findings, fault=poor)
+        findings = repair.findings if repair else ()
+        poor = self._fault(repair, table, result.nearest) if repair else None
+        if unseen := self._find_unseen_shape(table, result.nearest):
+            insists = self.language.gesture(result.nearest).switches.hand_shape == "on"
+            poor, findings = (poor or unseen, findings) if insists else (poor, (*findings, unseen))
+        if poor or findings:
+            label = None if poor else result.label
+            result = replace(result, label=label, findings=findings, fault=poor)
         return Trace(query=query, score_table=table, result=result)
 
     def _fault(self, repair: Repair, table: ScoreTable, nearest: str) -> str | None:
@@ -125,6 +133,20 @@ class Recognizer:
             others = [other_side(name) for name in gesture.salient]
             poor = find_fault(repair.poses, others, repair.trajectory)
         return poor
+
+    def _find_unseen_shape(self, table: ScoreTable, nearest: str) -> str | None:
+        """Return that the hand is not seen whose shape counts, in words; None where it is."""
+        counting = self.sensitivity(nearest)
+        if counting is None or not counting.hand_shape:
+            return None
+        at = self.language.labels.index(nearest)
+        rows = [table.voters.index(voter) for voter in HAND_VOTER_NAMES]
+        if np.isfinite(table.distances[rows, at]).all():
+            return None
+        return (
+            f"the hand shape of {nearest!r} counts, and no hand is seen for long enough that "
+            f"keeps a shape"
+        )
 
     def query(self, poses: PoseSequence) -> Trajectory:
         """Return the trajectory that voters compare: repaired if the profile does, and normalised.
@@ -139,11 +161,12 @@ class Recognizer:
         return self._condense(seen, Trajectory.from_poses(seen))
 
     def _condense(self, poses: PoseSequence, trajectory: Trajectory) -> Trajectory:
-        """Condense a query, with the hands that it holds where the language has held shapes."""
-        if not self._reads_hands:
-            return condense(trajectory)
-        hands = find_held_hands(poses, trajectory)
-        return condense(replace(trajectory, hands=hands) if hands else trajectory)
+        """Condense a query, with the hands that the language needs: held ones, moving ones."""
+        if self._reads_hands:
+            trajectory = replace(trajectory, hands=find_held_hands(poses, trajectory))
+        if self._reads_moving_hands:
+            trajectory = replace(trajectory, moving_hands=find_moving_hands(poses))
+        return condense(trajectory)
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
         """Recognise the gesture in a `query`.
@@ -185,7 +208,7 @@ class Recognizer:
         return self.vote.landmarks
 
     def sensitivity(self, label: str) -> Sensitivity | None:
-        """Return whether a gesture's direction, tempo and sides count in this language.
+        """Return what counts of a gesture in this language: direction, tempo, sides, hand shape.
 
         None in profile ``paper`` and for gestures imported without demonstration: there only
         drawings are compared, whatever the switches are.

@@ -18,6 +18,7 @@ from languages.render.cast import (
     CLIPS,
     DIVERS,
     POSED_CLIPS,
+    SHAPED_CLIPS,
     SIGN_CLIPS,
     TESTS_OF_SIGNS,
     WATERS,
@@ -118,7 +119,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the clips")
     parser.add_argument("--truth", type=Path, help="folder for where the hands truly are, as JSON")
     arguments = parser.parse_args()
-    known = {clip.name: clip for clip in (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS)}
+    every = (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS, *SHAPED_CLIPS)
+    known = {clip.name: clip for clip in every}
     if unknown := set(arguments.names) - known.keys():
         parser.error(
             f"no clip is called {', '.join(sorted(unknown))}; see languages/render/cast.py"

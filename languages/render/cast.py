@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from languages.render.gear import Kit
 from languages.render.performance import Manner
@@ -359,3 +359,25 @@ POSED_CLIPS = (
 )
 """Divers in mittens who hold the left forearm across the belly instead of a salute, for the tests
 of triggers; in the last one, the left hand on the head ends the take."""
+
+
+def _shaped(hand: str, take: int, who: str, where: str, view: View, manner: Manner) -> Clip:
+    name = f"circle-by-{hand}-{take}"
+    return Clip(name, "circle", who, where, view, replace(manner, hand=hand), 400 + take)
+
+
+_BESIDE = View(1.62, yaw=10, aim=(0.05, -0.05))
+_OBLIQUE = View(1.72, yaw=-12, aim=(0.06, -0.04))
+_QUICK = Manner(tempo=1.15, size=0.85, aspect=1.08, tilt=-6, wobble=0.03)
+_SMALL = Manner(size=0.9)
+
+SHAPED_CLIPS = (
+    _shaped("fist", 1, "instructor", "lagoon", UPPER_BODY, Manner(wobble=0.01)),
+    _shaped("flat", 1, "instructor", "lagoon", UPPER_BODY, Manner(wobble=0.01)),
+    _shaped("fist", 2, "biologist", "reef", _BESIDE, _QUICK),
+    _shaped("flat", 2, "biologist", "reef", _BESIDE, _QUICK),
+    _shaped("two", 2, "biologist", "reef", _BESIDE, _QUICK),
+    _shaped("fist", 3, "engineer", "pool", _OBLIQUE, _SMALL),
+    _shaped("flat", 3, "engineer", "pool", _OBLIQUE, _SMALL),
+)
+"""One movement with several hand shapes, for tests alone; the first two demonstrate it."""

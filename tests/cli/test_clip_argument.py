@@ -4,8 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.clip_argument import Demonstration, clip_and_span, parse_demonstrations
-from app.recognition import GestureError
+from app.cli.clip_argument import (
+    Demonstration,
+    clip_and_span,
+    describe_shown,
+    parse_demonstrations,
+)
+from app.recognition import Gesture, GestureError
+from tests.recognition.held_takes import FIST, hold
+from tests.recognition.moving_takes import circle, draw, without_hands
 
 
 def test_a_demonstration_is_a_label_and_a_clip() -> None:
@@ -53,3 +60,13 @@ def test_a_bag_whose_name_has_a_comma_is_taken_as_it_is(tmp_path: Path) -> None:
 def test_what_is_no_demonstration_is_refused_with_an_example(text: str) -> None:
     with pytest.raises(GestureError, match="LABEL=CLIP"):
         parse_demonstrations(text)
+
+
+def test_what_a_gesture_is_made_of_is_told() -> None:
+    drawn = draw(FIST, circle())
+    for poses, words in (
+        (hold(FIST), "held hand shape: right hand"),
+        (drawn, "salient: right_wrist; hand shape seen: right hand"),
+        (without_hands(drawn), "salient: right_wrist"),
+    ):
+        assert describe_shown(Gesture.from_demonstration("fist", poses)) == words

@@ -11,7 +11,6 @@ from app.api.http.schemas.gestures import (
     GestureChange,
     GestureDraft,
     NewDemonstration,
-    SwitchPosition,
 )
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.studio import Studio
@@ -60,7 +59,7 @@ def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
         command=draft.command,
         diver=draft.diver,
     )
-    switches = set_switches(gesture.switches, draft.direction, draft.tempo, draft.mirror)
+    switches = set_switches(gesture.switches, draft)
     return replace(gesture, switches=switches)
 
 
@@ -110,18 +109,14 @@ def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language
     return language
 
 
-def set_switches(
-    switches: Switches,
-    direction: SwitchPosition | None,
-    tempo: SwitchPosition | None,
-    mirror: SwitchPosition | None,
-) -> Switches:
+def set_switches(switches: Switches, wanted: GestureDraft | GestureChange) -> Switches:
     """Return switches of which those are changed that are not None."""
     return replace(
         switches,
-        direction=direction or switches.direction,
-        tempo=tempo or switches.tempo,
-        mirror=mirror or switches.mirror,
+        direction=wanted.direction or switches.direction,
+        tempo=wanted.tempo or switches.tempo,
+        mirror=wanted.mirror or switches.mirror,
+        hand_shape=wanted.hand_shape or switches.hand_shape,
     )
 
 
@@ -166,7 +161,7 @@ def change_gesture_of(
         changed = show(gesture, demonstration, change.salient or None, diver)
     elif change.salient:
         changed = _set_salient(gesture, change.salient)
-    switches = set_switches(changed.switches, change.direction, change.tempo, change.mirror)
+    switches = set_switches(changed.switches, change)
     changed = replace(changed, switches=switches, **fields)
     if changed.label != gesture.label:
         language = language.renamed(gesture.label, changed.label)  # and in its phrases

@@ -86,6 +86,7 @@ def view_gesture(
         direction=switches.direction,
         tempo=switches.tempo,
         mirror=switches.mirror,
+        hand_shape=switches.hand_shape,
         label=gesture.label,
         description=gesture.description,
         command=gesture.command,

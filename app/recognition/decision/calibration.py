@@ -19,6 +19,7 @@ from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     describe_movement,
 )
+from app.recognition.decision.moving_shapes import OTHER_SHAPE, SAME_MOVEMENT
 from app.recognition.decision.rejection import (
     CLEAR_SHARE,
     build_novelty_weights,
@@ -26,6 +27,7 @@ from app.recognition.decision.rejection import (
     measure_novelty,
 )
 from app.recognition.gestures.gesture import Gesture, Rates
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.negatives import draw_negatives
@@ -87,6 +89,9 @@ HAND_RULE = repr(
 )
 """What thresholds of held hand shapes depend on beside the hands."""
 
+MOVING_HAND_RULE = repr((HAND_RULE, SAME_MOVEMENT, OTHER_SHAPE))
+"""What thresholds of moving hands depend on beside the hands."""
+
 RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"], CLEAR_SHARE))
 """What thresholds depend on beside the gestures; those of another rule are computed again."""
 
@@ -127,16 +132,29 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
-        else replace(gesture, thresholds=_choose_hand_thresholds(gesture.trajectory), rates=None)
+        else replace(
+            gesture, thresholds=_choose_hand_thresholds(gesture.trajectory.hands), rates=None
+        )
         if gesture.trajectory.hands
-        else _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others)
+        else _add_hand_thresholds(
+            _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others),
+            vote.find_counting_hands(index),
+        )
         for index, (gesture, others) in enumerate(zip(gestures, negatives.T, strict=True))
     )
 
 
-def _choose_hand_thresholds(shown: Trajectory) -> dict[str, float]:
-    """Return the thresholds of a held hand shape by its first demonstration."""
-    palm = float(np.mean([hand.palm for hand in shown.hands]))
+def _add_hand_thresholds(gesture: Gesture, hands: Sequence[HandShape]) -> Gesture:
+    """Return a movement with thresholds for its hand shape; as it is where that does not count."""
+    if not hands:
+        return gesture
+    thresholds = {**gesture.thresholds, **_choose_hand_thresholds(hands)}
+    return replace(gesture, thresholds=thresholds)
+
+
+def _choose_hand_thresholds(hands: Sequence[HandShape]) -> dict[str, float]:
+    """Return the thresholds of the hand shapes of a first demonstration."""
+    palm = float(np.mean([hand.palm for hand in hands]))
     reach = HAND_REACH * (palm / TYPICAL_PALM) ** PALM_EXPONENT
     return {voter.name: float(f"{reach * voter.within:.{DIGITS}g}") for voter in HAND_VOTERS}
 

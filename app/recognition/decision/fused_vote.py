@@ -20,6 +20,7 @@ from app.recognition.decision.motion_references import (
     find_tempo_dependent,
     find_unambiguous_traversals,
 )
+from app.recognition.decision.moving_shapes import WEIGHT, MovingShapes, weigh_shapes
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
     HAND_CUE_GROUP,
@@ -37,6 +38,7 @@ from app.recognition.decision.virtual_views import View, Views
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
@@ -128,6 +130,7 @@ class FusedVote:
         self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._hands = HandReferences.of(sides, self._owners)
+        self._moving_shapes = MovingShapes.of(sides, self._owners)
         self._least_movement = find_least_movement(
             gesture.trajectory
             for gesture in sides
@@ -169,6 +172,7 @@ class FusedVote:
         self._tempo = find_tempo_dependent(
             self._motions, own, *self._of_motion, sides, self._owners
         )
+        self._moving_shapes = self._moving_shapes.with_twins(sides, self._compare_movements_of(own))
         free = [
             owner
             for owner, gesture in zip(self._owners, sides, strict=True)
@@ -177,6 +181,14 @@ class FusedVote:
         kept = find_unambiguous_traversals(self._motions, own, *self._of_motion, self._owners, free)
         self._motions = self._motions.take(kept)
 
+    def _compare_movements_of(self, own: FloatArray) -> FloatArray:
+        """Return the scores of the references' movements as shown, ``(S, S)``; infinite: none."""
+        rows = self._motions.as_shown
+        scores = np.full((len(self._owners), len(self._owners)), np.inf)
+        members = self._motions.gestures[rows]
+        scores[np.ix_(members, members)] = fuse(own[:, :, rows], *self._of_motion)
+        return scores
+
     def _needs_drawings(self) -> bool:
         """Return whether a gesture has only a drawing, or the tuning raises a shape voter."""
         with_movement = set(self._motions.gestures.tolist())
@@ -184,7 +196,7 @@ class FusedVote:
         return bool(raised) or not with_movement.issuperset(self._shapes.members)
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return whether a gesture's direction, tempo and sides count; None without movement."""
+        """Return what counts of a gesture; None without movement."""
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
@@ -193,7 +205,22 @@ class FusedVote:
             direction=not any(traversal.backward for traversal in traversals),
             tempo=bool(self._tempo[gesture]),
             sides=not any(traversal.exchanged for traversal in traversals),
+            hand_shape=bool(self._moving_shapes.counting[self._owners == gesture].any()),
         )
+
+    @property
+    def shape_twins(self) -> frozenset[tuple[int, int]]:
+        """Pairs of gestures that are one movement with two hand shapes that both count."""
+        return self._moving_shapes.twins
+
+    def find_counting_hands(self, gesture: int) -> tuple[HandShape, ...]:
+        """Return the hands of a gesture's movement whose shape counts, of one demonstration.
+
+        The first one in which they are known; none where their shape does not count.
+        """
+        counting = self._moving_shapes.counting & (self._owners == gesture)
+        first = np.flatnonzero(counting)[:1].tolist()
+        return tuple(hand for row in first for hand in self._moving_shapes.shapes[row].values())
 
     @property
     def landmarks(self) -> tuple[str, ...]:
@@ -216,8 +243,12 @@ class FusedVote:
         weights = self._weights.copy()
         if self._tempo.any():
             weights[_TEMPO] += Tempo.weight_where_needed
+        names = VOTER_NAMES
+        if self._moving_shapes.any_counts:
+            names = _ALL_NAMES
+            weights = np.append(weights, np.full(len(HAND_VOTER_NAMES), WEIGHT / 2))
         normalized = (weights / weights.sum()).tolist()
-        return MappingProxyType(dict(zip(VOTER_NAMES, normalized, strict=True)))
+        return MappingProxyType(dict(zip(names, normalized, strict=True)))
 
     @property
     def between(self) -> dict[str, float]:
@@ -263,6 +294,7 @@ class FusedVote:
         other._tempo = self._tempo[sides]
         other._thresholds = self._thresholds[:, sides]
         other._hands = self._hands.take(sides)
+        other._moving_shapes = self._moving_shapes.take(sides, other._owners)
         other._hand_thresholds = self._hand_thresholds[:, sides]
         other._views = other._prepare_views()
         return other
@@ -288,7 +320,9 @@ class FusedVote:
         held = self._compare_hands(trajectory) if trajectory.hands else None
         if held is not None and measure_movement(trajectory) < self._least_movement:
             return held
-        moved = self._add_hand_voters(self._compare_movements(trajectory, drawn))
+        moved = self._compare_movements(trajectory, drawn)
+        if not self._moving_shapes.any_counts:
+            moved = self._add_hand_voters(moved)
         if held is None or not is_rejected(_measure_novelty(moved)):
             return moved
         return min(held, moved, key=_measure_novelty)
@@ -309,9 +343,7 @@ class FusedVote:
         distances[len(VOTERS) :] = sides.take(chosen, axis=1)
         contributions[len(VOTERS) :] = shares.take(chosen, axis=1)
         novelty = np.full((len(CUE_GROUPS) + 1, len(chosen)), np.nan)
-        novelty[-1] = measure_group_novelties(
-            sides, self._hand_thresholds, np.ones((1, len(HAND_VOTER_NAMES)))
-        )[0, chosen]
+        novelty[-1] = self._hand_novelty(sides)[chosen]
         return ScoreTable(
             voters=_ALL_NAMES,
             distances=distances,
@@ -351,10 +383,19 @@ class FusedVote:
             slower = self._tempo & np.isfinite(distances[_TEMPO])
             shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
             scores = shares.sum(axis=0)
+        voters, novelty = VOTER_NAMES, factors * self._novelty_by_view(distances)
         compared = scores + turned
+        hand_novelty = np.empty((0, len(rows)))
+        if self._moving_shapes.any_counts:
+            voters = _ALL_NAMES
+            hands = self._compare_moving_hands(trajectory, rows, compared)
+            distances = np.concatenate([distances, hands])
+            shares = np.concatenate([shares, weigh_shapes(hands)])
+            compared = shares.sum(axis=0) + turned
+            hand_novelty = self._hand_novelty(hands)[None]
         chosen = self._sides_nearest(compared)
         return ScoreTable(
-            voters=VOTER_NAMES,
+            voters=voters,
             distances=distances.take(chosen, axis=1),
             contributions=shares.take(chosen, axis=1),
             turned=turned[chosen],
@@ -365,9 +406,41 @@ class FusedVote:
             demonstrations=self._shown.demonstrations[chosen],
             views=view.turns[chosen],
             facing=trajectory.facing,
-            novelty_by_view=(factors * self._novelty_by_view(distances)).take(chosen, axis=1)
-            * measure_clearness(compared[chosen]),
+            novelty_by_view=np.concatenate(
+                [
+                    novelty.take(chosen, axis=1) * measure_clearness(compared[chosen]),
+                    hand_novelty.take(chosen, axis=1),
+                ]
+            ),
         )
+
+    def _compare_moving_hands(
+        self, trajectory: Trajectory, rows: npt.NDArray[np.intp], scores: FloatArray
+    ) -> FloatArray:
+        """Return the hand voters' distances ``(2, sides)`` of a movement.
+
+        Parameters
+        ----------
+        trajectory
+            The query.
+        rows, scores
+            ``(sides,)``: the nearest traversals, -1: none, and their scores; infinite scores where
+            a movement is not comparable.
+
+        """
+        traversals = self._motions.traversals
+        exchanged = [row >= 0 and traversals[row].exchanged for row in rows.tolist()]
+        found = self._moving_shapes.distances(
+            trajectory.moving_hands, np.array(exchanged, dtype=bool)
+        )
+        found[:, ~np.isfinite(scores)] = np.inf
+        return found
+
+    def _hand_novelty(self, distances: FloatArray) -> FloatArray:
+        """Return the novelties ``(sides,)`` of hand voters' distances; NaN without thresholds."""
+        weights = np.ones((1, len(HAND_VOTER_NAMES)))
+        novelty: FloatArray = measure_group_novelties(distances, self._hand_thresholds, weights)[0]
+        return novelty
 
     def fuse(self, distances: FloatArray) -> FloatArray:
         """Return the scores of distances ``(V, N)`` by the language's weights, ``(N,)``."""
@@ -429,16 +502,15 @@ class FusedVote:
         )
 
     def _weights_in(self, compared: ScoreTable) -> Mapping[str, float]:
-        """Return the voters' weights in a decision: of the movement, or of the hand voters."""
+        """Return the voters' weights in a decision: of the movement, or of the held hands."""
         if not len(self._hands):
             return self.weights
-        by_hand = bool(np.isfinite(compared.distances[len(VOTERS) :]).any())
+        by_hand = not np.isfinite(compared.distances[: len(VOTERS)]).any()
         shares = (self._hands.weights / self._hands.weights.sum()).tolist()
         of_hand = dict(zip(HAND_VOTER_NAMES, shares, strict=True))
-        return MappingProxyType(
-            {name: weight * (not by_hand) for name, weight in self.weights.items()}
-            | {name: weight * by_hand for name, weight in of_hand.items()}
-        )
+        if by_hand:
+            return MappingProxyType(dict.fromkeys(VOTER_NAMES, 0.0) | of_hand)
+        return MappingProxyType(dict.fromkeys(HAND_VOTER_NAMES, 0.0) | {**self.weights})
 
     def _compare_sides(
         self, view: View, trajectory: Trajectory, drawn: bool

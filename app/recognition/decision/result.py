@@ -45,7 +45,8 @@ class Recognition:
         Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
         gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
-        Repairs of the poses before recognition, as sentences with counts.
+        Repairs of the poses before recognition, as sentences with counts; and that no hand is seen
+        where the hand shape of `nearest` counts.
     fault
         Why the poses are too poor to recognise, in words; `label` is then None.
     scores

@@ -38,7 +38,7 @@ class Vote(Protocol):
         ...
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return whether direction, tempo and sides count; None without movement."""
+        """Return what counts of a gesture; None without movement."""
         ...
 
     def may_win(

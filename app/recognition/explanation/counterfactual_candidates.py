@@ -165,9 +165,12 @@ def _other_salient(gesture: Gesture, moved: set[str]) -> Series:
 def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
     """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
-    Only switches that affect this recognition: direction, mirror image or tempo.
+    Only switches that affect this recognition: direction, tempo, mirror image or hand shape.
     """
     table, at = context.score_table, context.language.labels.index(label)
+    gesture, counting = context.language.gesture(label), context.recognizer.sensitivity(label)
+    shaped = any(each.moving_hands for each in gesture.trajectories)
+    shape_counts = counting is not None and counting.hand_shape
     traversal = table.traversals[at]
     slower = table.distances[table.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
@@ -175,8 +178,8 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
         "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
         "mirror": ("on" if expected else "off", bool(table.mirrored[at]) != expected),
+        "hand_shape": (strict, shaped and shape_counts == expected),
     }
-    switches = context.language.gesture(label).switches
     for switch, (position, matters) in positions.items():
-        if matters and getattr(switches, switch) != position:
+        if matters and getattr(gesture.switches, switch) != position:
             yield [SwitchPosition(size=1 / 3, label=label, switch=switch, position=position)]

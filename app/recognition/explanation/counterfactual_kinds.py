@@ -18,9 +18,9 @@ from app.recognition.gestures.tuning import (
     describe_simplification,
     describe_weight,
 )
-from app.recognition.text.wording import humanize_all, join_words
+from app.recognition.text.wording import humanize, humanize_all, join_words
 
-SwitchName = Literal["direction", "tempo", "mirror"]
+SwitchName = Literal["direction", "tempo", "mirror", "hand_shape"]
 
 Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
@@ -182,7 +182,7 @@ class SalientKeypoints(Intervention):
 
 @dataclass(frozen=True, kw_only=True)
 class SwitchPosition(Intervention):
-    """Another position of one of a gesture's three switches; its size is a third."""
+    """Another position of one of a gesture's switches; its size is a third."""
 
     kind = "switch"
     reach = "gesture"
@@ -193,7 +193,7 @@ class SwitchPosition(Intervention):
     @property
     def words(self) -> str:
         """See `Intervention`."""
-        return f"with the switch {self.switch} of {self.label!r} {self.position}"
+        return f"with the switch {humanize(self.switch)} of {self.label!r} {self.position}"
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Intervention`."""

@@ -30,7 +30,8 @@ Kind = Literal[
 ]  # fmt: skip
 """Kinds: left and right exchanged by the pose model; opposite direction; other hand; mirror image;
 a part missing or added; another shape; slower or quicker; another place beside the body; larger or
-smaller; another bend of the wrist; not seen for a while; a finger or the turn of a held hand."""
+smaller; another bend of the wrist; not seen for a while; a finger, or the turn of a held
+hand."""
 
 DIFFERENT = 2 * ALIKE
 """Least path distance of a difference: twice that of two people's takes of one figure. A third of
@@ -69,8 +70,8 @@ class Difference:
         See `Kind`.
     share
         In [0, 1]: the part of the path distance, beyond that between takes of one figure, that
-        undoing it removes; 0 for differences that change no path: tempo, place, size, the wrist,
-        not seen.
+        undoing it removes, of a hand shape of the distance between the shapes; 0 for differences
+        that change no path: tempo, place, size, the wrist, not seen.
     landmark
         The landmark that differs most; None: all of them.
     start, end

@@ -21,7 +21,10 @@ from app.recognition.explanation.counterfactual_search import (
     find_counterfactuals,
 )
 from app.recognition.explanation.differences import Difference, find_differences
-from app.recognition.explanation.hand_differences import find_hand_differences
+from app.recognition.explanation.hand_differences import (
+    find_hand_differences,
+    find_moving_hand_differences,
+)
 from app.recognition.explanation.pairing import Pairing
 from app.recognition.explanation.sentence import write_sentence
 from app.recognition.explanation.vote_breakdown import break_down_votes
@@ -159,6 +162,8 @@ class _Pairings:
         self._start = float(context.poses.time[0])
         self._landmarks = context.recognizer.landmarks
         self._query = context.trajectory
+        counting = map(context.recognizer.sensitivity, context.language.labels)
+        self._counts = [each is not None and each.hand_shape for each in counting]
 
     def alignments(self, index: int) -> Iterator[Alignment]:
         """Yield alignments of the query with a gesture, if both have a movement."""
@@ -186,7 +191,22 @@ class _Pairings:
             mirrored=example.mirrored,
             start=self._start,
         )
-        return () if pairing is None else find_differences(pairing, sees_direction=self._full)
+        if pairing is None:
+            return ()
+        found = find_differences(pairing, sees_direction=self._full)
+        return (*found, *self._compare_moving_hands(index, mirrored=example.mirrored))
+
+    def _compare_moving_hands(self, index: int, *, mirrored: bool) -> tuple[Difference, ...]:
+        """Return how the moving hands differ from those of a gesture whose hand shape counts."""
+        gesture = self._gesture(index)
+        if gesture.trajectory is None or not self._counts[index]:
+            return ()
+        shown = gesture.trajectory.mirror() if mirrored else gesture.trajectory
+        if not shown.moving_hands:
+            return ()
+        return find_moving_hand_differences(
+            gesture.label, self._query.moving_hands, shown.moving_hands
+        )
 
     def _gesture(self, index: int) -> Gesture:
         return self._table.find_nearest_demonstration(self._gestures, index)

@@ -1,4 +1,4 @@
-"""Hand differences: how a held hand differs from the expected shape, finger by finger.
+"""Hand differences: how a hand differs from the expected shape, finger by finger.
 
 Each is tested by undoing it, as in `differences`: the finger is replaced by that of the
 demonstration, or the hand turned back, and the voters compare again.
@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from app.recognition.decision.moving_shapes import OTHER_SHAPE, measure_shapes
 from app.recognition.explanation.differences import Difference
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
@@ -72,6 +73,53 @@ def find_hand_differences(
         if share >= LEAST_SHARE
     ]
     return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+
+
+def find_moving_hand_differences(
+    label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
+) -> tuple[Difference, ...]:
+    """Find how the moving hands of a query differ from those of a gesture whose shape counts.
+
+    Parameters
+    ----------
+    label
+        The gesture's.
+    hands
+        The query's moving hands.
+    shown
+        The gesture's, at least one.
+
+    Returns
+    -------
+    The fingers of the hand that differs more, the largest share first; nothing where the shapes
+    are not clearly different. One difference of share 0 where no hand can be compared.
+
+    """
+    seen = {hand.side: hand for hand in hands}
+    known = {hand.side: hand for hand in shown}
+    apart = {side: measure_shapes(seen, {side: hand}) for side, hand in known.items()}
+    worst = max((side for side in apart if side in seen), key=apart.__getitem__, default=None)
+    if worst is None:
+        words = "no hand is seen for long enough that keeps a shape, so that shapes do not count"
+        return (_difference(0.0, words),)
+    if apart[worst] <= OTHER_SHAPE:
+        return ()
+    example = known[worst]
+    either = [_turn_to(hand, example) for hand in (seen[worst], seen[worst].mirror())]
+    query = min(either, key=lambda hand: measure_distance(hand, example))
+    whole = measure_distance(query, example)
+    found = [
+        _difference(share, words)
+        for share, words in _fingers(query, example, whole, label)
+        if share >= LEAST_SHARE
+    ]
+    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+
+
+def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
+    """Return a hand turned in the image to where it fits another one best."""
+    one, other = (each.xy[:, 0] + 1j * each.xy[:, 1] for each in (hand, example))
+    return hand.turn(float(np.degrees(np.angle(one.conj() @ other))))
 
 
 def _difference(share: float, words: str) -> Difference:

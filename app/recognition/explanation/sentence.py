@@ -7,6 +7,7 @@ import math
 from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.differences import Difference
 from app.recognition.text.wording import humanize_all, join_words
+from app.recognition.voters.registry import HAND_VOTER_NAMES
 
 MOST_VOTERS_NAMED = 3
 """Voters named in a sentence; the table has all."""
@@ -96,9 +97,19 @@ def _opposing_voters(analysis: Analysis) -> list[str]:
 def _cause(analysis: Analysis) -> Difference | None:
     """Return the difference that explains most, if any does."""
     strongest = analysis.verdicts[0].voter if analysis.verdicts else ""
-    kinds = {"tempo": "tempo", "posture": "place"}
+    kinds = {"tempo": "tempo", "posture": "place"} | dict.fromkeys(HAND_VOTER_NAMES, "hand_shape")
     causes = [each for each in analysis.differences if each.kind == kinds.get(strongest)]
-    causes += [each for each in analysis.differences if each.share > 0]
+    # A hand shape is no reason for what the movement decided.
+    shaped = (
+        strongest in HAND_VOTER_NAMES
+        or analysis.nearest == analysis.expected
+        or not math.isfinite(analysis.score)
+    )
+    causes += [
+        each
+        for each in analysis.differences
+        if each.share > 0 and (shaped or each.kind != "hand_shape")
+    ]
     return causes[0] if causes else None
 
 

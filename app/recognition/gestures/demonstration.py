@@ -22,6 +22,7 @@ from app.recognition.preprocessing.held_hands import (
     find_second_shape,
     rests_between_ends,
 )
+from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -160,6 +161,7 @@ class Demonstration:
                 f"gesture again in view of the camera, or choose another range of the clip"
             )
         kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
+        kept = replace(kept, moving_hands=find_moving_hands(seen, list_moving_sides(names)))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
             _refuse_two_shapes(label, seen, SIDES)
@@ -215,7 +217,9 @@ class Demonstration:
 
         """
         chosen = choose_landmarks(self.trajectory, salient)
-        moving = replace(self.trajectory, hands=()) if self.is_held else self.trajectory
+        sides = list_moving_sides(chosen)
+        hands = tuple(hand for hand in self.trajectory.moving_hands if hand.side in sides)
+        moving = replace(self.trajectory, hands=(), moving_hands=hands)
         return replace(self, salient=chosen, trajectory=moving).redraw()
 
     def redraw(self, simplification: float = SIMPLIFICATION) -> Demonstration:

@@ -1,4 +1,4 @@
-"""Switches: whether a gesture's direction, tempo and mirror image count, as its author chooses."""
+"""Switches: whether direction, tempo, mirror image and hand shape count, as the author chooses."""
 
 from __future__ import annotations
 
@@ -26,6 +26,10 @@ class Switches:
         ``on``: its mirror image, with the other hand, is the same gesture. ``auto``, ``off``: it
         is not. ``off`` also refuses two-handed gestures with exchanged sides, which ``auto``
         accepts where no other gesture of the language is meant by that.
+    hand_shape
+        Whether the shape of the moving hand counts. ``auto``: if another gesture of the language
+        is the same movement with a clearly different hand shape. Of a held hand shape it always
+        does.
 
     Raises
     ------
@@ -37,6 +41,7 @@ class Switches:
     direction: Switch = "auto"
     tempo: Switch = "auto"
     mirror: Switch = "auto"
+    hand_shape: Switch = "auto"
 
     def __post_init__(self) -> None:
         """Validate the values."""
@@ -50,7 +55,7 @@ AUTOMATIC = Switches()
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:
-    """Whether a gesture's direction, tempo and sides count in its language, with `auto` resolved.
+    """What counts of a gesture in its language, with `auto` resolved.
 
     Attributes
     ----------
@@ -60,9 +65,12 @@ class Sensitivity:
         Whether its duration counts.
     sides
         Whether exchanged left and right are refused.
+    hand_shape
+        Whether the shape of the moving hand counts.
 
     """
 
     direction: bool
     tempo: bool
     sides: bool
+    hand_shape: bool

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -140,6 +140,7 @@ def check_health(
     ]
     explained = {label for finding in findings for label in finding.gestures}
     findings += _gesture_findings(language, gestures, explained)
+    findings += _twin_findings(recognizer, pairs)
     findings += [
         each for health in gestures for each in find_blind_angles(health.label, health.angles)
     ]
@@ -313,6 +314,25 @@ def _pair_findings(
         )
         findings.append(Finding("more_confused", (), message, below_bar=True))
     return findings
+
+
+def _twin_findings(recognizer: Recognizer, pairs: Sequence[PairHealth]) -> Iterator[Finding]:
+    """Yield a note for every two gestures that the hand shape alone tells apart."""
+    vote = recognizer.vote
+    assert isinstance(vote, FusedVote)  # the check is by profile full
+    labels = recognizer.language.labels
+    twins = {frozenset(labels[index] for index in pair) for pair in vote.shape_twins}
+    for pair in pairs:
+        if frozenset(pair.gestures) not in twins or pair.confusion is None:
+            continue
+        first, second = pair.gestures
+        yield Finding(
+            "hand_shape_only",
+            pair.gestures,
+            f"{first} and {second} are the same movement, told apart by the hand shape alone: "
+            f"{pair.confusion.words} are confused where the hand is seen, and where it is not, the "
+            "robot cannot tell them",
+        )
 
 
 def _neighbours_finding(count: int, compared: int) -> Finding:

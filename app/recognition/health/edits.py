@@ -102,7 +102,7 @@ def list_edits(gesture: Gesture, *, stroke: tuple[float, float] | None = None) -
 def list_switch_edits(first: Gesture, second: Gesture) -> list[GestureEdit]:
     """Return the switches that may separate two gestures without changing their movements."""
     both = f"{first.label} and {second.label}"
-    return [
+    edits = [
         GestureEdit(
             "direction",
             first.label,
@@ -118,6 +118,24 @@ def list_switch_edits(first: Gesture, second: Gesture) -> list[GestureEdit]:
             both=lambda each: set_switch(each, tempo=True),
         ),
     ]
+    if all(map(let_hand_shape_count, (first, second))):
+        edits.append(
+            GestureEdit(
+                "hand_shape",
+                first.label,
+                f"let the hand shape of {both} count",
+                let_hand_shape_count,
+                both=let_hand_shape_count,
+            )
+        )
+    return edits
+
+
+def let_hand_shape_count(gesture: Gesture) -> Gesture | None:
+    """Return a gesture whose hand shape counts; None where no demonstration shows one."""
+    if not any(each.moving_hands for each in gesture.trajectories):
+        return None
+    return replace(gesture, switches=replace(gesture.switches, hand_shape="on"))
 
 
 def swap_hands(gesture: Gesture) -> Gesture | None:

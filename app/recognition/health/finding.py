@@ -43,8 +43,9 @@ class Finding:
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
         ``one_diver``, ``blind_angle``, ``known_sign``, ``unrejecting``, ``more_confused``,
-        ``neighbours_only``, ``untriggered``, ``trigger_missed``, ``trigger_accidental``,
-        ``trigger_like``, ``trigger_passed``, ``empty``, and of the grammar ``phrases_`` with one of
+        ``neighbours_only``, ``hand_shape_only``, ``hand_unseen``, ``untriggered``,
+        ``trigger_missed``, ``trigger_accidental``, ``trigger_like``, ``trigger_passed``,
+        ``empty``, and of the grammar ``phrases_`` with one of
         `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures concerned; none for phrases.
@@ -109,6 +110,13 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
                 f"{name} of {gesture.label} was seen in {seen:.0%} of its demonstration: film it "
                 "again with the hand in view",
             )
+    if gesture.switches.hand_shape == "on" and not shown.moving_hands:
+        yield Finding(
+            "hand_unseen",
+            label,
+            f"no hand is seen in the demonstration of {gesture.label} that keeps a shape, so that "
+            "its hand shape cannot count: film it again with the hand in view",
+        )
     if salutes and (held := find_longest_held_up(shown)) >= HOLD_SECONDS:
         yield Finding(
             "salute_like",

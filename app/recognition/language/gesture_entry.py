@@ -47,6 +47,7 @@ def gesture_to_entry(gesture: Gesture) -> GestureEntry:
         direction=gesture.switches.direction,
         tempo=gesture.switches.tempo,
         mirror=gesture.switches.mirror,
+        hand_shape=gesture.switches.hand_shape,
         diver=gesture.diver,
         demonstrations=[_demonstration_entry(each) for each in gesture.further],
     )
@@ -85,7 +86,12 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
         rates=None if rates is None else Rates(miss=rates.miss, false_alarm=rates.false_alarm),
         description=entry.description,
         command=entry.command,
-        switches=Switches(direction=entry.direction, tempo=entry.tempo, mirror=entry.mirror),
+        switches=Switches(
+            direction=entry.direction,
+            tempo=entry.tempo,
+            mirror=entry.mirror,
+            hand_shape=entry.hand_shape,
+        ),
         diver=_diver(entry.diver, pointer),
         further=tuple(
             _demonstration(each, pointer + build_pointer("demonstrations", index))
@@ -134,11 +140,13 @@ def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
             )
             for index, name in enumerate(trajectory.landmarks)
         ],
-        hands=[
-            HandEntry(side=hand.side, x=hand.xy[:, 0].tolist(), y=hand.xy[:, 1].tolist())
-            for hand in trajectory.hands
-        ],
+        hands=[_hand_entry(hand) for hand in trajectory.hands],
+        moving_hands=[_hand_entry(hand) for hand in trajectory.moving_hands],
     )
+
+
+def _hand_entry(hand: HandShape) -> HandEntry:
+    return HandEntry(side=hand.side, x=hand.xy[:, 0].tolist(), y=hand.xy[:, 1].tolist())
 
 
 def _without_nan(values: FloatArray) -> list[float | None]:
@@ -173,6 +181,7 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         unit=entry.unit,
         depth=np.array(depths, dtype=np.float64).T if has_depth else None,
         hands=_hands(entry.hands, pointer + "/hands"),
+        moving_hands=_hands(entry.moving_hands, pointer + "/moving_hands"),
     )
 
 
@@ -215,6 +224,11 @@ def _check_salient(salient: list[str], trajectory: Trajectory | None, pointer: s
         raise LanguageError(
             "a held hand shape has no salient landmarks, a movement no held hands",
             pointer + "/salient",
+        )
+    if not salient and trajectory is not None and trajectory.moving_hands:
+        raise LanguageError(
+            "without salient landmarks no hand moves",
+            pointer + build_pointer("trajectory", "moving_hands"),
         )
     if len(set(salient)) < len(salient):
         raise LanguageError("a landmark occurs twice", pointer + "/salient")

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 from zlib import crc32
 
-from app.recognition.decision.calibration import HAND_RULE, RULE, calibrate
+from app.recognition.decision.calibration import HAND_RULE, MOVING_HAND_RULE, RULE, calibrate
 from app.recognition.errors import LanguageError, OsgError
 from app.recognition.gestures.gesture import SETTINGS, Gesture
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
+from app.recognition.gestures.switches import Switches
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.file import name_file, read_content, read_document, write_document
 from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
@@ -151,14 +152,19 @@ class Language:
         checksum = crc32(RULE.encode())
         for gesture in self.gestures:
             for each in gesture.single_demonstrations():
-                relevant = (each.salient, each.switches, each.image.any())
-                checksum = crc32(repr(relevant).encode("utf-8", "surrogatepass"), checksum)
+                relevant = (
+                    f"({each.salient!r}, {_describe_switches(each.switches)}, {each.image.any()!r})"
+                )
+                checksum = crc32(relevant.encode("utf-8", "surrogatepass"), checksum)
                 if (shown := each.trajectory) is not None:
                     checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
                     checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
                     for hand in shown.hands:
                         checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
                         checksum = crc32(HAND_RULE.encode(), checksum)
+                    for hand in shown.moving_hands:
+                        checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
+                        checksum = crc32(MOVING_HAND_RULE.encode(), checksum)
             if gesture.further:
                 checksum = crc32(repr(len(gesture.further)).encode(), checksum)
         return f"{checksum:08x}"
@@ -344,3 +350,12 @@ def _moment(timestamp: str) -> datetime:
         return datetime.strptime(timestamp, TIMESTAMP).replace(tzinfo=timezone.utc)
     except ValueError as error:
         raise LanguageError(f"no such date and time: {timestamp!r}", "/created") from error
+
+
+def _describe_switches(switches: Switches) -> str:
+    """Describe the switches as for fingerprints of languages before `hand_shape` existed."""
+    positions = {**vars(switches)}
+    if positions["hand_shape"] == "auto":
+        del positions["hand_shape"]
+    words = ", ".join(f"{name}={position!r}" for name, position in positions.items())
+    return f"Switches({words})"

@@ -116,6 +116,14 @@ class TrajectoryEntry(_Model):
             "hand shape and has no salient landmarks. Left out in movements.",
         ),
     ] = []
+    moving_hands: Annotated[
+        list[HandEntry],
+        Field(
+            max_length=2,
+            description="The shapes of the hands that carry a movement, one or both. Left out "
+            "where none is seen for long enough, and in held hand shapes.",
+        ),
+    ] = []
 
 
 class RatesEntry(_Model):
@@ -216,6 +224,13 @@ class GestureEntry(_Model):
         Field(
             description="on: the mirror image, with the other hand, is the same gesture; auto, "
             "off: it is not. Left out when auto."
+        ),
+    ] = "auto"
+    hand_shape: Annotated[
+        Switch,
+        Field(
+            description="Whether the shape of the moving hand counts; auto: where another gesture "
+            "is the same movement with a clearly different hand shape. Left out when auto."
         ),
     ] = "auto"
     diver: Annotated[

@@ -60,6 +60,9 @@ class Trajectory:
     hands
         The hands that hold a shape, left then right (`find_held_hands`); empty where something
         moves or no hand is seen, and in demonstrations that are a movement.
+    moving_hands
+        The hands that keep a shape during a movement, left then right (`find_moving_hands`); empty
+        where none is seen for long enough, and where nobody asks for them.
 
     """
 
@@ -69,6 +72,7 @@ class Trajectory:
     unit: Unit
     depth: FloatArray | None = None
     hands: tuple[HandShape, ...] = ()
+    moving_hands: tuple[HandShape, ...] = ()
 
     @classmethod
     def from_poses(cls, poses: PoseSequence) -> Trajectory:
@@ -203,8 +207,13 @@ class Trajectory:
     def mirror(self) -> Trajectory:
         """Mirror left and right: x changes its sign, landmarks swap their sides."""
         names = tuple(other_side(name) for name in self.landmarks)
-        hands = tuple(hand.mirror() for hand in reversed(self.hands))
-        return replace(self, landmarks=names, xy=self.xy * (-1.0, 1.0) + 0.0, hands=hands)
+        return replace(
+            self,
+            landmarks=names,
+            xy=self.xy * (-1.0, 1.0) + 0.0,
+            hands=tuple(hand.mirror() for hand in reversed(self.hands)),
+            moving_hands=tuple(hand.mirror() for hand in reversed(self.moving_hands)),
+        )
 
     def recentre(self) -> Trajectory:
         """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""

@@ -154,7 +154,7 @@ def draw_variants(
     -------
     `count` trajectories with the demonstration's landmarks, unit and number of moments, from
     second 0 on. What does not move varies in tempo alone; a single moment does not vary. Of a
-    held hand shape the hands vary (`hand_variation`).
+    held hand shape the hands alone vary (`hand_variation`), of a movement those that move too.
 
     Raises
     ------
@@ -165,7 +165,13 @@ def draw_variants(
     if trajectory.hands:
         varied = vary_hands(trajectory.hands, max(count, 0), HAND_SPREADS[person], seed=seed)
         return tuple(replace(trajectory, hands=hands) for hands in varied)
-    return vary(trajectory, count, SPREADS[person], seed=seed)
+    made = vary(trajectory, count, SPREADS[person], seed=seed)
+    if not trajectory.moving_hands:
+        return made
+    shapes = vary_hands(trajectory.moving_hands, count, HAND_SPREADS[person], seed=seed)
+    return tuple(
+        replace(take, moving_hands=hands) for take, hands in zip(made, shapes, strict=True)
+    )
 
 
 def take_turns(performances: Sequence[Sequence[Trajectory]]) -> tuple[Trajectory, ...]:

@@ -456,6 +456,8 @@ export interface components {
             tempo?: ("auto" | "on" | "off") | null;
             /** Mirror */
             mirror?: ("auto" | "on" | "off") | null;
+            /** Hand Shape */
+            hand_shape?: ("auto" | "on" | "off") | null;
             /** Salient */
             salient?: string[] | null;
             /** Description */
@@ -531,6 +533,12 @@ export interface components {
              */
             mirror: "auto" | "on" | "off";
             /**
+             * Hand Shape
+             * @default auto
+             * @enum {string}
+             */
+            hand_shape: "auto" | "on" | "off";
+            /**
              * Description
              * @default
              */
@@ -597,6 +605,11 @@ export interface components {
              * @enum {string}
              */
             mirror: "auto" | "on" | "off";
+            /**
+             * Hand Shape
+             * @enum {string}
+             */
+            hand_shape: "auto" | "on" | "off";
             /**
              * Thumbnail
              * @description Path of its trajectory image, a PNG
@@ -1632,7 +1645,7 @@ export interface components {
             };
             /**
              * Findings
-             * @description What was repaired, in sentences
+             * @description What was repaired or not seen, in sentences
              */
             findings?: string[];
             /**

@@ -124,7 +124,7 @@ export type Intervention = { words: string } & (
 );
 
 /** What of a movement may count or not. */
-export type SwitchName = "direction" | "tempo" | "mirror";
+export type SwitchName = "direction" | "tempo" | "mirror" | "hand_shape";
 
 /** A change under which the take is recognised as expected. */
 export interface Counterfactual {

@@ -11,7 +11,7 @@ import { read } from "../languages/robot-command.js";
 /** @typedef {Partial<Omit<Gesture, "source">> & { demonstration?: Draft["clip"] }} Change */
 
 /** @type {SwitchName[]} */
-const SWITCHES = ["direction", "tempo", "mirror"];
+const SWITCHES = ["direction", "tempo", "mirror", "hand_shape"];
 
 /**
  * @param {unknown} one

@@ -1,6 +1,6 @@
 // The draft of a gesture: unsaved changes with their own undo, kept in localStorage.
 
-/** @import { Gesture } from "../core/types.d.ts" */
+/** @import { Gesture, SwitchName } from "../core/types.d.ts" */
 
 /**
  * A range of a clip, as the API takes it.
@@ -11,7 +11,7 @@
 /**
  * What is edited; no keypoints are those proposed, and no clip is the demonstration as saved.
  *
- * @typedef {Pick<Gesture, "label" | "description" | "direction" | "tempo" | "mirror"> & { command: string, salient: string[] | null, clip: Where | null }} Draft
+ * @typedef {Pick<Gesture, "label" | "description" | SwitchName> & { command: string, salient: string[] | null, clip: Where | null }} Draft
  */
 
 const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.

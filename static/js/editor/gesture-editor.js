@@ -108,13 +108,12 @@ function valuesOf({ language, gesture }) {
       direction: "auto",
       tempo: "auto",
       mirror: "auto",
+      hand_shape: "auto",
       clip: { clip_id: state.clip ?? "", start, end, keep_transit: false },
     };
   }
-  const { label, description, command, salient, direction, tempo, mirror, source } = gestureOf({
-    language,
-    gesture,
-  });
+  const shown = gestureOf({ language, gesture });
+  const { label, description, command, salient, direction, tempo, mirror, source } = shown;
   return {
     label,
     description,
@@ -123,6 +122,7 @@ function valuesOf({ language, gesture }) {
     direction,
     tempo,
     mirror,
+    hand_shape: shown.hand_shape,
     clip: source && isThere(source) ? demonstrationOf(source) : null,
   };
 }

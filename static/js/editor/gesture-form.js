@@ -47,6 +47,15 @@ const SWITCHES = [
       off: "Never mirrored, and sides are never exchanged",
     },
   },
+  {
+    name: "hand_shape",
+    title: "Hand shape",
+    words: {
+      auto: "Used where the language needs it",
+      on: "Only with the demonstrated hand shape",
+      off: "With any hand shape",
+    },
+  },
 ];
 
 /**

@@ -12,7 +12,7 @@ import { rateText } from "./rates.js";
 /** @import { Finding, Language, Remedy } from "../core/types.d.ts" */
 
 const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
-const SWITCHES = new Set(["direction", "tempo"]); // Remedies that need no new demonstration.
+const SWITCHES = new Set(["direction", "tempo", "hand_shape"]); // Remedies that need no new demonstration.
 
 /**
  * Let a switch of some gestures count; one undo takes it back.

@@ -41,6 +41,7 @@ class GestureDraft(NewDemonstration):
     direction: SwitchPosition = "auto"
     tempo: SwitchPosition = "auto"
     mirror: SwitchPosition = "auto"
+    hand_shape: SwitchPosition = "auto"
     description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] = ""
     command: Command = None
 
@@ -78,6 +79,7 @@ class GestureChange(Body):
     direction: SwitchPosition | None = None
     tempo: SwitchPosition | None = None
     mirror: SwitchPosition | None = None
+    hand_shape: SwitchPosition | None = None
     salient: Landmarks | None = None
     description: Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | None = None
     command: Command = None
@@ -122,6 +124,7 @@ class GestureView(BaseModel):
     direction: SwitchPosition
     tempo: SwitchPosition
     mirror: SwitchPosition
+    hand_shape: SwitchPosition
     thumbnail: str = Field(description="Path of its trajectory image, a PNG")
     has_trajectory: bool = Field(description="False when imported from a file that has none")
     source: SourceView | None = Field(

@@ -66,7 +66,9 @@ class RecognitionView(BaseModel):
     weights: dict[str, float] = Field(
         default_factory=dict, description="Each voter's normalised weight; 0: not counted"
     )
-    findings: list[str] = Field(default_factory=list, description="What was repaired, in sentences")
+    findings: list[str] = Field(
+        default_factory=list, description="What was repaired or not seen, in sentences"
+    )
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
     facing: float | None = Field(
         None, description="Degrees by which the diver is turned to the own left; null: not known"

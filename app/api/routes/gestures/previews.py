@@ -44,7 +44,7 @@ from app.recognition.voters.registry import PAPER_VOTERS
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture
 
-SWITCHES = ("direction", "tempo", "mirror")
+SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
 
 UNNAMED = "this gesture"
 """What messages call a gesture that has no label yet."""
@@ -60,6 +60,8 @@ BORDER = 40
 """Pixels around it: a head, of which only the middle is followed, is half as high."""
 
 HELD_WORDS = "it is a held hand shape, in which nothing moves"
+
+HELD_SHAPE_WORDS = "it is a held hand shape, which always counts"
 
 router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
 
@@ -226,7 +228,7 @@ class _Draft:
         made = Gesture.from_demonstration(
             self.label, self.demonstration.poses, salient=change.salient or None
         )
-        switches = set_switches(Switches(), change.direction, change.tempo, change.mirror)
+        switches = set_switches(Switches(), change)
         return self.of.with_gesture(replace(made, switches=switches))
 
     def gesture(self) -> Gesture:
@@ -315,6 +317,7 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
             "direction": counting.direction,
             "tempo": counting.tempo,
             "mirror": not sides_free,
+            "hand_shape": counting.hand_shape,
         }
     return {
         name: SwitchView(
@@ -327,7 +330,8 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
 def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, str]:
     """Say what each switch comes to in this language."""
     if gesture.is_held:
-        return {**dict.fromkeys(SWITCHES, HELD_WORDS), "mirror": _held_mirror_words(gesture)}
+        words = {"mirror": _held_mirror_words(gesture), "hand_shape": HELD_SHAPE_WORDS}
+        return {**dict.fromkeys(SWITCHES, HELD_WORDS), **words}
     if counting is None:
         only = "only its drawing is known, which looks the same either way"
         return dict.fromkeys(SWITCHES, only)
@@ -335,6 +339,7 @@ def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, s
         "direction": _direction_words(gesture, counting),
         "tempo": _tempo_words(gesture, counting),
         "mirror": _mirror_words(gesture, counting),
+        "hand_shape": _hand_shape_words(gesture, counting),
     }
 
 
@@ -362,6 +367,16 @@ def _mirror_words(gesture: Gesture, counting: Sensitivity) -> str:
     if not counting.sides:
         return "its mirror image is not read as it, but left and right may have been exchanged"
     return "its mirror image, with the other hand, is not read as it"
+
+
+def _hand_shape_words(gesture: Gesture, counting: Sensitivity) -> str:
+    if counting.hand_shape:
+        if gesture.switches.hand_shape == "on":
+            return "the hand must be seen and have this shape while it moves"
+        return "it counts, for another gesture is the same movement with another hand shape"
+    if gesture.switches.hand_shape == "on":
+        return "no hand is seen in the demonstration that keeps a shape: it cannot count"
+    return "it is read whatever shape the hand has"
 
 
 def _held_mirror_words(gesture: Gesture) -> str:

@@ -30,10 +30,19 @@ class HandVoter(Voter):
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the Euclidean distances at the best turn, ``(M,)`` between 0 and 2."""
+        return self.distances_turned(query, references, MOST_TURNED)
+
+    def distances_turned(
+        self, query: FloatArray, references: FloatArray, most_turned: float
+    ) -> FloatArray:
+        """Return the distances where a turn by up to `most_turned` degrees costs nothing.
+
+        Parameters and result as for `distances`.
+        """
         half = len(query) // 2
         own = query[:half] - 1j * query[half:]
         product = (references[:, :half] + 1j * references[:, half:]) @ own
-        turn = np.radians(MOST_TURNED)
+        turn = np.radians(most_turned)
         best = np.abs(product) * np.cos(np.maximum(np.abs(np.angle(product)) - turn, 0.0))
         energy = query @ query + np.vecdot(references, references)
         # A difference of nearly equal sums: rounding errors are set to 0.

@@ -199,10 +199,12 @@ def test_the_switches_of_a_gesture_can_be_set(
     client: httpx.Client, language_id: str, circle_clip: str
 ) -> None:
     (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
-    assert [gesture[name] for name in ("direction", "tempo", "mirror")] == ["auto"] * 3
+    names = ("direction", "tempo", "mirror", "hand_shape")
+    assert [gesture[name] for name in names] == ["auto"] * 4
     address = place(language_id, "circle")
-    (changed,) = client.patch(address, json={"direction": "off", "mirror": "on"}).json()["gestures"]
-    assert [changed[name] for name in ("direction", "tempo", "mirror")] == ["off", "auto", "on"]
+    change = {"direction": "off", "mirror": "on", "hand_shape": "off"}
+    (changed,) = client.patch(address, json=change).json()["gestures"]
+    assert [changed[name] for name in names] == ["off", "auto", "on", "off"]
     assert client.patch(address, json={"tempo": "fast"}).status_code == 422
 
 

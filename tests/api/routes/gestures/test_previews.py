@@ -162,7 +162,7 @@ def test_an_imported_drawing_has_an_image_and_no_keypoints_to_choose(
     assert_problem(client.get(place), 404, "no_demonstration")
 
 
-@pytest.mark.parametrize("switch", ["direction", "tempo", "mirror"])
+@pytest.mark.parametrize("switch", ["direction", "tempo", "mirror", "hand_shape"])
 def test_a_new_gesture_is_saved_with_its_switches(
     client: httpx.Client, language_id: str, circle_clip: str, switch: str
 ) -> None:
