@@ -88,8 +88,8 @@ class Recognizer:
         rejected where it is beyond its thresholds, see `rejection`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
-        still of insufficient quality get no label, and `fault` gives the reason. A hand that is not
-        seen, though its shape counts, is a finding; a fault where the switch is on.
+        still of insufficient quality get no label, and `fault` gives the reason. So do poses in
+        which no hand is seen though the hand shape of the nearest gesture counts.
 
         Raises
         ------
@@ -116,9 +116,7 @@ class Recognizer:
         result = self.decide(table)
         findings = repair.findings if repair else ()
         poor = self._fault(repair, table, result.nearest) if repair else None
-        if unseen := self._find_unseen_shape(table, result.nearest):
-            insists = self.language.gesture(result.nearest).switches.hand_shape == "on"
-            poor, findings = (poor or unseen, findings) if insists else (poor, (*findings, unseen))
+        poor = poor or self._find_unseen_shape(table, result.nearest)
         if poor or findings:
             label = None if poor else result.label
             result = replace(result, label=label, findings=findings, fault=poor)
@@ -143,10 +141,20 @@ class Recognizer:
         rows = [table.voters.index(voter) for voter in HAND_VOTER_NAMES]
         if np.isfinite(table.distances[rows, at]).all():
             return None
-        return (
-            f"the hand shape of {nearest!r} counts, and no hand is seen for long enough that "
-            f"keeps a shape"
-        )
+        unseen = "no hand is seen for long enough that keeps a shape"
+        if twins := self._list_twins(at):
+            names = " and ".join(map(repr, (nearest, *twins)))
+            return (
+                f"{names} are the same movement, told apart by the hand shape, and {unseen}: show "
+                f"the hand, or switch the hand shape off where it need not count"
+            )
+        return f"the hand shape of {nearest!r} counts, and {unseen}: show the hand"
+
+    def _list_twins(self, gesture: int) -> list[str]:
+        """Return the labels of the gestures that only the hand shape tells from one."""
+        pairs = sorted(pair for pair in self.vote.shape_twins if gesture in pair)
+        others = [other for pair in pairs for other in pair if other != gesture]
+        return [self.language.labels[other] for other in others]
 
     def query(self, poses: PoseSequence) -> Trajectory:
         """Return the trajectory that voters compare: repaired if the profile does, and normalised.

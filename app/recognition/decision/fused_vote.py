@@ -210,7 +210,7 @@ class FusedVote:
 
     @property
     def shape_twins(self) -> frozenset[tuple[int, int]]:
-        """Pairs of gestures that are one movement with two hand shapes that both count."""
+        """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
         return self._moving_shapes.twins
 
     def find_counting_hands(self, gesture: int) -> tuple[HandShape, ...]:

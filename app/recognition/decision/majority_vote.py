@@ -60,6 +60,11 @@ class MajorityVote:
         shares = (self._factors / self._factors.sum()).tolist()
         return {voter.name: share for voter, share in zip(PAPER_VOTERS, shares, strict=True)}
 
+    @property
+    def shape_twins(self) -> frozenset[tuple[int, int]]:
+        """No pairs: hands are not looked at."""
+        return frozenset()
+
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return None: only drawings are compared, whatever the switches are."""
         return None

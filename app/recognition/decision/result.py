@@ -45,10 +45,10 @@ class Recognition:
         Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
         gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
-        Repairs of the poses before recognition, as sentences with counts; and that no hand is seen
-        where the hand shape of `nearest` counts.
+        Repairs of the poses before recognition, as sentences with counts.
     fault
-        Why the poses are too poor to recognise, in words; `label` is then None.
+        Why the poses are too poor to recognise, or that no hand is seen though the hand shape of
+        `nearest` counts, in words; `label` is then None.
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:

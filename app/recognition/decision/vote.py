@@ -29,6 +29,11 @@ class Vote(Protocol):
         """Each voter's weight in the decision, summing to 1."""
         ...
 
+    @property
+    def shape_twins(self) -> frozenset[tuple[int, int]]:
+        """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
+        ...
+
     def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with every gesture, voter by voter."""
         ...

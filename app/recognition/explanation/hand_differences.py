@@ -100,7 +100,7 @@ def find_moving_hand_differences(
     apart = {side: measure_shapes(seen, {side: hand}) for side, hand in known.items()}
     worst = max((side for side in apart if side in seen), key=apart.__getitem__, default=None)
     if worst is None:
-        words = "no hand is seen for long enough that keeps a shape, so that shapes do not count"
+        words = "no hand is seen for long enough that keeps a shape: no shape is compared"
         return (_difference(0.0, words),)
     if apart[worst] <= OTHER_SHAPE:
         return ()

@@ -318,10 +318,8 @@ def _pair_findings(
 
 def _twin_findings(recognizer: Recognizer, pairs: Sequence[PairHealth]) -> Iterator[Finding]:
     """Yield a note for every two gestures that the hand shape alone tells apart."""
-    vote = recognizer.vote
-    assert isinstance(vote, FusedVote)  # the check is by profile full
     labels = recognizer.language.labels
-    twins = {frozenset(labels[index] for index in pair) for pair in vote.shape_twins}
+    twins = {frozenset(labels[index] for index in pair) for pair in recognizer.vote.shape_twins}
     for pair in pairs:
         if frozenset(pair.gestures) not in twins or pair.confusion is None:
             continue
@@ -330,8 +328,8 @@ def _twin_findings(recognizer: Recognizer, pairs: Sequence[PairHealth]) -> Itera
             "hand_shape_only",
             pair.gestures,
             f"{first} and {second} are the same movement, told apart by the hand shape alone: "
-            f"{pair.confusion.words} are confused where the hand is seen, and where it is not, the "
-            "robot cannot tell them",
+            f"{pair.confusion.words} are confused where the hand is seen; where it is not, the "
+            "robot refuses both",
         )
 
 

@@ -96,15 +96,22 @@ def test_switched_on_the_shape_counts_without_a_twin() -> None:
     assert recognizer.recognize(draw(FIST, corner(), seed=5)).label == "corner"
 
 
-def test_an_unseen_hand_is_no_refusal_by_itself() -> None:
-    language = twins()
-    off = twins("off", "off")
+def test_twins_without_a_hand_are_refused_naming_both() -> None:
     query = without_hands(draw(FIST, circle(0.41), seed=5))
-    result, plain = Recognizer(language).recognize(query), Recognizer(off).recognize(query)
-    assert (result.label, result.nearest, result.fault) == (plain.label, plain.nearest, None)
-    assert "no hand is seen" in result.findings[0]
+    result = Recognizer(twins()).recognize(query)
+    plain = Recognizer(twins("off", "off")).recognize(query)
+    assert (result.label, result.nearest) == (None, plain.nearest)
+    assert result.fault is not None
+    assert "'fist'" in result.fault
+    assert "'flat'" in result.fault
+    assert "no hand is seen" in result.fault
     np.testing.assert_array_equal(result.scores, plain.scores)
     assert not np.isfinite(result.distances[len(VOTER_NAMES) :]).any()
+
+
+def test_other_movements_are_recognised_without_a_hand_beside_twins() -> None:
+    result = Recognizer(twins()).recognize(without_hands(draw(FIST, corner(0.7), seed=5)))
+    assert (result.label, result.fault) == ("corner", None)
 
 
 def test_an_unseen_hand_whose_shape_counts_always_is_told() -> None:
