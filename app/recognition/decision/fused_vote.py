@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -21,6 +21,7 @@ from app.recognition.decision.motion_references import (
     find_unambiguous_traversals,
 )
 from app.recognition.decision.moving_shapes import WEIGHT, MovingShapes, weigh_shapes
+from app.recognition.decision.references import References
 from app.recognition.decision.rejection import (
     CUE_GROUPS,
     HAND_CUE_GROUP,
@@ -58,52 +59,6 @@ _ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 CLOSE_SCORES = 0.05
 """Tolerance in score of `FusedVote.may_win`: a new weight may select another traversal, which is
 usually nearer by about as much."""
-
-
-@dataclass(frozen=True, eq=False)
-class References:
-    """All that a query is compared with: every demonstration, and mirror images of some.
-
-    Attributes
-    ----------
-    gestures
-        S gestures of one demonstration each: first those of the language, then their further
-        demonstrations, then mirror images.
-    owners
-        ``(S,)``: index of each one's gesture in the language.
-    demonstrations
-        ``(S,)``: index of each one's demonstration in its gesture.
-    mirrored
-        ``(S,)``: whether it is a mirror image.
-
-    """
-
-    gestures: tuple[Gesture, ...]
-    owners: npt.NDArray[np.intp]
-    demonstrations: npt.NDArray[np.intp]
-    mirrored: npt.NDArray[np.bool_]
-
-    @classmethod
-    def of(cls, gestures: Sequence[Gesture]) -> References:
-        """List the references of a language's gestures; mirror images where their switch is on."""
-        shown = [
-            (number, owner, each)
-            for owner, gesture in enumerate(gestures)
-            for number, each in enumerate(gesture.single_demonstrations())
-        ]
-        shown.sort(key=lambda each: each[0] > 0)
-        images = [
-            (number, owner, each.mirror())
-            for number, owner, each in shown
-            if each.switches.mirror == "on" and each.trajectory is not None
-        ]
-        numbers, owners, every = zip(*shown, *images, strict=True)
-        return cls(
-            gestures=tuple(every),
-            owners=np.array(owners, dtype=np.intp),
-            demonstrations=np.array(numbers, dtype=np.intp),
-            mirrored=np.arange(len(every)) >= len(shown),
-        )
 
 
 class FusedVote:
@@ -276,19 +231,13 @@ class FusedVote:
 
         Weights, thresholds and traversals stay those of the whole language.
         """
-        sides = np.flatnonzero(np.isin(self._owners, gestures))
+        shown, sides = self._shown.take(gestures)
         rows = np.flatnonzero(np.isin(self._motions.gestures, sides))
         motions = self._motions.take(rows)
         other = copy(self)
         other.__dict__.pop("weights", None)
         other._labels = tuple(self._labels[index] for index in gestures.tolist())
-        other._owners = np.searchsorted(gestures, self._owners[sides])
-        other._shown = References(
-            gestures=tuple(self._shown.gestures[side] for side in sides.tolist()),
-            owners=other._owners,
-            demonstrations=self._shown.demonstrations[sides],
-            mirrored=self._shown.mirrored[sides],
-        )
+        other._shown, other._owners = shown, shown.owners
         other._shapes = self._shapes.take(sides)
         other._motions = replace(motions, gestures=np.searchsorted(sides, motions.gestures))
         other._tempo = self._tempo[sides]
@@ -322,7 +271,7 @@ class FusedVote:
             return held
         moved = self._compare_movements(trajectory, drawn)
         if not self._moving_shapes.any_counts:
-            moved = self._add_hand_voters(moved)
+            moved = moved.with_idle_voters(HAND_VOTER_NAMES)
         if held is None or not is_rejected(_measure_novelty(moved)):
             return moved
         return min(held, moved, key=_measure_novelty)
@@ -337,7 +286,7 @@ class FusedVote:
         """Compare a held hand shape with those of the language."""
         sides = self._hands.distances(trajectory.hands)
         shares = weigh_distances(sides, self._hands.weights, self._hands.between)
-        chosen = self._sides_nearest(shares.sum(axis=0))
+        chosen = self._shown.find_nearest(shares.sum(axis=0))
         distances = np.full((len(_ALL_NAMES), len(chosen)), np.inf)
         contributions = np.zeros(distances.shape)
         distances[len(VOTERS) :] = sides.take(chosen, axis=1)
@@ -355,19 +304,6 @@ class FusedVote:
             views=np.zeros(len(chosen), dtype=np.intp),
             facing=trajectory.facing,
             novelty_by_view=novelty,
-        )
-
-    def _add_hand_voters(self, table: ScoreTable) -> ScoreTable:
-        """Return the table of a movement with rows of hand voters, which compare nothing."""
-        nothing = np.full((len(HAND_VOTER_NAMES), len(self._labels)), np.inf)
-        return replace(
-            table,
-            voters=_ALL_NAMES,
-            distances=np.concatenate([table.distances, nothing]),
-            contributions=np.concatenate([table.contributions, np.zeros(nothing.shape)]),
-            novelty_by_view=np.concatenate(
-                [table.novelty_by_view, np.full_like(nothing[:1], np.nan)]
-            ),
         )
 
     def _compare_in(self, view: View, trajectory: Trajectory, drawn: bool) -> ScoreTable:
@@ -393,7 +329,7 @@ class FusedVote:
             shares = np.concatenate([shares, weigh_shapes(hands)])
             compared = shares.sum(axis=0) + turned
             hand_novelty = self._hand_novelty(hands)[None]
-        chosen = self._sides_nearest(compared)
+        chosen = self._shown.find_nearest(compared)
         return ScoreTable(
             voters=voters,
             distances=distances.take(chosen, axis=1),
@@ -532,15 +468,6 @@ class FusedVote:
             rows, distances[_SHAPES:] = nearest.rows, nearest.distances
             distances[_SHAPES:, ~comparable] = np.inf
         return distances, rows
-
-    def _sides_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
-        """Return for each gesture its nearest reference: ``(G,)`` indices."""
-        if len(self._owners) == len(self._labels):
-            return np.arange(len(self._labels))
-        chosen = np.empty(len(self._labels), dtype=np.intp)
-        order = np.argsort(-scores, kind="stable")
-        chosen[self._owners[order]] = order  # the best is written last
-        return chosen
 
 
 def _measure_novelty(table: ScoreTable) -> float:

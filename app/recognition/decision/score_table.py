@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -69,6 +69,19 @@ class ScoreTable:
         """
         shown = gestures[gesture].single_demonstrations()[self.nearest_demonstration(gesture)]
         return shown.turn(int(self.views[gesture]))
+
+    def with_idle_voters(self, names: Sequence[str]) -> ScoreTable:
+        """Return the table with rows of a further cue group's voters, which compare nothing."""
+        nothing = np.full((len(names), self.distances.shape[1]), np.inf)
+        return replace(
+            self,
+            voters=(*self.voters, *names),
+            distances=np.concatenate([self.distances, nothing]),
+            contributions=np.concatenate([self.contributions, np.zeros(nothing.shape)]),
+            novelty_by_view=np.concatenate(
+                [self.novelty_by_view, np.full_like(nothing[:1], np.nan)]
+            ),
+        )
 
     @property
     def scores(self) -> FloatArray:
