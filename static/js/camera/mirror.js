@@ -1,8 +1,8 @@
 // The preview of a camera: as in a mirror, unless the camera looks away from who watches it.
 
 /**
- * Whether a source is shown mirrored: a camera that faces the diver is, and one of which that is not
- * known; a phone's rear camera and a clip are not.
+ * Whether a source is shown mirrored: a camera that faces the diver is, and one of which that is
+ * not known; a phone's rear camera and a clip are not.
  *
  * @param {HTMLVideoElement["srcObject"]} source
  */
