@@ -26,7 +26,7 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     page = open_page(query, size=(390, 844))
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    for name in ("Save as gesture", "Recognise", "New language"):
+    for name in ("Record with the camera", "Save as gesture", "Recognise", "New language"):
         expect(page.get_by_role("button", name=name)).to_be_in_viewport()
     expect(page.locator("#outcome")).to_contain_text("as expected")
     # Clips and the place to drop them stand above the picture, and nothing lies over the flat one.
