@@ -178,10 +178,14 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     page = open_page(query, size=(1440, 900), scene=False)
     weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
+    expect(page.locator("#outcome")).to_contain_text("voters with 100 % of the weight")
+    joint = page.get_by_label("Joint whose paths are drawn")
+    drawn = joint.input_value()
     weight.select_option("off")
     trial = page.get_by_role("region", name="Why").get_by_role("status")
     expect(trial).to_contain_text("without the voter velocity")
     expect(page.get_by_label("Weight of velocity: 0 %")).to_have_value("0")
+    expect(joint).to_have_value(drawn)
     language = f"/api/v1/languages/{library.language}"
     assert library.client.get(language).json()["tuning"] is None
     trial.get_by_role("button", name="Keep").click()
