@@ -17,6 +17,7 @@ from app.api.services.studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
 from app.recognition.recording.clip_range import Demonstration
+from app.recognition.text.joiners import without_joiners
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 WORDS = frozenset({"label", "description", "command", "diver"})
@@ -146,7 +147,8 @@ def change_gesture_of(
 
     """
     gesture = gesture_in(language, label)
-    if change.label is not None and change.label.strip() != gesture.label:
+    compared = without_joiners(gesture.label)
+    if change.label is not None and without_joiners(change.label.strip()) != compared:
         require_free(language, change.label.strip())
     # The command may be set to null on purpose; all else that is null was left out.
     fields = {
@@ -239,7 +241,7 @@ def gesture_in(language: Language, label: str) -> Gesture:
 
 
 def require_free(language: Language, label: str, pointer: str = "/label") -> None:
-    """Refuse a label that a gesture of the language has; `pointer` is where it stands.
+    """Refuse a label that looks like one of the language's; `pointer` is where it stands.
 
     Raises
     ------
@@ -247,7 +249,7 @@ def require_free(language: Language, label: str, pointer: str = "/label") -> Non
         409 when one has it.
 
     """
-    if label in language.labels:
+    if without_joiners(label) in map(without_joiners, language.labels):
         detail = f"the language has a gesture {label!r} already; choose another label"
         fault = Fault(pointer=pointer, detail=detail)
         raise ProblemError(409, "label_taken", detail, errors=[fault])

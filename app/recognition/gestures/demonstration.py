@@ -31,6 +31,7 @@ from app.recognition.preprocessing.salience import (
     find_salient_landmarks,
     measure_displacements,
 )
+from app.recognition.text.joiners import is_printable
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.shape_voter import describe_drawing
 
@@ -279,7 +280,7 @@ def check_diver(diver: str) -> str:
         When it is longer than `MAX_DIVER_LENGTH` or not printable.
 
     """
-    if not isinstance(diver, str) or len(diver) > MAX_DIVER_LENGTH or not diver.isprintable():
+    if not isinstance(diver, str) or len(diver) > MAX_DIVER_LENGTH or not is_printable(diver):
         raise GestureError(
             f"a diver's name must be at most {MAX_DIVER_LENGTH} printable characters, got "
             f"{str(diver)[:MAX_DIVER_LENGTH]!r}"

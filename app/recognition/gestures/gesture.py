@@ -31,6 +31,7 @@ from app.recognition.gestures.demonstration import (
 from app.recognition.gestures.switches import AUTOMATIC, Switches
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.text.joiners import is_printable
 from app.recognition.text.strict_json import read_json
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.fourier import HARMONICS, SAMPLES
@@ -383,7 +384,7 @@ def check_label(label: Any) -> str:
     """
     if not isinstance(label, str) or not label.strip():
         raise GestureError(f"a gesture's label must be a word or a few, got {label!r}")
-    if len(label) > MAX_LABEL_LENGTH or not label.isprintable():
+    if len(label) > MAX_LABEL_LENGTH or not is_printable(label):
         raise GestureError(
             f"a gesture's label must be at most {MAX_LABEL_LENGTH} printable characters, "
             f"got {label[:MAX_LABEL_LENGTH]!r} ({len(label)})"

@@ -29,6 +29,7 @@ from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
+from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -108,17 +109,18 @@ class Language:
             raise LanguageError(
                 f"{shown} demonstrations of all gestures, the limit is {MAX_GESTURES}", "/gestures"
             )
-        labels: set[str] = set()
+        seen: set[str] = set()
         for index, gesture in enumerate(self.gestures):
-            if gesture.label in labels:
+            compared = without_joiners(gesture.label)
+            if compared in seen:
                 raise LanguageError(
                     f"the label {gesture.label!r} occurs twice: rename or remove one of the two",
                     build_pointer("gestures", index, "label"),
                 )
-            labels.add(gesture.label)
+            seen.add(compared)
         if self.grammar is not None:
-            self.grammar.require(labels)
-        if missing := sorted(self.trigger.labels - labels):
+            self.grammar.require(self.labels)
+        if missing := sorted(self.trigger.labels.difference(self.labels)):
             raise LanguageError(
                 f"the trigger needs a gesture {missing[0]!r}, which the language has not: choose "
                 "another trigger first",
@@ -322,7 +324,7 @@ class Language:
 
 
 def _check_text(text: Any, most: int, pointer: str) -> None:
-    if not isinstance(text, str) or len(text) > most or not text.isprintable():
+    if not isinstance(text, str) or len(text) > most or not is_printable(text):
         raise LanguageError(f"must be at most {most} printable characters, got {text!r}", pointer)
 
 

@@ -175,7 +175,13 @@ class DemonstrationEntry(_Model):
 class GestureEntry(_Model):
     """One gesture: its demonstration, and what the recogniser derived from it."""
 
-    label: Name
+    label: Annotated[
+        Name,
+        Field(
+            description="Result of recognition, printable, unique. U+200C and U+200D occur within "
+            "words only; two labels that differ in them alone are the same."
+        ),
+    ]
     description: Text
     command: Annotated[
         Text | dict[str, Any] | None,

@@ -21,6 +21,7 @@ from app.recognition.phrases.phrase import (
     Value,
 )
 from app.recognition.phrases.templates import find_placeholders, find_template_fault
+from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.strict_json import build_pointer
 
 MAX_PHRASES = 100
@@ -101,13 +102,13 @@ def _check_names(names: Iterable[str], key: str) -> None:
     seen: set[str] = set()
     for index, name in enumerate(names):
         pointer = build_pointer("grammar", key, index, "name")
-        if not name.strip() or len(name) > MAX_LABEL_LENGTH or not name.isprintable():
+        if not name.strip() or len(name) > MAX_LABEL_LENGTH or not is_printable(name):
             raise LanguageError(
                 f"must be 1 to {MAX_LABEL_LENGTH} printable characters, got {name!r}", pointer
             )
-        if name in seen:
+        if without_joiners(name) in seen:
             raise LanguageError(f"the name {name!r} occurs twice: rename one of the two", pointer)
-        seen.add(name)
+        seen.add(without_joiners(name))
 
 
 def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
@@ -125,7 +126,7 @@ def _check_slot_type(slot_type: SlotType, pointer: str) -> None:
 def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool:
     """Return whether a value is one of the kind; `together`: as a whole, not digit by digit."""
     if reads_as == "text":
-        return isinstance(value, str) and bool(value.strip()) and value.isprintable()
+        return isinstance(value, str) and bool(value.strip()) and is_printable(value)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         return False
     if reads_as == "number":
@@ -220,7 +221,7 @@ def _check_words(phrase: Phrase, pointer: str) -> None:
         for slot, group in phrase.slots()
         if slot.default is None and (slot.least == 0 or (group is not None and group.least == 0))
     }
-    if len(phrase.says) > MAX_TEXT_LENGTH or not phrase.says.isprintable():
+    if len(phrase.says) > MAX_TEXT_LENGTH or not is_printable(phrase.says):
         raise LanguageError(
             f"must be at most {MAX_TEXT_LENGTH} printable characters", pointer + "/says"
         )

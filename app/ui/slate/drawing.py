@@ -5,6 +5,8 @@ from __future__ import annotations
 import unicodedata
 from dataclasses import dataclass
 
+from app.recognition.text.joiners import JOINERS
+
 Point = tuple[float, float]
 
 WIDE = ("W", "F")
@@ -84,7 +86,7 @@ def estimate_width(text: str, size: float, *, bold: bool = False) -> float:
         1.0
         if unicodedata.east_asian_width(letter) in WIDE
         else 0.0
-        if unicodedata.combining(letter)
+        if letter in JOINERS or unicodedata.combining(letter)
         else AVERAGE_WIDTH
         for letter in text
     )

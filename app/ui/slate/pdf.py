@@ -5,6 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
+from app.recognition.text.joiners import JOINERS
 from app.ui.slate.drawing import Disc, Page, Part, Path, Shape, Words
 from app.ui.slate.fonts import find_font
 
@@ -19,9 +20,6 @@ EPOCH = datetime(2026, 1, 1, tzinfo=UTC)
 GREY = 68
 BLACK = 0
 WHITE = 255
-
-JOINERS = "\u200c\u200d"
-"""Zero width non-joiner and joiner: they are not seen, and tell which letters are joined."""
 
 BASELINE = 0.3
 """Of a letter's size, from the middle of a cell of fpdf2 down to the baseline of its text."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
+from app.recognition.text.joiners import JOINERS
 from app.ui.slate.drawing import Disc, Page, Part, Path, Point, Shape
 
 FONTS = "DejaVu Sans, Noto Sans, Arial, Helvetica, sans-serif"
@@ -47,4 +48,4 @@ def _points(points: tuple[Point, ...]) -> str:
 
 def _text(text: str) -> str:
     """Escape a text, without the control characters that XML cannot contain."""
-    return escape("".join(each for each in text if each.isprintable()))
+    return escape("".join(each for each in text if each.isprintable() or each in JOINERS))

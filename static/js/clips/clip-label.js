@@ -1,11 +1,18 @@
 // The label that a clip's file name suggests.
 
+import { withoutJoiners } from "../core/joiners.js";
+
 /**
  * The words and numbers of a name, with a space around each.
  *
  * @param {string} name
  */
-const words = (name) => ` ${(name.toLowerCase().match(/\p{L}+|\p{N}+/gu) ?? []).join(" ")} `;
+const words = (name) =>
+  ` ${(
+    withoutJoiners(name)
+      .toLowerCase()
+      .match(/\p{L}+|\p{N}+/gu) ?? []
+  ).join(" ")} `;
 
 /**
  * Find the label that a clip's name contains, or "". "circle-2.mp4" probably shows a circle and

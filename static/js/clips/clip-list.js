@@ -263,11 +263,16 @@ function bringIntoView(list, chosen) {
   if (!item) return;
   inView = chosen;
   const top = item.offsetTop - list.offsetTop;
+  const left = item.offsetLeft - list.offsetLeft;
   const seen =
-    top >= list.scrollTop && top + item.offsetHeight <= list.scrollTop + list.clientHeight;
+    top >= list.scrollTop &&
+    top + item.offsetHeight <= list.scrollTop + list.clientHeight &&
+    left >= list.scrollLeft &&
+    left + item.offsetWidth <= list.scrollLeft + list.clientWidth;
   if (!seen) {
     scrolling = true;
     list.scrollTop = top - (list.clientHeight - item.offsetHeight) / 2;
+    list.scrollLeft = left - (list.clientWidth - item.offsetWidth) / 2;
   }
 }
 
@@ -289,7 +294,10 @@ export function findClips() {
     const byItself = scrolling;
     scrolling = false;
     if (byItself) return;
-    const left = list.scrollHeight - list.scrollTop - list.clientHeight;
-    if (left < list.clientHeight && !wantedName()) loadOlder();
+    // On a phone the list is a strip, which ends at the right.
+    const below = list.scrollHeight - list.scrollTop - list.clientHeight;
+    const beside = list.scrollWidth - list.scrollLeft - list.clientWidth;
+    const near = Math.max(list.clientHeight, list.clientWidth);
+    if (below + beside < near && !wantedName()) loadOlder();
   };
 }

@@ -1,6 +1,7 @@
 // The rows of the table that makes gestures of clips: one per take, with a proposed label.
 
 import { moment, plural } from "../core/format.js";
+import { withoutJoiners } from "../core/joiners.js";
 
 /** @import { Clip, GestureRow, Language, Take } from "../core/types.d.ts" */
 
@@ -58,7 +59,7 @@ export function withoutGesture(clips, language) {
  */
 export function rowsOf(clips, takes, language, edited) {
   const shown = demonstrated(language);
-  const taken = new Set(language?.labels ?? []);
+  const taken = new Set((language?.labels ?? []).map(withoutJoiners));
   return clips.flatMap((clip) => {
     const found = takes.get(clip.id) ?? null;
     const alone = !found || found.length < 2;
@@ -67,8 +68,9 @@ export function rowsOf(clips, takes, language, edited) {
       const proposed = labelOf(clip.name);
       const label =
         edited.get(key)?.label ?? (alone || !proposed ? proposed : `${proposed} ${number + 1}`);
-      const chosen = edited.get(key)?.chosen ?? (!shown.has(clip.id) && !taken.has(label));
-      if (chosen && label) taken.add(label);
+      const compared = withoutJoiners(label);
+      const chosen = edited.get(key)?.chosen ?? (!shown.has(clip.id) && !taken.has(compared));
+      if (chosen && label) taken.add(compared);
       return { key, clip, takes: found, take, number, label, chosen };
     });
   });
@@ -112,18 +114,20 @@ export function rangeWarning({ takes, take }, name = "Vulcan salute") {
 export function problemsOf(rows, others) {
   const chosen = rows.filter((row) => row.chosen);
   const problems = new Map();
-  const seen = new Set(others);
+  const taken = new Set(others.map(withoutJoiners));
+  const seen = new Set(taken);
   for (const { key, label } of chosen) {
     const text = label.trim();
+    const compared = withoutJoiners(text);
     if (!text) problems.set(key, "Name it.");
-    else if (seen.has(text))
+    else if (seen.has(compared))
       problems.set(
         key,
-        others.includes(text)
+        taken.has(compared)
           ? `The language has a gesture \u201c${text}\u201d already.`
           : `Another row is called \u201c${text}\u201d.`,
       );
-    seen.add(text);
+    seen.add(compared);
   }
   const waiting = chosen.filter(({ takes }) => !takes).length;
   const note = !chosen.length

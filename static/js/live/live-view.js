@@ -2,6 +2,7 @@
 
 import { frameSender } from "../camera/frame-sender.js";
 import { openLink } from "../camera/live-socket.js";
+import { mirror } from "../camera/mirror.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
 import { countDown, record } from "../camera/recording.js";
 import { drawTrouble } from "../camera/trouble.js";
@@ -167,7 +168,7 @@ function listening({ language, gestures, problem: trouble }) {
 async function showSource() {
   if (fromClip()) await showClip(video(), api.clips.video(chosenClip().id));
   else await showCamera(video(), byId("live-cameras").value, () => lost(cameraLost(INSTEAD)));
-  byId("live-picture").classList.toggle("mirrored", !fromClip());
+  mirror(byId("live-picture"), video());
   drawing?.remove();
   drawing = overlay(video().videoWidth, video().videoHeight);
   video().after(drawing);

@@ -3,6 +3,7 @@
 import { frameSender } from "../camera/frame-sender.js";
 import { openLink } from "../camera/live-socket.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
+import { mirror } from "../camera/mirror.js";
 import { record } from "../camera/recording.js";
 import { howTo, situation } from "../camera/take-steps.js";
 import { drawTrouble } from "../camera/trouble.js";
@@ -39,7 +40,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   });
   const idle = h("p", { className: "camera-idle" }, "The camera is off");
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const picture = h("div", { className: "camera-picture mirrored" }, video, idle, trouble);
+  const picture = h("div", { className: "camera-picture" }, video, idle, trouble);
   const words = h("p", { className: "practice-step", role: "status" });
   const toggle = h("button", { type: "button", ...WRITES });
   const judge = h(
@@ -165,6 +166,7 @@ export function practiceCamera({ started, nameOf, taken }) {
       return;
     }
     started();
+    mirror(picture, video);
     drawing = overlay(video.videoWidth, video.videoHeight);
     video.after(drawing);
     renew();

@@ -40,6 +40,7 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     drop(page, *[clip] * 3, names=names)
     card = page.locator("#batch")
     expect(card).to_contain_text("0 of 3 clips done")
+    expect(card).to_be_in_viewport(ratio=1)
     queued = page.get_by_role("list", name="Clips").get_by_role("listitem")
     expect(queued.filter(has_text="Next in the queue")).to_have_count(1)
     expect(queued.filter(has_text="Number 2 of 2 in the queue")).to_have_count(1)

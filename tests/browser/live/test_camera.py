@@ -76,3 +76,30 @@ def test_a_camera_that_another_program_holds_is_told_and_tried_again(open_page: 
     problem.get_by_role("button", name="Try again").click()
     expect(problem).to_be_hidden()
     expect(page.get_by_role("button", name="Stop", exact=True)).to_be_visible()
+
+
+REAR = """() => {
+  const settings = MediaStreamTrack.prototype.getSettings;
+  MediaStreamTrack.prototype.getSettings = function () {
+    return { ...settings.call(this), facingMode: "environment" };
+  };
+}"""
+"""What a phone says of its rear camera; Chromium's fake device does not say where it looks."""
+
+
+@pytest.mark.parametrize("view", ["live", "practice"])
+def test_a_camera_is_a_mirror_unless_it_is_a_phones_rear_one(
+    open_page: OpenPage, view: str
+) -> None:
+    page = open_page({"view": view}, scene=False)
+    page.context.grant_permissions(["camera"])
+    if view == "practice":
+        page.get_by_label("Diver").fill("Ana")
+    video = page.locator(".camera-picture video:visible")
+    page.get_by_role("button", name="Start the camera").click()
+    expect(video).to_have_css("transform", "matrix(-1, 0, 0, 1, 0, 0)")
+    page.get_by_role("button", name=re.compile("^Stop")).click()
+    page.evaluate(REAR)
+    page.get_by_role("button", name="Start the camera").click()
+    expect(page.locator(".camera-picture .skeleton:visible")).to_be_attached()
+    expect(video).to_have_css("transform", "none")

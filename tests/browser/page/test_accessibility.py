@@ -53,6 +53,37 @@ def test_every_view(open_page: OpenPage, library: Library, scheme: str) -> None:
     assert found == {name: [] for name in SHOWN}
 
 
+def test_every_view_on_a_phone(open_page: OpenPage, library: Library) -> None:
+    page = open_page(library.address, scene=False, size=(390, 844))
+    links = page.get_by_role("navigation", name="Views").get_by_role("link")
+    found, widths = {}, {}
+    for name, content in SHOWN.items():
+        links.get_by_text(name, exact=True).click()
+        expect(page.locator(".view:visible").locator(content)).to_be_visible()
+        found[name] = faults(page)
+        widths[name] = page.evaluate("document.documentElement.scrollWidth")
+    assert found == {name: [] for name in SHOWN}
+    assert max(widths.values()) <= 390, widths
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 844)])
+def test_what_the_views_lead_to(
+    open_page: OpenPage, library: Library, size: tuple[int, int]
+) -> None:
+    places = (
+        ({"view": "gesture", "gesture": "circle"}, "text=Missed: recognised as"),
+        (
+            {"view": "languages", "panel": "history"},
+            "role=button[name='Go back to revision 2']",
+        ),
+    )
+    for query, content in places:
+        page = open_page({"language": library.language, **query}, scene=False, size=size)
+        expect(page.locator(".view:visible").locator(content)).to_be_visible()
+        assert faults(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+
+
 def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, scene=False)
     page.keyboard.press("?")

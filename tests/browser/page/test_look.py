@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
+from tests.browser.library import Library, add_clip, library_of
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +26,7 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     page = open_page(query, size=(390, 844))
     expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
-    for name in ("Save as gesture", "Recognise", "New language"):
+    for name in ("Record with the camera", "Save as gesture", "Recognise", "New language"):
         expect(page.get_by_role("button", name=name)).to_be_in_viewport()
     expect(page.locator("#outcome")).to_contain_text("as expected")
     # Clips and the place to drop them stand above the picture, and nothing lies over the flat one.
@@ -42,6 +42,45 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     page.get_by_role("button", name="Change circle", exact=True).click()
     expect(page.get_by_label("Start frame")).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+COVERED = """(box) => {
+  const { left, right, top, bottom } = box.getBoundingClientRect();
+  const seen = Math.min(bottom, innerHeight);
+  return [[left, top], [right, top], [left, seen], [right, seen], [left + right, top + seen]]
+    .map(([x, y], i) => i < 4
+      ? [x + (i % 2 ? -4 : 4), y + (i < 2 ? 4 : -4)] : [x / 2, y / 2])
+    .filter(([x, y]) => !box.contains(document.elementFromPoint(x, y)));
+}"""
+"""Of the corners and the middle of what is seen of a box, those that something else lies over."""
+
+
+@pytest.mark.parametrize("look", ["", "sun"])
+def test_the_picture_of_a_chosen_clip_is_in_sight_on_a_phone(
+    open_page: OpenPage, server: Running, library: Library, look: str
+) -> None:
+    # So many that they can be searched, and of another shape than the one on display.
+    for number in range(5):
+        add_clip(server, "line", name=f"{look} dive {number}.mp4")
+    page = open_page(library.address, size=(390, 844), scene=False)
+    if look:
+        page.keyboard.press("Shift+L")
+    expect(page.get_by_role("button", name="All takes in one table")).to_be_visible()
+    expect(page.get_by_label("Find clips")).to_be_visible()
+    page.get_by_role("button", name=f"Show {look} dive 2.mp4").click()
+    expect(page.get_by_role("heading", name=f"{look} dive 2.mp4")).to_be_in_viewport()
+    picture = page.locator("#lab-box")
+    box = picture.bounding_box()
+    assert box is not None
+    assert 0 < box["y"] <= 844 - 200
+    assert box["width"] == 390
+    assert picture.evaluate(COVERED) == []
+    assert page.evaluate("scrollY") == 0
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    # The take, the heart of the clip's controls, is below it.
+    timeline = page.locator("#timeline").bounding_box()
+    assert timeline is not None
+    assert timeline["y"] >= box["y"] + box["height"]
 
 
 def test_colours_follow_the_system_in_the_page_and_in_the_frame(

@@ -171,6 +171,26 @@ def test_cards_and_compared_images_show_start_and_direction(
         assert coloured > 100
 
 
+def test_the_slate_for_divers_is_fetched_as_a_pdf_and_an_svg(
+    open_page: OpenPage, library: Library, tmp_path: Path
+) -> None:
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="Export").click()
+    dialog = page.get_by_role("dialog", name="Export")
+    files = {}
+    for kind in ("PDF", "SVG"):
+        with page.expect_download() as download:
+            dialog.get_by_role("link", name=kind, exact=True).click()
+        files[kind] = tmp_path / download.value.suggested_filename
+        download.value.save_as(files[kind])
+    assert files["PDF"].read_bytes().startswith(b"%PDF-")
+    # The browser draws it: each gesture by its name, with strokes that begin at a dot.
+    page.goto(files["SVG"].as_uri())
+    for text in ("circle", "line", "R"):
+        expect(page.locator("text").get_by_text(text, exact=True).first).to_be_visible()
+    expect(page.locator("polygon").first).to_be_visible()  # an arrow's head
+
+
 def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, scene=False)
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")

@@ -21,6 +21,17 @@ SMALL = """() => [...document.querySelectorAll("button, select, summary, a.butto
   .filter(([height]) => height > 0 && height < 44)"""
 
 
+COVERED = """() => [...document.querySelectorAll(".bar :is(button, select, .brand)")]
+  .filter((each) => each.checkVisibility())
+  .filter((each) => {
+    const { left, right, top, height } = each.getBoundingClientRect();
+    return [left + 3, (left + right) / 2, right - 3]
+      .some((x) => !each.contains(document.elementFromPoint(x, top + height / 2)));
+  })
+  .map((each) => each.outerHTML.slice(0, 80))"""
+"""Controls of the bar over which something else lies, or that leave the window."""
+
+
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:
     with httpx.Client(base_url=server.address, timeout=60) as client:
@@ -42,6 +53,7 @@ def test_targets_are_large_and_contrast_is_high(
     expect(page.get_by_role("button", name="1 demonstration of circle")).to_be_visible()
     expect(page.locator("body")).to_have_css("background-color", "rgb(255, 255, 255)")
     assert page.evaluate(SMALL) == []
+    assert page.evaluate(COVERED) == []
     assert faults(page) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     page.keyboard.press("Shift+L")

@@ -48,6 +48,13 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
 ) -> None:
     page = open_page(scene=False)
     expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
+    start = page.locator("#welcome")
+    expect(start).to_contain_text("the take, what lies between the salutes")
+    expect(start).to_contain_text("each voter, one way to compare movements")
+    # On a phone the page scrolls, and nothing within it.
+    page.set_viewport_size({"width": 390, "height": 844})
+    assert start.evaluate("(box) => box.scrollHeight <= box.clientHeight")
+    page.set_viewport_size({"width": 1280, "height": 800})
     add_example(server, clips)
     add_clip(server, "circle", name="mine.mp4")
     page.reload()

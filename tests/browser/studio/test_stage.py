@@ -13,6 +13,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from app.recognition.voters.registry import VOTERS
+from app.ui import workspace
 from tests.api.recordings import recording_of
 from tests.api.running import Running, until
 from tests.browser.conftest import OpenPage
@@ -73,6 +74,29 @@ def test_the_flat_picture_comes_first_and_the_cube_is_a_key_away_and_remembered(
     until(is_square(canvas_of(page)))
     page.reload()
     until(is_square(canvas_of(page)))
+
+
+def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
+    open_page: OpenPage, library: Library, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Slow enough for screenshots on the way, on any machine.
+    monkeypatch.setattr(workspace, "TRANSITION_SECONDS", 5.0)
+    page = open_page(library.address, size=(1440, 900))
+    page.emulate_media(reduced_motion="no-preference")
+    canvas = canvas_of(page)
+    until(is_square(canvas))
+    seen: set[bytes] = set()
+
+    def is_on_the_way() -> bool:
+        seen.add(canvas.screenshot())
+        return len(seen) > 4
+
+    page.keyboard.press("v")
+    until(is_on_the_way)
+    # Where motion is unwelcome, the way back is one step.
+    page.emulate_media(reduced_motion="reduce")
+    page.keyboard.press("v")
+    until(is_square(canvas))
 
 
 def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons(
@@ -154,10 +178,14 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     page = open_page(query, size=(1440, 900), scene=False)
     weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
+    expect(page.locator("#outcome")).to_contain_text("voters with 100 % of the weight")
+    joint = page.get_by_label("Joint whose paths are drawn")
+    drawn = joint.input_value()
     weight.select_option("off")
     trial = page.get_by_role("region", name="Why").get_by_role("status")
     expect(trial).to_contain_text("without the voter velocity")
     expect(page.get_by_label("Weight of velocity: 0 %")).to_have_value("0")
+    expect(joint).to_have_value(drawn)
     language = f"/api/v1/languages/{library.language}"
     assert library.client.get(language).json()["tuning"] is None
     trial.get_by_role("button", name="Keep").click()

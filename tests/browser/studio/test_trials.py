@@ -113,8 +113,9 @@ def revision_of(library: Library) -> int:
     return int(language.json()["revision"])
 
 
-def test_a_trial_leaves_the_language_alone_when_another_clip_is_chosen(
-    open_page: OpenPage, server: Running, library: Library
+@pytest.mark.parametrize("leave", ["another clip", "closed"])
+def test_a_trial_leaves_the_language_alone_when_it_is_left(
+    open_page: OpenPage, server: Running, library: Library, leave: str
 ) -> None:
     strict = f"/api/v1/languages/{library.language}/gestures/circle"
     library.client.patch(strict, json={"direction": "on"}).raise_for_status()
@@ -124,9 +125,34 @@ def test_a_trial_leaves_the_language_alone_when_another_clip_is_chosen(
     try_out(page, re.compile("the switch direction of 'circle' off"))
     expect(page.locator("#outcome")).to_contain_text("Recognised as circle, as expected")
     assert revision_of(library) == before
-    page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
+    if leave == "closed":
+        page.close()
+        page = open_page({"clip": refused.clip, "language": library.language}, scene=False)
+        expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    else:
+        page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
     expect(page.locator("#outcome")).to_be_empty()
     assert revision_of(library) == before
+    # It is no evidence either: only what is kept as a test is one.
+    test_set = library.client.get(f"/api/v1/languages/{library.language}/test-set").json()
+    assert test_set["takes"] == []
+
+
+def test_the_take_as_another_demonstration_comes_first_and_stands_beside_the_other(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, "circle backwards", name="a line for somebody.mp4")
+    misread = replace(library, clip=clip)
+    recognition = misread.recognise("line")
+    page = open_page({**misread.address, "recognition": recognition}, scene=False)
+    offered = page.locator(".remedies ul").get_by_role("button")
+    expect(offered.first).to_have_text("with this take as another demonstration of 'line'")
+    # In place of the other one it would be right by construction, and teach nothing.
+    expect(offered.filter(has_text="as the demonstration")).to_have_count(0)
+    trial = try_out(page, "as another demonstration of 'line'")
+    expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
+    trial.get_by_role("button", name="Keep").click()
+    expect(page.get_by_role("button", name="2 demonstrations of line")).to_be_visible()
 
 
 def test_a_change_of_a_gesture_is_kept_or_taken_back(

@@ -74,6 +74,10 @@ test("a row needs a name that neither the language nor another row has", () => {
   assert.match(note, /^2 rows without a name/);
   assert.equal(problemsOf([row("a", "up")], ["down"]).note, "");
   assert.equal(problemsOf([row("a", "down")], ["down"]).problems.size, 1);
+  assert.equal(
+    problemsOf([row("a", "می\u200cروم")], ["میروم"]).problems.get("a"),
+    "The language has a gesture \u201cمی\u200cروم\u201d already.",
+  );
 });
 
 test("a clip shows no gesture yet unless a demonstration of the language was taken of it", () => {

@@ -139,6 +139,8 @@ def put_in_path(key: str, value: object) -> Change:
         (put_in_gesture("label", "line"), "/gestures/1/label", "'line' occurs twice"),
         (put_in_gesture("label", ""), "/gestures/0/label", "at least 1 character"),
         (put_in_gesture("label", "a\nb"), "/gestures/0/label", "printable"),
+        (put_in_gesture("label", "می\u200c"), "/gestures/0/label", "printable"),
+        (put_in_gesture("label", "l\u200cine"), "/gestures/1/label", "'line' occurs twice"),
         (put_in_gesture("command", 7), "/gestures/0/command", "string"),
         (
             put_in_gesture("command", {"text": "x" * 5000}),

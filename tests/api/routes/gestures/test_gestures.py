@@ -150,6 +150,16 @@ def test_a_label_cannot_be_taken_twice(
     assert same.status_code == 200
 
 
+def test_labels_that_differ_in_joiners_alone_are_the_same(
+    client: httpx.Client, language_id: str, circle_clip: str
+) -> None:
+    joined, apart = "میروم", "می\u200cروم"
+    assert add_gesture(client, language_id, circle_clip, joined).status_code == 201
+    assert_problem(add_gesture(client, language_id, circle_clip, apart), 409, "label_taken")
+    spelled = client.patch(place(language_id, joined), json={"label": apart})
+    assert spelled.json()["labels"] == [apart]
+
+
 @pytest.mark.parametrize(
     ("body", "code"),
     [
