@@ -17,12 +17,11 @@ from urllib.parse import quote
 import uvicorn
 from fastapi import APIRouter, FastAPI
 from fastapi.openapi.utils import get_openapi
-from fastapi.responses import FileResponse
-from fastapi.staticfiles import StaticFiles
 from starlette.routing import BaseRoute
 
 from app import __version__, resources
 from app.api.http import problems
+from app.api.http.page_files import ADDRESS, PageFiles
 from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
@@ -269,11 +268,9 @@ def _serve_page(app: FastAPI) -> None:
     if not folder.is_dir():
         return
 
-    @app.get("/", include_in_schema=False)
-    def page() -> FileResponse:
-        return FileResponse(folder / "index.html", headers={"Cache-Control": "no-cache"})
-
-    app.mount("/static", StaticFiles(directory=folder), name="static")
+    files = PageFiles(folder)
+    app.get("/", include_in_schema=False)(files.read_page)
+    app.mount(ADDRESS, files, name="static")
 
 
 def _describe(app: FastAPI) -> None:

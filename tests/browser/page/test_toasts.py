@@ -23,7 +23,7 @@ def library(server: Running) -> Iterator[Library]:
 
 
 SHOW = """
-import("/static/js/core/toasts.js").then(({ toast }) =>
+import(document.scripts[0].src.replace("main.js", "core/toasts.js")).then(({ toast }) =>
   ["One", "Two"].forEach((title) => toast(title, "A sentence that says what is next.",
     { kind: "error" })))
 """

@@ -72,7 +72,10 @@ def test_the_tour_shows_its_steps_on_the_example(
     page = open_page(scene=False)
     expect(page.get_by_text("Connected")).to_be_visible()
     # As on a first visit, whatever clips other tests left.
-    page.evaluate("import('/static/js/core/state.js').then(({ update }) => update({ clip: null }))")
+    page.evaluate(
+        "import(document.scripts[0].src.replace('main.js', 'core/state.js'))"
+        ".then(({ update }) => update({ clip: null }))"
+    )
     page.keyboard.press("?")
     page.get_by_role("button", name="Tour").click()
     tour = page.locator(".tour")

@@ -1,0 +1,67 @@
+"""Page files: kept by the browser for as long as they are the same."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from app import resources
+from app.settings import Settings
+from tests.api.running import running
+
+PAGE = '<script type="module" src="/static/js/main.js"></script>'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "js").mkdir()
+    (tmp_path / "index.html").write_text(PAGE)
+    (tmp_path / "js" / "main.js").write_text("one();")
+    return tmp_path
+
+
+@pytest.fixture
+def client(
+    folder: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[httpx.Client]:
+    monkeypatch.setattr(resources, "static_dir", lambda: folder)
+    settings = Settings(data_dir=tmp_path_factory.mktemp("data"))
+    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+        yield client
+
+
+def script(client: httpx.Client) -> str:
+    """Return the address of the page's script."""
+    page = client.get("/")
+    assert page.headers["cache-control"] == "no-cache"
+    return page.text.split('src="')[1].split('"')[0]
+
+
+def test_a_file_that_the_page_names_is_never_asked_for_again(client: httpx.Client) -> None:
+    answer = client.get(script(client))
+    assert answer.text == "one();"
+    assert "immutable" in answer.headers["cache-control"]
+
+
+def test_after_an_update_the_page_names_all_files_anew(client: httpx.Client, folder: Path) -> None:
+    before = script(client)
+    (folder / "js" / "other.js").write_text("two();")
+    after = script(client)
+    assert after != before
+    assert "immutable" in client.get(after).headers["cache-control"]
+    # For a page that was opened before: the file of today, and not for long.
+    old = client.get(before)
+    assert (old.status_code, old.headers["cache-control"]) == (200, "no-cache")
+
+
+def test_without_a_digest_the_browser_asks_first(client: httpx.Client) -> None:
+    answer = client.get("/static/js/main.js")
+    assert answer.headers["cache-control"] == "no-cache"
+    again = client.get("/static/js/main.js", headers={"If-None-Match": answer.headers["etag"]})
+    assert (again.status_code, again.headers["cache-control"]) == (304, "no-cache")
+
+
+@pytest.mark.parametrize("path", ["", "js", "js/none.js", "0123456789abcdef", "../secret"])
+def test_what_is_no_file_is_not_found(client: httpx.Client, path: str) -> None:
+    assert client.get(f"/static/{path}").status_code == 404
