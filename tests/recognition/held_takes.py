@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -96,3 +99,38 @@ def hold(
 def _other(name: str) -> str:
     swaps = {"left": "right", "right": "left"}
     return "_".join(swaps.get(word, word) for word in name.split("_"))
+
+
+def follow(*takes: PoseSequence, transition: float = 0.4, unseen: bool = False) -> PoseSequence:
+    """Return a take in which the hands of some takes are shown one after the other.
+
+    Parameters
+    ----------
+    takes
+        At 25 frames a second, of the same hands.
+    transition
+        Seconds from one to the next, in which body and hands go straight to their new places.
+    unseen
+        Whether no hand is seen in the meantime.
+
+    """
+    shares = np.arange(1, round(25 * transition) + 1) / (round(25 * transition) + 1)
+    xy, hands = [takes[0].xy], [_hands_of(takes[0])]
+    for before, after in pairwise(takes):
+        own, others = _hands_of(before)[-1], _hands_of(after)[0]
+        between = own + shares[:, None, None, None] * (others - own)
+        hands += [np.full_like(between, np.nan) if unseen else between, _hands_of(after)]
+        way = shares[:, None, None] * (after.xy[0] - before.xy[-1])
+        xy += [before.xy[-1] + way, after.xy]
+    seen = np.concatenate(xy)
+    return replace(
+        takes[0],
+        xy=seen,
+        hands=np.concatenate(hands),
+        time=np.arange(len(seen)) / 25,
+    )
+
+
+def _hands_of(take: PoseSequence) -> FloatArray:
+    assert take.hands is not None
+    return take.hands
