@@ -24,11 +24,11 @@ BONE_WIDTH = STROKE_WIDTH // 2 + 1
 APART = 3.0
 """Sizes between the middles of two hands that are drawn side by side."""
 
-ARROW_SPACE = 1.4
-"""Sizes by which two shapes in sequence are farther apart."""
+ARROW_SPACE = 1.8
+"""Sizes between two shapes in sequence: of an arrow that is seen on a card of 64 pixels."""
 
-ARROW_LENGTH = 1.2
-"""Sizes: within that space."""
+ARROW_SHARES = (0.15, 0.85)
+"""Places of the arrow's tail and tip in that space."""
 
 FINGER_BONES = tuple(
     bone for finger in range(5) for bone in pairwise((0, *range(1 + 4 * finger, 5 + 4 * finger)))
@@ -65,19 +65,22 @@ def place_hands(hands: Sequence[HandShape], then_hands: Sequence[HandShape] = ()
     Of two hands the person's right one is on the left. The second shape is beside the first, of
     two hands below it.
     """
-    width = APART * len(hands)
-    step = np.array((width + ARROW_SPACE, 0.0) if len(hands) == 1 else (0.0, APART + ARROW_SPACE))
-    placed = [
-        (hand, hand.xy + (APART * index, 0.0) + number * step)
-        for number, shape in enumerate((hands, then_hands))
-        for index, hand in enumerate(sorted(shape, key=lambda hand: hand.side == "left"))
-    ]
-    arrow = None
-    if then_hands:
-        middle = np.array(((width - APART) / 2, 0.0)) + step / 2
-        along = ARROW_LENGTH / 2 * step / np.linalg.norm(step)
-        arrow = np.array((middle - along, middle + along))
-    return PlacedHands(tuple(placed), arrow)
+    first, second = (
+        [
+            (hand, hand.xy + (APART * index, 0.0))
+            for index, hand in enumerate(sorted(shape, key=lambda hand: hand.side == "left"))
+        ]
+        for shape in (hands, then_hands)
+    )
+    if not second:
+        return PlacedHands(tuple(first), None)
+    one, other = (np.concatenate([place for _, place in part]) for part in (first, second))
+    along = np.array((1.0, 0.0) if len(hands) == 1 else (0.0, 1.0))
+    end = float((one @ along).max())
+    step = (end + ARROW_SPACE - float((other @ along).min())) * along
+    across = (1 - along) * (one.min(axis=0) + one.max(axis=0)) / 2
+    arrow = np.array([across + (end + ARROW_SPACE * share) * along for share in ARROW_SHARES])
+    return PlacedHands((*first, *((hand, place + step) for hand, place in second)), arrow)
 
 
 def draw_hands(hands: Sequence[HandShape], then_hands: Sequence[HandShape] = ()) -> BinaryImage:
