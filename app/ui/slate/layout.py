@@ -177,7 +177,7 @@ def _foot(language: Language) -> Iterator[Part]:
     if held:
         hands += "   A hand with its fingers is held still for a second."
     if any(len(gesture.held_shapes) > 1 for gesture in language.gestures):
-        hands += " An arrow leads to the shape that it takes then."
+        hands += " An arrow leads to its next shape."
     if held or any(_initial(name) in "RL" for each in language.gestures for name in each.salient):
         yield Words(hands, (MARGIN, height - MARGIN - 4), 3.2, grey=True)
 
@@ -268,7 +268,8 @@ def _hands(placed: PlacedHands, left: float, top: float, side: float) -> Iterato
     middle, centre = (low + high) / 2, np.array([left + side / 2, top + side / 2])
     if placed.arrow is not None:
         arrow = (placed.arrow - middle) * scale + centre
-        yield Path(tuple((float(x), float(y)) for x, y in arrow), 0.028 * side)
+        shaft = (arrow[0], arrow.mean(axis=0))  # the head covers its end
+        yield Path(tuple((float(x), float(y)) for x, y in shaft), 0.028 * side)
         yield _arrow_head(arrow[1], arrow[1] - arrow[0], 0.095 * side)
     for hand, place in placed.hands:
         drawn = [(float(x), float(y)) for x, y in (place - middle) * scale + centre]

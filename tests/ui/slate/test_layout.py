@@ -97,7 +97,7 @@ def test_two_shapes_in_sequence_are_drawn_with_an_arrow_from_the_first() -> None
     assert all(x < tail[0] for finger in fingers[:5] for x, _ in finger.points)
     assert all(x > max(corner[0] for corner in head.points) for x, _ in fingers[5].points)
     assert tail[0] < tip[0]
-    assert any("An arrow leads to the shape" in text for text in words_of(page))
+    assert any("An arrow leads to its next shape" in text for text in words_of(page))
     alone = lay_out(Language("pool", [Gesture.from_demonstration("flat", hold(FLAT))]))
     assert not any("An arrow leads" in text for text in words_of(alone))
 
