@@ -35,6 +35,15 @@ of one sign are up to 0.58 apart where the hand wobbles or turns, two signs 0.7 
 AGREEING: Final = 0.85
 """Least share of the frames of a part that show its own shape: the change itself takes some."""
 
+CLEARLY: Final = 2.0
+"""How many times nearer to its own shape than to the next one a hand is while it holds it; between
+them it is on its way."""
+
+MOST_DRIFT: Final = 0.4
+"""Largest distance of the first third of a shape between two others from its last third, in sizes
+of the hand: a hand that slowly goes from one to the other drifts by 0.6, one that holds a sign by
+0.07 (median) to 0.44 (95 %)."""
+
 
 @dataclass(frozen=True, eq=False)
 class Hold:
@@ -124,15 +133,35 @@ def _find_stretches(side: Side, poses: PoseSequence) -> list[tuple[float, float]
     if not len(seen) or len(seen) < LEAST_SEEN * len(poses):
         return []
     every = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_FRAMES)).round().astype(int)]
-    first, *others = _divide(normalize_hands(hands[every]))
-    if not others:
+    shown = normalize_hands(hands[every])
+    starts = _divide(shown)
+    if len(starts) == 1:
         return []
     moments: FloatArray = poses.time[every]
-    ends = [*(number - 1 for number in others), len(every) - 1]
-    return [
-        (float(moments[start]), float(moments[end]))
-        for start, end in zip((first, *others), ends, strict=True)
-    ]
+    held = _leave_out_changes(shown, starts)
+    return [(float(moments[start]), float(moments[end])) for start, end in held]
+
+
+def _leave_out_changes(shown: FloatArray, starts: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Return the first and the last frame of every shape in a division of ``(T, 21, 2)``.
+
+    At a change the hand shows a shape from where it is `CLEARLY` nearer to it than to the other
+    one; nothing where it never is.
+    """
+    parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
+    shapes = [_take_median(shown[slice(*part)]) for part in parts]
+    held = []
+    for number, (start, end) in enumerate(parts):
+        part, own = shown[start:end], shapes[number]
+        others = (*shapes[max(0, number - 1) : number], *shapes[number + 1 : number + 2])
+        nearest = np.min([measure_distances(part, other) for other in others], axis=0)
+        clear = start + np.flatnonzero(CLEARLY * measure_distances(part, own) < nearest)
+        if not len(clear):
+            return []
+        first = start if number == 0 else int(clear[0])
+        last = end - 1 if number == len(parts) - 1 else int(clear[-1])
+        held.append((first, last))
+    return held
 
 
 def _divide(shown: FloatArray) -> tuple[int, ...]:
@@ -165,7 +194,8 @@ def _judge(
 ) -> tuple[int, float] | None:
     """Return how many frames of a division show their own shape, and how far these are apart.
 
-    None where two shapes that follow each other are alike, or too few frames agree with theirs.
+    None where two shapes that follow each other are alike, too few frames agree with theirs, or a
+    shape between two others is the hand on its way.
 
     Parameters
     ----------
@@ -178,7 +208,9 @@ def _judge(
     parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
     for start, end in parts:
         if (start, end) not in medians:
-            medians[start, end] = normalize_hands(np.median(shown[start:end], axis=0)[None])[0]
+            medians[start, end] = _take_median(shown[start:end])
+    if any(_measure_drift(shown[slice(*part)]) > MOST_DRIFT for part in parts[1:-1]):
+        return None
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
         apart = float(measure_distances(medians[one][None], medians[other])[0])
@@ -194,3 +226,18 @@ def _judge(
                 return None
             agreeing += int(own_side.sum())
     return agreeing, nearest
+
+
+def _take_median(shown: FloatArray) -> FloatArray:
+    """Return the median shape ``(21, 2)`` of ``(T, 21, 2)``."""
+    median: FloatArray = normalize_hands(np.median(shown, axis=0)[None])[0]
+    return median
+
+
+def _measure_drift(shown: FloatArray) -> float:
+    """Return how far the first and the last third of ``(T, 21, 2)`` are apart."""
+    third = max(1, len(shown) // 3)
+    ends = normalize_hands(
+        np.stack([np.median(part, axis=0) for part in (shown[:third], shown[-third:])])
+    )
+    return float(measure_distances(ends[:1], ends[1])[0])
