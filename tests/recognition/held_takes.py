@@ -128,6 +128,8 @@ def follow(*takes: PoseSequence, transition: float = 0.4, unseen: bool = False) 
         xy=seen,
         hands=np.concatenate(hands),
         time=np.arange(len(seen)) / 25,
+        confidence=None,
+        world=None,
     )
 
 

@@ -30,7 +30,16 @@ the hand in a quarter of a sign's frames."""
 
 TWO_SHAPES: Final = 0.65
 """Distance of two shapes that one hand holds one after the other, in sizes of the hand: the parts
-of one sign are up to 0.58 apart where the hand wobbles or turns, two signs 0.7 and more."""
+of one sign are up to 0.58 apart where the hand wobbles or turns, most signs 0.7 and more."""
+
+TWO_STILL_SHAPES: Final = 0.5
+"""The same where both are held still: two fingers and a flat hand are 0.6 apart, one sign changes
+by up to 0.43 at once. Nearer shapes are accepted for each other."""
+
+STILL: Final = 0.2
+"""Largest median distance of the frames from their own shape where it is held still, over that of
+the two shapes: 0.05 to 0.13 for two drawn shapes, 0.24 and more for one rendered sign in two parts.
+"""
 
 AGREEING: Final = 0.85
 """Least share of the frames of a part that show its own shape: the change itself takes some."""
@@ -66,7 +75,8 @@ class Hold:
 def find_holds(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
     """Find the hand shapes that a take holds one after the other, where nothing moves clearly.
 
-    A hand takes another shape where its frames before and after differ by `TWO_SHAPES`. Between two
+    A hand takes another shape where its frames before and after differ by `TWO_SHAPES`, by less
+    where it holds both still (`TWO_STILL_SHAPES`). Between two
     holds the hand may be unseen; what it shows on its way counts with the shape it is nearer to.
 
     Parameters
@@ -214,7 +224,11 @@ def _judge(
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
         apart = float(measure_distances(medians[one][None], medians[other])[0])
-        if apart < TWO_SHAPES:
+        spread = max(
+            float(np.median(measure_distances(shown[slice(*part)], medians[part])))
+            for part in (one, other)
+        )
+        if apart < (TWO_STILL_SHAPES if spread <= STILL * apart else TWO_SHAPES):
             return None
         nearest = min(nearest, apart)
         for own, foreign in ((one, other), (other, one)):

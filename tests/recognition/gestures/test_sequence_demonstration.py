@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +17,9 @@ from app.recognition import (
     PoseError,
     PoseSequence,
     Recognizer,
+    Recording,
     draw_variants,
+    takes_in,
 )
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.hand_shape import mirror_hands
@@ -97,7 +100,9 @@ def test_one_shape_beside_sequences_alone_says_what_is_missing() -> None:
 
 def test_three_shapes_are_refused_with_their_moments(recognizer: Recognizer) -> None:
     take = show(FLAT, FIST, FLAT)
-    with pytest.raises(GestureError, match=r"the second from 1.\d s and the third from \d.\d s on"):
+    with pytest.raises(
+        GestureError, match=r"the second from \d.\d s and the third from \d.\d s on"
+    ):
         Gesture.from_demonstration("three", take)
     with pytest.raises(PoseError, match=r"it shows three hand shapes .* two at most"):
         recognizer.recognize(take)
@@ -217,3 +222,64 @@ def test_variants_vary_both_shapes() -> None:
     for variant in draw_variants(GO_UP.trajectory, 3, person="another"):
         for shown, made in zip(GO_UP.held_shapes, variant.held_shapes, strict=True):
             assert 0 < float(np.abs(made[0].xy - shown[0].xy).max()) < 1.5
+
+
+SIGNS = Path(__file__).parents[2] / "sign_recordings"
+"""What the models find in rendered clips of held signs between salutes, by two divers each."""
+
+
+def take_of(name: str) -> PoseSequence:
+    (only,) = takes_in(Recording.load(SIGNS / f"{name}.npz"))
+    return only.poses
+
+
+def put_on(body: PoseSequence, shown: PoseSequence) -> PoseSequence:
+    """Return 40 frames of a take's body with the right hand of another take."""
+    assert body.hands is not None
+    assert shown.hands is not None
+    own, other = (np.linspace(0, len(each) - 1, 40).round().astype(int) for each in (body, shown))
+    hands = np.full((40, 2, 21, 2), np.nan)
+    right = shown.hands[other, 1]
+    hands[:, 1] = right - right[:, :1] + body.hands[own, 1, :1]
+    return PoseSequence(
+        landmarks=body.landmarks,
+        xy=body.xy[own],
+        time=np.arange(40) / 25,
+        frame_size=body.frame_size,
+        hands=hands,
+    )
+
+
+def show_signs(
+    diver: int, *labels: str, transition: float = 0.4, unseen: bool = False
+) -> PoseSequence:
+    body = take_of(f"two-{diver}")
+    takes = (put_on(body, take_of(f"{label}-{diver}")) for label in labels)
+    return follow(*takes, transition=transition, unseen=unseen)
+
+
+PAIRS = [("ok", "two"), ("two", "ok"), ("stop", "two"), ("two", "stop")]
+
+
+@pytest.fixture(scope="module")
+def signs() -> Recognizer:
+    """Return a recogniser of what the first diver shows: four sequences and their signs."""
+    gestures = [Gesture.from_demonstration(", ".join(pair), show_signs(1, *pair)) for pair in PAIRS]
+    gestures += [
+        Gesture.from_demonstration(label, take_of(f"{label}-1")) for label in ("ok", "stop", "two")
+    ]
+    return Recognizer(Language("signs", gestures))
+
+
+@pytest.mark.parametrize(("transition", "unseen"), [(0.2, False), (0.8, True)])
+@pytest.mark.parametrize("pair", PAIRS)
+def test_what_the_models_find_of_another_diver_is_recognised(
+    signs: Recognizer, pair: tuple[str, str], transition: float, unseen: bool
+) -> None:
+    take = show_signs(2, *pair, transition=transition, unseen=unseen)
+    assert signs.recognize(take).label == ", ".join(pair)
+
+
+@pytest.mark.parametrize("label", ["ok", "stop", "two"])
+def test_another_divers_single_sign_stays_one(signs: Recognizer, label: str) -> None:
+    assert signs.recognize(take_of(f"{label}-2")).label == label

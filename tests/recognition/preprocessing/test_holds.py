@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import PoseSequence
@@ -65,6 +68,31 @@ def test_the_change_may_be_quick_or_slow_and_unseen(
 def test_a_shape_held_throughout_is_one_however_it_wobbles() -> None:
     takes = [hold(FLAT, roll=roll, frames=20) for roll in (-12, 12, -12, 12)]
     assert len(found(follow(*takes))) == 1
+
+
+def test_two_shapes_that_are_near_are_two_where_both_are_held_still() -> None:
+    assert len(found(follow(hold(TWO), hold(FLAT)))) == 2
+    wobbling = [hold(shape, roll=roll, frames=5) for shape in (TWO, FLAT) for roll in 4 * (-20, 20)]
+    assert len(found(follow(*wobbling, transition=0))) == 1
+
+
+@pytest.mark.parametrize("transition", [0.6, 1.0, 1.4])
+def test_a_slow_change_between_very_different_shapes_is_no_third_one(transition: float) -> None:
+    takes = hold(TWO, roll=-60, frames=25), hold(FIST, roll=100, frames=25)
+    assert len(found(follow(*takes, transition=transition))) == 2
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 2**32 - 1), frames=st.integers(3, 40))
+def test_hands_at_random_are_divided_without_an_error(seed: int, frames: int) -> None:
+    """As when a hand model finds a hand in bubbles; some parts have no frame of their own shape."""
+    random = np.random.default_rng(seed)
+    take = hold(FLAT, frames=frames)
+    assert take.hands is not None
+    noise = random.normal(0, random.choice([5.0, 40.0]), take.hands.shape)
+    holds = found(replace(take, hands=take.hands + noise))
+    assert len(holds) <= 3
+    assert all(one.end <= other.start for one, other in pairwise(holds))
 
 
 @pytest.mark.parametrize("lengths", [(25, 25, 25), (30, 25, 35), (20, 40, 20)])
