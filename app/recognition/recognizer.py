@@ -99,7 +99,8 @@ class Recognizer:
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
         still of insufficient quality get no label, and `fault` gives the reason. A hand that is not
-        seen, though its shape counts, is a finding; a fault where the switch is on.
+        seen, though its shape counts, is a finding; a fault where the switch is on. Three hand
+        shapes in sequence, more than a gesture has, are a finding too; none of them is compared.
 
         Raises
         ------
@@ -125,12 +126,13 @@ class Recognizer:
         holds = self._find_holds(seen, trajectory)
         query = self._condense(seen, trajectory, holds)
         table = self.compare(query)
-        many = f"it shows {describe_excess(holds)}" if len(holds) > MOST_HOLDS else None
+        many = f"the take shows {describe_excess(holds)}" if len(holds) > MOST_HOLDS else None
         if holds and not np.isfinite(table.scores).any():
             raise PoseError(f"nothing to compare: {many or self._describe_others(holds)}")
         result = self.decide(table)
         findings = repair.findings if repair else ()
-        poor = many or (self._fault(repair, table, result.nearest) if repair else None)
+        findings = (*findings, many) if many else findings
+        poor = self._fault(repair, table, result.nearest) if repair else None
         if unseen := self._find_unseen_shape(table, result.nearest):
             insists = self.language.gesture(result.nearest).switches.hand_shape == "on"
             poor, findings = (poor or unseen, findings) if insists else (poor, (*findings, unseen))

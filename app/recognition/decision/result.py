@@ -46,7 +46,7 @@ class Recognition:
         gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
         Repairs of the poses before recognition, as sentences with counts; and that no hand is seen
-        where the hand shape of `nearest` counts.
+        where the hand shape of `nearest` counts, or more shapes are held than a gesture has.
     fault
         Why the poses are too poor to recognise, in words; `label` is then None.
     scores

@@ -70,8 +70,10 @@ def find_held_differences(
 
     """
     if not shapes:
-        what = "is one" if len(shown) == 1 else "is two in sequence"
-        return (_difference(1.0, f"no hand holds a shape in this take, and {label!r} {what}"),)
+        words = f"no hand holds a shape in this take, and {label!r} is one"
+        if len(shown) > 1:
+            words = f"no hand holds two shapes in this take, and {label!r} is two in sequence"
+        return (_difference(1.0, words),)
     if len(shapes) != len(shown):
         return (_difference(1.0, _describe_number(label, shapes, shown)),)
     if len(shown) == 1:

@@ -82,7 +82,7 @@ SEQUENCE = ((shape(FLAT),), (shape(FIST),))
 @pytest.mark.parametrize(
     ("shapes", "words"),
     [
-        ((), "no hand holds a shape in this take, and 'go' is two in sequence"),
+        ((), "no hand holds two shapes in this take, and 'go' is two in sequence"),
         (SEQUENCE[:1], "the second shape is missing: 'go' is two in sequence"),
         (SEQUENCE[1:], "the first shape is missing: 'go' is two in sequence"),
         ((((shape(TWO).turn(90)),),), "one hand shape is held in this take, and 'go' is two in "),

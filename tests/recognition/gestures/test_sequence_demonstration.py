@@ -104,8 +104,22 @@ def test_three_shapes_are_refused_with_their_moments(recognizer: Recognizer) -> 
         GestureError, match=r"the second from \d.\d s and the third from \d.\d s on"
     ):
         Gesture.from_demonstration("three", take)
-    with pytest.raises(PoseError, match=r"it shows three hand shapes .* two at most"):
+    with pytest.raises(PoseError, match=r"the take shows three hand shapes .* two at most"):
         recognizer.recognize(take)
+
+
+def test_three_shapes_beside_a_small_movement_are_a_finding(recognizer: Recognizer) -> None:
+    way = 0.12 * np.sin(np.linspace(0, 6 * np.pi, 120))
+    parts = [
+        hold(shape, moving=np.column_stack([0 * part, part]))
+        for shape, part in zip((FLAT, FIST, FLAT), np.split(way, 3), strict=True)
+    ]
+    nod = Gesture.from_demonstration("nod", follow(*parts), salient=["right_wrist"])
+    beside = Recognizer(replace(recognizer.language, gestures=(*recognizer.language.gestures, nod)))
+    result = beside.recognize(follow(*parts))
+    assert result.nearest == "nod"
+    assert any("three hand shapes" in each for each in result.findings)
+    assert result.fault is None
 
 
 def test_the_other_hand_shows_the_same_sequence_unless_switched_off(
