@@ -7,8 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.recording.recording import Recording
 from tests.recognition.parametric_hand import Finger, Fingers, View, hand_xy
 
 CURLED = (75.0, 85.0, 50.0)
@@ -128,6 +130,31 @@ def follow(*takes: PoseSequence, transition: float = 0.4, unseen: bool = False) 
         xy=seen,
         hands=np.concatenate(hands),
         time=np.arange(len(seen)) / 25,
+        confidence=None,
+        world=None,
+    )
+
+
+def between_salutes(*takes: PoseSequence) -> Recording:
+    """Return a recording of takes of the right hand, each between two salutes of 0.6 s."""
+    parts, salute = [], []
+    for take in takes:
+        first, last = (_repeat(take, frame) for frame in (0, -1))
+        parts += [first, take, last, _repeat(take, -1)]
+        salute += [np.ones(len(first)), np.zeros(len(take)), np.ones(len(last))]
+        salute += [np.zeros(len(last))]
+    poses = follow(*parts, transition=0)
+    hands = tuple((Hand(frame[1], "right", 1.0),) for frame in _hands_of(poses))
+    return Recording(replace(poses, hands=None), hands, np.concatenate(salute))
+
+
+def _repeat(take: PoseSequence, frame: int) -> PoseSequence:
+    """Return 0.6 s of one frame of a take."""
+    return replace(
+        take,
+        xy=np.repeat(take.xy[[frame]], 15, axis=0),
+        time=np.arange(15) / 25,
+        hands=np.repeat(_hands_of(take)[[frame]], 15, axis=0),
         confidence=None,
         world=None,
     )

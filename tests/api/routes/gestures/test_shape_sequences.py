@@ -2,35 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import httpx
-import numpy as np
 import pytest
 
 from app.api.services.studio import Studio
-from app.recognition import Recording
 from app.recognition.features.png import decode_png
-from app.recognition.poses.frame import Hand
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip
-from tests.recognition.held_takes import FIST, FLAT, TWO, follow, hold
+from tests.recognition.held_takes import FIST, FLAT, TWO, between_salutes, follow, hold
 from tests.recognition.parametric_hand import Fingers
-
-SALUTE = 15
-"""Frames, 0.6 s."""
 
 
 def add_clip(studio: Studio, *shapes: Fingers, seed: int = 0) -> str:
     """Store a clip of hand shapes one after the other between two salutes; return its id."""
-    held = follow(*(hold(shape, frames=30, seed=seed + n) for n, shape in enumerate(shapes)))
-    ends = [hold(shape, frames=SALUTE) for shape in (shapes[0], shapes[-1])]
-    poses = follow(ends[0], held, ends[1], hold(shapes[-1], frames=10), transition=0)
-    salute = np.zeros(len(poses))
-    salute[:SALUTE] = salute[SALUTE + len(held) : 2 * SALUTE + len(held)] = 1.0
-    assert poses.hands is not None
-    hands = tuple((Hand(frame[1], "right", 1.0),) for frame in poses.hands)
-    return add_recorded_clip(studio, Recording(replace(poses, hands=None), hands, salute))
+    takes = (hold(shape, frames=30, seed=seed + n) for n, shape in enumerate(shapes))
+    return add_recorded_clip(studio, between_salutes(follow(*takes)))
 
 
 @pytest.fixture
