@@ -255,7 +255,9 @@ def describe_shown(gesture: Gesture) -> str:
     if gesture.trajectory is None:
         return followed
     if gesture.is_held:
-        return f"held hand shape: {_name_sides(gesture.trajectory.hands)} hand"
+        several = len(gesture.held_shapes) > 1
+        shown = f"held hand shape{'s' * several}: {_name_sides(gesture.trajectory.hands)} hand"
+        return f"{shown}, two in sequence" if several else shown
     if not gesture.trajectory.moving_hands:
         return followed
     return f"{followed}; hand shape seen: {_name_sides(gesture.trajectory.moving_hands)} hand"

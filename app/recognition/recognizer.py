@@ -24,7 +24,14 @@ from app.recognition.language.language import Language
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands
+from app.recognition.preprocessing.holds import (
+    MOST_HOLDS,
+    Hold,
+    describe_excess,
+    find_holds,
+    find_single_hold,
+    keep_holds,
+)
 from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
@@ -73,6 +80,9 @@ class Recognizer:
         self._reads_hands = traits.compares_motion and any(
             gesture.is_held for gesture in language.gestures
         )
+        self._reads_sequences = self._reads_hands and any(
+            len(gesture.held_shapes) > 1 for gesture in language.gestures
+        )
         counting = map(self.vote.sensitivity, range(len(self.language.gestures)))
         self._reads_moving_hands = any(each is not None and each.hand_shape for each in counting)
         wanted = tuning.keypoints_repaired
@@ -90,6 +100,8 @@ class Recognizer:
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
         still of insufficient quality get no label, and `fault` gives the reason. So do poses in
         which no hand is seen though the hand shape of the nearest gesture counts.
+        Three hand shapes in sequence, more than a gesture has, are a finding; none of them is
+        compared.
 
         Raises
         ------
@@ -111,16 +123,31 @@ class Recognizer:
         """
         repair = repair_poses(poses) if self.repairs else None
         seen = repair.poses if repair else poses
-        query = self._condense(seen, repair.trajectory if repair else Trajectory.from_poses(poses))
+        trajectory = repair.trajectory if repair else Trajectory.from_poses(poses)
+        holds = self._find_holds(seen, trajectory)
+        query = self._condense(seen, trajectory, holds)
         table = self.compare(query)
+        many = f"the take shows {describe_excess(holds)}" if len(holds) > MOST_HOLDS else None
+        if holds and not np.isfinite(table.scores).any():
+            raise PoseError(f"nothing to compare: {many or self._describe_others(holds)}")
         result = self.decide(table)
         findings = repair.findings if repair else ()
+        findings = (*findings, many) if many else findings
         poor = self._fault(repair, table, result.nearest) if repair else None
         poor = poor or self._find_unseen_shape(table, result.nearest)
         if poor or findings:
             label = None if poor else result.label
             result = replace(result, label=label, findings=findings, fault=poor)
         return Trace(query=query, score_table=table, result=result)
+
+    def _describe_others(self, holds: Sequence[Hold]) -> str:
+        """Return how held hands differ from those of all gestures of the language, in words."""
+        shown = "one hand shape is" if len(holds) == 1 else "two hand shapes in sequence are"
+        number = len(holds[0].hands)
+        return (
+            f"{shown} held in this take, by {number} hand{'s' * (number > 1)}, and no gesture of "
+            f"{self.language.name!r} has as many of both"
+        )
 
     def _fault(self, repair: Repair, table: ScoreTable, nearest: str) -> str | None:
         """Return why poses are too poor to be the nearest gesture, with either hand; or None."""
@@ -166,12 +193,20 @@ class Recognizer:
 
         """
         seen = repair_poses(poses).poses if self.repairs else poses
-        return self._condense(seen, Trajectory.from_poses(seen))
+        trajectory = Trajectory.from_poses(seen)
+        return self._condense(seen, trajectory, self._find_holds(seen, trajectory))
 
-    def _condense(self, poses: PoseSequence, trajectory: Trajectory) -> Trajectory:
+    def _find_holds(self, poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
+        """Return the held hand shapes of a query, as many in sequence as the language needs."""
+        if self._reads_sequences:
+            return find_holds(poses, trajectory)
+        return find_single_hold(poses, trajectory) if self._reads_hands else ()
+
+    def _condense(
+        self, poses: PoseSequence, trajectory: Trajectory, holds: Sequence[Hold]
+    ) -> Trajectory:
         """Condense a query, with the hands that the language needs: held ones, moving ones."""
-        if self._reads_hands:
-            trajectory = replace(trajectory, hands=find_held_hands(poses, trajectory))
+        trajectory = keep_holds(trajectory, holds)
         if self._reads_moving_hands:
             trajectory = replace(trajectory, moving_hands=find_moving_hands(poses))
         return condense(trajectory)
@@ -198,9 +233,10 @@ class Recognizer:
         """
         if not np.isfinite(compared.scores).any():
             if self._reads_hands and not self.vote.needed:
+                among = ", or two in sequence," if self._reads_sequences else ","
                 raise PoseError(
-                    f"nothing to compare: no hand is seen in this take that holds a shape, as the "
-                    f"gestures of {self.language.name!r} do"
+                    f"nothing to compare: no hand is seen in this take that holds a shape{among} "
+                    f"as the gestures of {self.language.name!r} do"
                 )
             beside = ", and no hand is seen that holds a shape" if self._reads_hands else ""
             raise PoseError(

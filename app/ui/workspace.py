@@ -18,7 +18,7 @@ from app.recognition.features.hand_image import draw_hands
 from app.recognition.features.trajectory_image import draw
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import find_held_hands
+from app.recognition.preprocessing.holds import find_holds, keep_holds
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.text.wording import humanize_all
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -341,12 +341,13 @@ def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
     """Draw a take's paths of the named landmarks; None when it has no such landmark.
 
-    Without names it is drawn as a held hand shape; None when it holds none.
+    Without names it is drawn as the hand shape that it holds, or two in sequence; None without.
     """
     try:
         if not names:
-            hands = find_held_hands(poses, Trajectory.from_poses(poses))
-            return mark_direction(draw_hands(hands), None) if hands else None
+            seen = Trajectory.from_poses(poses)
+            held = keep_holds(seen, find_holds(poses, seen)).held_shapes
+            return mark_direction(draw_hands(*held), None) if held else None
         trajectory = Trajectory.from_poses(poses).select(names)
         return mark_direction(draw(trajectory).image, trajectory)
     except PoseError:

@@ -11,7 +11,7 @@ from app.cli.clip_argument import (
     parse_demonstrations,
 )
 from app.recognition import Gesture, GestureError
-from tests.recognition.held_takes import FIST, hold
+from tests.recognition.held_takes import FIST, FLAT, follow, hold
 from tests.recognition.moving_takes import circle, draw, without_hands
 
 
@@ -66,6 +66,7 @@ def test_what_a_gesture_is_made_of_is_told() -> None:
     drawn = draw(FIST, circle())
     for poses, words in (
         (hold(FIST), "held hand shape: right hand"),
+        (follow(hold(FLAT), hold(FIST)), "held hand shapes: right hand, two in sequence"),
         (drawn, "salient: right_wrist; hand shape seen: right hand"),
         (without_hands(drawn), "salient: right_wrist"),
     ):

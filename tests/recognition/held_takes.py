@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import pairwise
+
 import numpy as np
 
+from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.recording.recording import Recording
 from tests.recognition.parametric_hand import Finger, Fingers, View, hand_xy
 
 CURLED = (75.0, 85.0, 50.0)
@@ -96,3 +101,65 @@ def hold(
 def _other(name: str) -> str:
     swaps = {"left": "right", "right": "left"}
     return "_".join(swaps.get(word, word) for word in name.split("_"))
+
+
+def follow(*takes: PoseSequence, transition: float = 0.4, unseen: bool = False) -> PoseSequence:
+    """Return a take in which the hands of some takes are shown one after the other.
+
+    Parameters
+    ----------
+    takes
+        At 25 frames a second, of the same hands.
+    transition
+        Seconds from one to the next, in which body and hands go straight to their new places.
+    unseen
+        Whether no hand is seen in the meantime.
+
+    """
+    shares = np.arange(1, round(25 * transition) + 1) / (round(25 * transition) + 1)
+    xy, hands = [takes[0].xy], [_hands_of(takes[0])]
+    for before, after in pairwise(takes):
+        own, others = _hands_of(before)[-1], _hands_of(after)[0]
+        between = own + shares[:, None, None, None] * (others - own)
+        hands += [np.full_like(between, np.nan) if unseen else between, _hands_of(after)]
+        way = shares[:, None, None] * (after.xy[0] - before.xy[-1])
+        xy += [before.xy[-1] + way, after.xy]
+    seen = np.concatenate(xy)
+    return replace(
+        takes[0],
+        xy=seen,
+        hands=np.concatenate(hands),
+        time=np.arange(len(seen)) / 25,
+        confidence=None,
+        world=None,
+    )
+
+
+def between_salutes(*takes: PoseSequence) -> Recording:
+    """Return a recording of takes of the right hand, each between two salutes of 0.6 s."""
+    parts, salute = [], []
+    for take in takes:
+        first, last = (_repeat(take, frame) for frame in (0, -1))
+        parts += [first, take, last, _repeat(take, -1)]
+        salute += [np.ones(len(first)), np.zeros(len(take)), np.ones(len(last))]
+        salute += [np.zeros(len(last))]
+    poses = follow(*parts, transition=0)
+    hands = tuple((Hand(frame[1], "right", 1.0),) for frame in _hands_of(poses))
+    return Recording(replace(poses, hands=None), hands, np.concatenate(salute))
+
+
+def _repeat(take: PoseSequence, frame: int) -> PoseSequence:
+    """Return 0.6 s of one frame of a take."""
+    return replace(
+        take,
+        xy=np.repeat(take.xy[[frame]], 15, axis=0),
+        time=np.arange(15) / 25,
+        hands=np.repeat(_hands_of(take)[[frame]], 15, axis=0),
+        confidence=None,
+        world=None,
+    )
+
+
+def _hands_of(take: PoseSequence) -> FloatArray:
+    assert take.hands is not None
+    return take.hands

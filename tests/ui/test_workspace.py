@@ -13,12 +13,13 @@ import numpy as np
 import pytest
 import viser
 
-from app.recognition import PoseError
+from app.recognition import Gesture, PoseError
 from app.ui.camera import CUBE, FLAT
 from app.ui.workspace import Range, Workspace, compared_images, initial_frame
 from tests.api.recordings import recording_of
 from tests.api.running import until
 from tests.recognition.damaged_clips import write_clip
+from tests.recognition.held_takes import FIST, TWO, follow, hold
 from tests.ui.views import view_in
 
 
@@ -149,6 +150,18 @@ def test_a_take_is_drawn_with_the_landmarks_of_each_gesture_it_is_held_against(
         "line (expected)",
         "circle (chosen)",
     ]
+
+
+def test_a_take_of_two_hand_shapes_is_drawn_with_both(tmp_path: Path) -> None:
+    view = view_in(tmp_path, recognised=True)
+    assert view.language is not None
+    assert view.recognition is not None
+    take = follow(hold(TWO), hold(FIST))
+    gesture = Gesture.from_demonstration(view.recognition.nearest, take)
+    view = replace(view, language=replace(view.language, gestures=[gesture]))
+    assert view.recognition is not None
+    (_, drawn), (_, chosen) = compared_images(view, view.recognition, take)
+    assert np.array_equal(drawn, chosen)
 
 
 def test_opening_and_closing_at_once_leaves_standard_output_alone() -> None:

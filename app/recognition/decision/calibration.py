@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from app.recognition.decision.fused_vote import FusedVote
+from app.recognition.decision.hand_references import PALM_EXPONENT, HeldShapes, measure_mean_palm
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     describe_movement,
@@ -63,11 +64,6 @@ HAND_REACH = 4.8
 
 TYPICAL_PALM = 1.9
 """Palm in sizes of the hand (`HandShape.palm`), between an open hand's 1.6 and a fist's 2.5."""
-
-PALM_EXPONENT = 1.5
-"""Exponent of the palm in thresholds: landmarks err by a share of the palm, so that a small fist
-errs by more of its size (1), and hidden fingers err by more. At equal foreign takes 76 % of those
-from other views are accepted with 0, 84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
 
 OTHERS = 2.0
 """Ratio of squared distances of other people's takes to the demonstrator's own: 1.9 to 2.1 for
@@ -132,10 +128,8 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
-        else replace(
-            gesture, thresholds=_choose_hand_thresholds(gesture.trajectory.hands), rates=None
-        )
-        if gesture.trajectory.hands
+        else replace(gesture, thresholds=_choose_hand_thresholds(gesture.held_shapes), rates=None)
+        if gesture.is_held
         else _add_hand_thresholds(
             _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others),
             vote.find_counting_hands(index),
@@ -148,14 +142,13 @@ def _add_hand_thresholds(gesture: Gesture, hands: Sequence[HandShape]) -> Gestur
     """Return a movement with thresholds for its hand shape; as it is where that does not count."""
     if not hands:
         return gesture
-    thresholds = {**gesture.thresholds, **_choose_hand_thresholds(hands)}
+    thresholds = {**gesture.thresholds, **_choose_hand_thresholds([hands])}
     return replace(gesture, thresholds=thresholds)
 
 
-def _choose_hand_thresholds(hands: Sequence[HandShape]) -> dict[str, float]:
+def _choose_hand_thresholds(shapes: HeldShapes) -> dict[str, float]:
     """Return the thresholds of the hand shapes of a first demonstration."""
-    palm = float(np.mean([hand.palm for hand in hands]))
-    reach = HAND_REACH * (palm / TYPICAL_PALM) ** PALM_EXPONENT
+    reach = HAND_REACH * (measure_mean_palm(shapes) / TYPICAL_PALM) ** PALM_EXPONENT
     return {voter.name: float(f"{reach * voter.within:.{DIGITS}g}") for voter in HAND_VOTERS}
 
 

@@ -260,9 +260,10 @@ class FusedVote:
         set's accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn`
         they are left out in any case.
 
-        A query that holds a hand shape is compared with the held shapes, and every other one with
-        the movements. One that holds a shape and moves as little as the smallest movement may be
-        either: it is the movement if it is accepted as one, else what it is less novel as.
+        A query that holds a hand shape is compared with the held shapes, one that holds two in
+        sequence with the sequences, and every other one with the movements. One that holds a shape
+        and moves as little as the smallest movement may be either: it is the movement if it is
+        accepted as one, else what it is less novel as.
         """
         if not len(self._hands):
             return self._compare_movements(trajectory, drawn)
@@ -284,7 +285,7 @@ class FusedVote:
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a held hand shape with those of the language."""
-        sides = self._hands.distances(trajectory.hands)
+        sides = self._hands.distances(trajectory.held_shapes)
         shares = weigh_distances(sides, self._hands.weights, self._hands.between)
         chosen = self._shown.find_nearest(shares.sum(axis=0))
         distances = np.full((len(_ALL_NAMES), len(chosen)), np.inf)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +13,23 @@ import numpy.typing as npt
 from app.recognition.decision.fusion import fuse, weigh_voters
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.frame import SIDES
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.hand_shape import HandShape, mirror_hands
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.registry import HAND_VOTERS
+
+PALM_EXPONENT = 1.5
+"""Exponent of the palm in thresholds: landmarks err by a share of the palm, so that a small fist
+errs by more of its size (1), and hidden fingers err by more. At equal foreign takes 76 % of those
+from other views are accepted with 0, 84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
 
 SAME_SHAPE = 0.25
 """Score below which two held shapes are the same one: that of most takes from another view."""
 
 Described = list[FloatArray]
 """Per voter the descriptors of M hands, ``(M, D)``."""
+
+HeldShapes = Sequence[Sequence[HandShape]]
+"""The hands of one shape, or of two in sequence (`Trajectory.held_shapes`)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +42,8 @@ class HandReferences:
         S.
     rows
         ``(M,)``: indices of the references that hold a shape.
-    hands
-        Their hands.
+    shapes
+        Their hands: of one shape, or of two in sequence.
     mirrored
         ``(M,)``: whether the mirror image is the same gesture: shown with the other hand, or with
         the back of the hand.
@@ -45,7 +54,7 @@ class HandReferences:
 
     count: int
     rows: npt.NDArray[np.intp]
-    hands: tuple[tuple[HandShape, ...], ...]
+    shapes: tuple[HeldShapes, ...]
     mirrored: npt.NDArray[np.bool_]
     weights: FloatArray
     between: FloatArray
@@ -65,18 +74,14 @@ class HandReferences:
             ``(S,)``: index of each one's gesture in the language.
 
         """
-        held = [
-            (row, each.trajectory.hands)
-            for row, each in enumerate(gestures)
-            if each.trajectory is not None and each.trajectory.hands
-        ]
+        held = [(row, each.held_shapes) for row, each in enumerate(gestures) if each.is_held]
         rows = np.array([row for row, _ in held], dtype=np.intp)
-        hands = tuple(each for _, each in held)
+        shapes = tuple(each for _, each in held)
         switches = [gestures[row].switches.mirror for row in rows]
         made = cls(
             count=len(gestures),
             rows=rows,
-            hands=hands,
+            shapes=shapes,
             mirrored=np.array([switch != "off" for switch in switches], dtype=bool),
             weights=np.ones(len(HAND_VOTERS)),
             between=np.array([voter.between for voter in HAND_VOTERS]),
@@ -85,12 +90,12 @@ class HandReferences:
             return made
         apart = owners[rows][:, None] != owners[rows]
         shown = replace(made, mirrored=np.zeros(len(rows), dtype=bool))
-        own = np.array([shown.distances(each)[:, rows] for each in hands])
+        own = np.array([shown.distances(each)[:, rows] for each in shapes])
         pairs = [own[:, voter][apart] for voter in range(len(HAND_VOTERS))]
         weights, between = weigh_voters(
             HAND_VOTERS, [pair[np.isfinite(pair)] for pair in pairs], landmarks=1
         )
-        turned = np.array([shown.distances(_mirror(each))[:, rows] for each in hands])
+        turned = np.array([shown.distances(_mirror(each))[:, rows] for each in shapes])
         alike = (fuse(turned.transpose(1, 0, 2), weights, between) < SAME_SHAPE) & apart
         other = np.array([switch == "auto" for switch in switches]) & alike.any(axis=1)
         return replace(made, mirrored=made.mirrored & ~other, weights=weights, between=between)
@@ -106,64 +111,130 @@ class HandReferences:
             self,
             count=len(references),
             rows=np.searchsorted(references, self.rows[kept]),
-            hands=tuple(self.hands[index] for index in kept.tolist()),
+            shapes=tuple(self.shapes[index] for index in kept.tolist()),
             mirrored=self.mirrored[kept],
         )
 
-    def distances(self, hands: Sequence[HandShape]) -> FloatArray:
+    def distances(self, shapes: HeldShapes) -> FloatArray:
         """Compute the distances of held hands to all references.
 
         A reference of one hand is compared with each hand of the query, one of two hands with
-        both, in the arrangement in which it is nearest.
+        both, in the arrangement in which it is nearest. Two shapes in sequence are compared with
+        two, in their order and with the same hand: the farther one counts, so that both must fit.
+        Each is measured by its own palm, of which its landmarks' errors are a share.
 
         Returns
         -------
-        ``(2, S)`` by voter; infinite for references that hold no shape, or more hands than the
-        query.
+        ``(2, S)`` by voter; infinite for references that hold no shape, another number of shapes,
+        or more hands than the query.
 
         """
         nearest = np.full((len(HAND_VOTERS), self.count), np.inf)
         scores = np.full(self.count, np.inf)
-        for number, (members, described) in self._described.items():
-            for seen, allowed in ((tuple(hands), True), (_mirror(hands), self.mirrored[members])):
-                for arranged in _arrange(seen, number):
-                    found = _compare(arranged, described)
-                    score = fuse(found, self.weights, self.between)
+        for number, group in self._described.items():
+            if len(shapes) != len(group.parts):
+                continue
+            members = group.members
+            for seen, allowed in ((shapes, True), (_mirror(shapes), self.mirrored[members])):
+                for arranged in _arrange(seen, number.hands):
+                    found, score = self._compare_parts(arranged, group)
                     better = (score < scores[self.rows[members]]) & allowed
                     rows = self.rows[members[better]]
                     scores[rows], nearest[:, rows] = score[better], found[:, better]
         return nearest
 
+    def _compare_parts(self, shapes: HeldShapes, group: _Group) -> tuple[FloatArray, FloatArray]:
+        """Return the distances ``(2, M)`` and scores ``(M,)`` of the farther parts."""
+        found = [
+            _compare(hands, part) * factors
+            for hands, part, factors in zip(shapes, group.parts, group.factors, strict=True)
+        ]
+        scores = [fuse(each, self.weights, self.between) for each in found]
+        nearest, score = found[0], scores[0]
+        for other, farther in zip(found[1:], scores[1:], strict=True):
+            nearest = np.where(farther > score, other, nearest)
+            score = np.maximum(farther, score)
+        return nearest, score
+
     @cached_property
-    def _described(self) -> dict[int, tuple[npt.NDArray[np.intp], list[Described]]]:
-        """By the number of hands the places of its references in `rows`, and their hands."""
-        by_number: dict[int, tuple[npt.NDArray[np.intp], list[Described]]] = {}
-        for number in sorted({len(each) for each in self.hands}):
-            members = np.flatnonzero([len(each) == number for each in self.hands])
-            by_number[number] = (
-                members,
+    def _described(self) -> dict[_Number, _Group]:
+        """The references with as many shapes and hands, by that number."""
+        numbers = [_Number(len(each), len(each[0])) for each in self.shapes]
+        return {
+            number: _Group.of(
+                np.flatnonzero([each == number for each in numbers]), self.shapes, number
+            )
+            for number in sorted(set(numbers))
+        }
+
+
+class _Number(NamedTuple):
+    """How many shapes a reference holds one after the other, and with how many hands."""
+
+    shapes: int
+    hands: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Group:
+    """M references with as many shapes and hands.
+
+    Attributes
+    ----------
+    members
+        ``(M,)``: their places in `HandReferences.shapes`.
+    parts
+        By shape and hand their descriptors.
+    factors
+        By shape ``(M,)`` factors on distances: 1 where there is one shape, else they are greater
+        for a smaller palm than the mean of the reference's hands, on which its thresholds depend.
+
+    """
+
+    members: npt.NDArray[np.intp]
+    parts: list[list[Described]]
+    factors: list[FloatArray]
+
+    @classmethod
+    def of(
+        cls, members: npt.NDArray[np.intp], shapes: Sequence[HeldShapes], number: _Number
+    ) -> _Group:
+        chosen = [shapes[index] for index in members.tolist()]
+        palms = np.array([[measure_mean_palm([part]) for part in each] for each in chosen])
+        means = np.array([measure_mean_palm(each) for each in chosen])
+        return cls(
+            members,
+            [
                 [
                     [
-                        np.array([voter.describe(self.hands[index][hand]) for index in members])
+                        np.array([voter.describe(each[part][hand]) for each in chosen])
                         for voter in HAND_VOTERS
                     ]
-                    for hand in range(number)
-                ],
-            )
-        return by_number
+                    for hand in range(number.hands)
+                ]
+                for part in range(number.shapes)
+            ],
+            [*((means[:, None] / palms) ** PALM_EXPONENT).T],
+        )
 
 
-def _mirror(hands: Sequence[HandShape]) -> tuple[HandShape, ...]:
-    return tuple(hand.mirror() for hand in reversed(hands))
+def measure_mean_palm(shapes: HeldShapes) -> float:
+    """Return the mean palm of all hands of some shapes, in sizes of the hand."""
+    return float(np.mean([hand.palm for hands in shapes for hand in hands]))
 
 
-def _arrange(hands: Sequence[HandShape], count: int) -> list[tuple[HandShape, ...]]:
+def _mirror(shapes: HeldShapes) -> HeldShapes:
+    return tuple(mirror_hands(hands) for hands in shapes)
+
+
+def _arrange(shapes: HeldShapes, count: int) -> list[HeldShapes]:
     """Return the choices of one hand, or both in order of their sides; none of too few."""
-    if count > len(hands):
+    sides = [hand.side for hand in shapes[0]] if shapes else []
+    if count > len(sides):
         return []
     if count == 1:
-        return [(hand,) for hand in hands]
-    return [tuple(sorted(hands, key=lambda hand: SIDES.index(hand.side)))]
+        return [[(hands[index],) for hands in shapes] for index in range(len(sides))]
+    return [[sorted(hands, key=lambda hand: SIDES.index(hand.side)) for hands in shapes]]
 
 
 def _compare(hands: Sequence[HandShape], described: Sequence[Described]) -> FloatArray:

@@ -45,7 +45,8 @@ class Recognition:
         Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
         gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
-        Repairs of the poses before recognition, as sentences with counts.
+        Repairs of the poses before recognition, as sentences with counts; and that more shapes are
+        held than a gesture has.
     fault
         Why the poses are too poor to recognise, or that no hand is seen though the hand shape of
         `nearest` counts, in words; `label` is then None.

@@ -22,7 +22,7 @@ from app.recognition.explanation.counterfactual_search import (
 )
 from app.recognition.explanation.differences import Difference, find_differences
 from app.recognition.explanation.hand_differences import (
-    find_hand_differences,
+    find_held_differences,
     find_moving_hand_differences,
 )
 from app.recognition.explanation.pairing import Pairing
@@ -179,8 +179,10 @@ class _Pairings:
     def differences(self, index: int) -> tuple[Difference, ...]:
         """Return the differences between the query and a gesture."""
         gesture = self._gesture(index)
-        if gesture.trajectory is not None and gesture.is_held:
-            return find_hand_differences(gesture.label, self._query.hands, gesture.trajectory.hands)
+        if gesture.is_held:
+            return find_held_differences(
+                gesture.label, self._query.held_shapes, gesture.held_shapes
+            )
         example = self._example(index)
         if example is None:
             return ()

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from app.recognition.decision.hand_references import HeldShapes
 from app.recognition.decision.moving_shapes import OTHER_SHAPE, measure_shapes
 from app.recognition.explanation.differences import Difference
 from app.recognition.poses.hand_shape import HandShape
@@ -45,6 +46,85 @@ BONE_SHARES = np.array([0.48, 0.29, 0.23])
 _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
 
 
+ORDINALS = ("first", "second")
+
+
+def find_held_differences(
+    label: str, shapes: HeldShapes, shown: HeldShapes
+) -> tuple[Difference, ...]:
+    """Find how a query's held hands differ from a gesture's, the largest share first.
+
+    Parameters
+    ----------
+    label
+        The gesture's.
+    shapes
+        The query's: one shape, or two in sequence; none: that is the difference.
+    shown
+        The gesture's, one or two.
+
+    Returns
+    -------
+    Of two sequences the order, where the other one fits; else the fingers of both shapes. The
+    farther shape decides, so that shares of the other one are smaller as it is nearer.
+
+    """
+    if not shapes:
+        words = f"no hand holds a shape in this take, and {label!r} is one"
+        if len(shown) > 1:
+            words = f"no hand holds two shapes in this take, and {label!r} is two in sequence"
+        return (_difference(1.0, words),)
+    if len(shapes) != len(shown):
+        return (_difference(1.0, _describe_number(label, shapes, shown)),)
+    if len(shown) == 1:
+        return find_hand_differences(label, shapes[0], shown[0])
+    pairs, whole = _pair_parts(shapes, shown)
+    _, swapped = _pair_parts(shapes[::-1], shown)
+    if swapped <= OTHER_SHAPE < whole:
+        words = f"the shapes come in the other order than in {label!r}"
+        return (_difference(_share(whole, swapped), words),)
+    found = [
+        _difference(share * apart / whole, f"in the {ordinal} shape {words}")
+        for ordinal, (query, example) in zip(ORDINALS, pairs, strict=True)
+        if (apart := measure_distance(query, example)) > 0
+        for share, words in _list_shares(query, example, label)
+        if share * apart / whole >= LEAST_SHARE
+    ]
+    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+
+
+def _describe_number(label: str, shapes: HeldShapes, shown: HeldShapes) -> str:
+    """Return in words that a take holds one shape where a gesture is two, or the reverse."""
+    if len(shapes) > len(shown):
+        return f"two hand shapes are held one after the other in this take, and {label!r} is one"
+    apart = [_pair_parts(shapes, [hands])[1] for hands in shown]
+    if min(apart) > OTHER_SHAPE:
+        return f"one hand shape is held in this take, and {label!r} is two in sequence"
+    missing = ORDINALS[1 - int(np.argmin(apart))]
+    return f"the {missing} shape is missing: {label!r} is two in sequence"
+
+
+def _pair_parts(
+    shapes: HeldShapes, shown: HeldShapes
+) -> tuple[list[tuple[HandShape, HandShape]], float]:
+    """Pair a hand of a query, as seen or mirrored, with one of a gesture, the same in all parts.
+
+    Returns the pairs ``(query, example)`` that are nearest, and the distance of the farther one.
+    """
+    choices = [
+        [
+            (hands[hand].mirror() if mirrored else hands[hand], examples[example])
+            for hands, examples in zip(shapes, shown, strict=True)
+        ]
+        for example in range(len(shown[0]))
+        for hand in range(len(shapes[0]))
+        for mirrored in (False, True)
+    ]
+    distances = [max(measure_distance(*pair) for pair in pairs) for pairs in choices]
+    nearest = int(np.argmin(distances))
+    return choices[nearest], distances[nearest]
+
+
 def find_hand_differences(
     label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
 ) -> tuple[Difference, ...]:
@@ -55,24 +135,28 @@ def find_hand_differences(
     label
         The gesture's.
     hands
-        The query's held hands; none: that is the difference.
+        The query's held hands, at least one.
     shown
         The gesture's.
 
     """
-    if not hands:
-        return (_difference(1.0, f"no hand holds a shape in this take, and {label!r} is one"),)
     pairs = [
         (seen, example) for example in shown for hand in hands for seen in (hand, hand.mirror())
     ]
     query, example = min(pairs, key=lambda pair: measure_distance(*pair))
-    whole = measure_distance(query, example)
     found = [
         _difference(share, words)
-        for share, words in (*_fingers(query, example, whole, label), *_turn(query, example, whole))
+        for share, words in _list_shares(query, example, label)
         if share >= LEAST_SHARE
     ]
     return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+
+
+def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[tuple[float, str]]:
+    """Yield the shares and the words of all differences between two held hands."""
+    whole = measure_distance(query, example)
+    yield from _fingers(query, example, whole, label)
+    yield from _turn(query, example, whole)
 
 
 def find_moving_hand_differences(

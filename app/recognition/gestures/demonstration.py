@@ -12,15 +12,16 @@ from app.recognition.errors import GestureError, PoseError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.hand_image import draw_hands
 from app.recognition.features.trajectory_image import SIMPLIFICATION, SIZE, Drawing, draw
-from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import (
-    find_held_hands,
-    find_second_shape,
-    rests_between_ends,
+from app.recognition.preprocessing.held_hands import rests_between_ends
+from app.recognition.preprocessing.holds import (
+    MOST_HOLDS,
+    Hold,
+    describe_excess,
+    find_holds,
+    keep_holds,
 )
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from app.recognition.preprocessing.quality import find_fault
@@ -63,6 +64,9 @@ DIGITS = 4
 DEPTH_DIGITS = 2
 """Decimals kept of a trajectory's depth: 5 mm of a diver, a tenth of a pose model's error."""
 
+DEMONSTRATION_KINDS = ("a movement", "a held hand shape", "a sequence of two held hand shapes")
+"""By the number of hand shapes that are held."""
+
 
 @dataclass(frozen=True, eq=False)
 class Demonstration:
@@ -76,7 +80,7 @@ class Demonstration:
         Its salient landmarks in alphabetical order; another diver may use the other hand. Empty
         for a held hand shape.
     image
-        ``(224, 224)``: the salient landmarks' paths, or the held hand, 255 on black.
+        ``(224, 224)``: the salient landmarks' paths, or the held hands, 255 on black.
     descriptors
         Per voter's name its descriptor of the image.
     diver
@@ -131,8 +135,8 @@ class Demonstration:
         Raises
         ------
         GestureError
-            When the take is too short, nothing moves in it and no hand shape, or more than one, is
-            held, or `salient` does not fit it.
+            When the take is too short, nothing moves in it and no hand shape is held, or more than
+            `MOST_HOLDS` are, or `salient` does not fit it.
 
         """
         if len(poses) < MIN_FRAMES:
@@ -145,7 +149,7 @@ class Demonstration:
             trajectory = Trajectory.from_poses(seen)
         except PoseError as error:
             raise GestureError(f"the demonstration of {label!r} is empty: {error}") from error
-        held = find_held_hands(seen, trajectory) if salient is None else ()
+        holds = find_holds(seen, trajectory) if salient is None else ()
         if salient is not None:
             names = choose_landmarks(trajectory, salient)
         elif is_shown_by(like, trajectory):
@@ -154,8 +158,8 @@ class Demonstration:
             names = find_salient_landmarks(trajectory)
         # Without a torso the unit is the extent itself, in which everything moves.
         still = not names or trajectory.unit == "extent" or rests_between_ends(trajectory)
-        if held and still:
-            return cls._of_hands(label, seen, trajectory, held, diver)
+        if holds and still:
+            return cls._of_holds(label, seen, trajectory, holds, diver)
         if poor := find_fault(seen, names):
             raise GestureError(
                 f"the demonstration of {label!r} is too poor to use: {poor}; show the "
@@ -165,37 +169,47 @@ class Demonstration:
         kept = replace(kept, moving_hands=find_moving_hands(seen, list_moving_sides(names)))
         drawing = draw(kept.select(names)) if names else None
         if drawing is None or drawing.empty:
-            _refuse_two_shapes(label, seen, SIDES)
             raise GestureError(_explain_nothing_moves(label, trajectory, names))
         return cls(kept, names, drawing.image, describe_drawing(drawing, PAPER_VOTERS), diver)
 
     @classmethod
-    def _of_hands(
+    def _of_holds(
         cls,
         label: str,
         poses: PoseSequence,
         trajectory: Trajectory,
-        held: tuple[HandShape, ...],
+        holds: Sequence[Hold],
         diver: str,
     ) -> Demonstration:
-        """Create a demonstration of a held hand shape."""
-        _refuse_two_shapes(label, poses, [hand.side for hand in held])
+        """Create a demonstration of a held hand shape, or of two in sequence."""
+        if len(holds) > MOST_HOLDS:
+            raise GestureError(
+                f"the demonstration of {label!r} shows {describe_excess(holds)}: choose a range of "
+                "the clip with two of them, or save each as a gesture of its own and make a phrase "
+                "of them"
+            )
         if poor := find_fault(poses, ()):
             raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor}")
         few = trajectory.fill_gaps().resample_in_time(min(len(trajectory), HELD_MOMENTS))
         kept = condense(few).select(_choose_kept_landmarks(trajectory, ()))
-        return cls(replace(kept, hands=held), (), draw_hands(held), {}, diver)
+        kept = keep_holds(kept, holds)
+        return cls(kept, (), draw_hands(*kept.held_shapes), {}, diver)
 
     @property
     def is_held(self) -> bool:
-        """Whether it is a held hand shape, not a movement."""
+        """Whether it is a held hand shape or two in sequence, not a movement."""
         return bool(self.trajectory.hands)
+
+    @property
+    def kind(self) -> str:
+        """What it shows, in words: a movement, a held hand shape, or two in sequence."""
+        return DEMONSTRATION_KINDS[len(self.trajectory.held_shapes)]
 
     def mirror(self) -> Demonstration:
         """Return the mirror image, as if shown with the other hand."""
         trajectory = self.trajectory.compute_once("mirrored", self.trajectory.mirror)
         if self.is_held:
-            return replace(self, trajectory=trajectory, image=draw_hands(trajectory.hands))
+            return replace(self, trajectory=trajectory, image=draw_hands(*trajectory.held_shapes))
         salient = tuple(sorted(other_side(name) for name in self.salient))
         drawing = draw(trajectory.select(salient))
         descriptors = describe_drawing(drawing, PAPER_VOTERS)
@@ -220,13 +234,13 @@ class Demonstration:
         chosen = choose_landmarks(self.trajectory, salient)
         sides = list_moving_sides(chosen)
         hands = tuple(hand for hand in self.trajectory.moving_hands if hand.side in sides)
-        moving = replace(self.trajectory, hands=(), moving_hands=hands)
+        moving = replace(self.trajectory, hands=(), then_hands=(), moving_hands=hands)
         return replace(self, salient=chosen, trajectory=moving).redraw()
 
     def redraw(self, simplification: float = SIMPLIFICATION) -> Demonstration:
         """Return the demonstration with image and descriptors recomputed."""
         if self.is_held:
-            return replace(self, image=draw_hands(self.trajectory.hands), descriptors={})
+            return replace(self, image=draw_hands(*self.trajectory.held_shapes), descriptors={})
         drawing = Drawing(self.image, self.trajectory.select(self.salient))
         if self.salient:
             drawing = draw(self.trajectory.select(self.salient), simplification)
@@ -320,15 +334,6 @@ def _choose_kept_landmarks(trajectory: Trajectory, salient: Sequence[str]) -> tu
     others = [name for name in names if name not in salient and name not in known]
     kept = {*salient, *(upper + others)[: max(0, MAX_LANDMARKS - len(salient))]}
     return tuple(name for name in names if name in kept)
-
-
-def _refuse_two_shapes(label: str, poses: PoseSequence, sides: Sequence[Side]) -> None:
-    changes = find_second_shape(poses, sides)
-    if changes is not None:
-        raise GestureError(
-            f"the demonstration of {label!r} shows two hand shapes, the second from "
-            f"{changes:.1f} s on; save each as a gesture of its own, and make a phrase of them"
-        )
 
 
 def _explain_nothing_moves(label: str, trajectory: Trajectory, salient: Sequence[str]) -> str:

@@ -20,6 +20,7 @@ from app.recognition.features.trajectory_image import (
     Drawing,
 )
 from app.recognition.gestures.demonstration import (
+    DEMONSTRATION_KINDS,
     MAX_DEMONSTRATIONS,
     MAX_MOMENTS,
     Demonstration,
@@ -29,6 +30,7 @@ from app.recognition.gestures.demonstration import (
     is_shown_by,
 )
 from app.recognition.gestures.switches import AUTOMATIC, Switches
+from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.joiners import is_printable
@@ -99,7 +101,7 @@ class Gesture:
         The salient landmarks in alphabetical order; empty for a held hand shape, and in imported
         gestures, which then match nothing.
     image
-        ``(224, 224)``: the salient landmarks' paths, or the held hand, 255 on black.
+        ``(224, 224)``: the salient landmarks' paths, or the held hands, 255 on black.
     trajectory
         The first demonstration, at most `MAX_MOMENTS` moments of `MAX_LANDMARKS` landmarks; None
         when the gesture was imported from a file that has only images.
@@ -205,8 +207,16 @@ class Gesture:
 
     @property
     def is_held(self) -> bool:
-        """Whether it is a held hand shape, not a movement."""
-        return self.trajectory is not None and bool(self.trajectory.hands)
+        """Whether it is a held hand shape or two in sequence, not a movement."""
+        return bool(self.held_shapes)
+
+    @property
+    def held_shapes(self) -> tuple[tuple[HandShape, ...], ...]:
+        """The hands of each shape that the first demonstration holds, in their order.
+
+        Empty for a movement, two of a sequence (`Trajectory.then_hands`).
+        """
+        return () if self.trajectory is None else self.trajectory.held_shapes
 
     @property
     def drawing(self) -> Drawing:
@@ -253,11 +263,11 @@ class Gesture:
         made = Demonstration.from_poses(
             self.label, poses, salient=salient, like=self.salient, diver=diver
         )
-        if made.is_held != self.is_held:
-            first, other = ("a held hand shape", "a movement")[:: 1 if self.is_held else -1]
+        first = DEMONSTRATION_KINDS[len(self.held_shapes)]
+        if made.kind != first:
             raise GestureError(
-                f"{self.label!r} is {first} and this demonstration is {other}: show it in the same "
-                f"way, or define another gesture"
+                f"{self.label!r} is {first} and this demonstration is {made.kind}: show it in the "
+                f"same way, or define another gesture"
             )
         return replace(self, further=(*self.further, made))
 

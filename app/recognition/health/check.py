@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -66,6 +66,9 @@ MOST_REMEDIED = 3
 
 MOST_EXPLAINED = 100
 """Confused pairs with a finding of their own, the worst first; each costs two comparisons."""
+
+SAME = ("movement", "hand shape", "sequence of hand shapes")
+"""What duplicates have in common, by the number of hand shapes that are held."""
 
 Progress = Callable[[str, int, int], None]
 """Called with the stage, the steps done and their number (0: unknown); an exception that it raises
@@ -286,7 +289,7 @@ def _pair_findings(
     """Return the findings about confused pairs; `pairs` are sorted, the worst first."""
     language = recognizer.language
     findings: list[Finding] = []
-    held = {gesture.label for gesture in language.gestures if gesture.is_held}
+    shapes = {gesture.label: len(gesture.held_shapes) for gesture in language.gestures}
     confused = [pair for pair in pairs if _confusion_rate(pair)[0] > MOST_CONFUSION]
     for pair in confused[:MOST_EXPLAINED]:
         first, second = (language.labels.index(label) for label in pair.gestures)
@@ -303,7 +306,7 @@ def _pair_findings(
             Finding(
                 "duplicate" if _is_duplicate(pair) else "confused",
                 pair.gestures,
-                _confusion_message(pair, differences, held),
+                _confusion_message(pair, differences, shapes),
                 below_bar=True,
                 remedies=remedies,
             )
@@ -348,11 +351,12 @@ def _is_duplicate(pair: PairHealth) -> bool:
 def _confusion_message(
     pair: PairHealth,
     differences: tuple[PairDifference | None, PairDifference | None],
-    held: Collection[str],
+    shapes: Mapping[str, int],
 ) -> str:
+    """Say what is confused; `shapes`: by label how many hand shapes are held."""
     first, second = pair.gestures
     if _is_duplicate(pair):
-        same = "hand shape" if pair.gestures[0] in held else "movement"
+        same = SAME[shapes[first]]
         return (
             f"{first} and {second} are the same {same}, so the robot cannot distinguish them: "
             f"change or remove one of them"

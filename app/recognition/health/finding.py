@@ -127,14 +127,16 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
 
 
 def _check_held_shape(gesture: Gesture, shown: Trajectory) -> Iterator[Finding]:
-    """Yield the finding about a held hand shape that would end its own take."""
-    for hand in shown.hands:
-        if salute_score(hand.xy) > LEAVE_SCORE:
+    """Yield the findings about held hand shapes that would end their own take."""
+    several = len(shown.held_shapes) > 1
+    for ordinal, hands in zip(("first", "second"), shown.held_shapes, strict=False):
+        which = f"the {ordinal} shape of {gesture.label}" if several else gesture.label
+        if any(salute_score(hand.xy) > LEAVE_SCORE for hand in hands):
             yield Finding(
                 "salute_like",
                 (gesture.label,),
-                f"{gesture.label} looks like the salute, which ends the take: choose a shape whose "
-                "middle and ring finger are not spread apart",
+                f"{which} looks like the salute, which ends the take: choose a shape whose middle "
+                "and ring finger are not spread apart",
             )
 
 

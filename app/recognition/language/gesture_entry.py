@@ -141,6 +141,7 @@ def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
             for index, name in enumerate(trajectory.landmarks)
         ],
         hands=[_hand_entry(hand) for hand in trajectory.hands],
+        then_hands=[_hand_entry(hand) for hand in trajectory.then_hands],
         moving_hands=[_hand_entry(hand) for hand in trajectory.moving_hands],
     )
 
@@ -174,15 +175,29 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
     columns = [[path.x, path.y] for path in entry.paths]
     depths = [[None] * count if path.z is None else path.z for path in entry.paths]
     has_depth = any(path.z is not None for path in entry.paths)
-    return Trajectory(
+    trajectory = Trajectory(
         landmarks=tuple(names),
         xy=np.array(columns, dtype=np.float64).transpose(2, 0, 1),
         time=np.array(entry.time),
         unit=entry.unit,
         depth=np.array(depths, dtype=np.float64).T if has_depth else None,
         hands=_hands(entry.hands, pointer + "/hands"),
+        then_hands=_hands(entry.then_hands, pointer + "/then_hands"),
         moving_hands=_hands(entry.moving_hands, pointer + "/moving_hands"),
     )
+    _check_sequence(trajectory, pointer + "/then_hands")
+    return trajectory
+
+
+def _check_sequence(trajectory: Trajectory, pointer: str) -> None:
+    """Check that the same hands hold both shapes of a sequence."""
+    if not trajectory.then_hands:
+        return
+    if not trajectory.hands:
+        raise LanguageError("without a first hand shape there is no second", pointer)
+    first, second = ({hand.side for hand in hands} for hands in trajectory.held_shapes)
+    if first != second:
+        raise LanguageError("the second shape is held by other hands than the first", pointer)
 
 
 def _hands(entries: list[HandEntry], pointer: str) -> tuple[HandShape, ...]:

@@ -164,6 +164,8 @@ class Language:
                     for hand in shown.hands:
                         checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
                         checksum = crc32(HAND_RULE.encode(), checksum)
+                    for hand in shown.then_hands:
+                        checksum = crc32(b"then" + hand.side.encode() + hand.xy.tobytes(), checksum)
                     for hand in shown.moving_hands:
                         checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
                         checksum = crc32(MOVING_HAND_RULE.encode(), checksum)

@@ -116,6 +116,14 @@ class TrajectoryEntry(_Model):
             "hand shape and has no salient landmarks. Left out in movements.",
         ),
     ] = []
+    then_hands: Annotated[
+        list[HandEntry],
+        Field(
+            max_length=2,
+            description="The same hands with the second shape, where the gesture is a sequence of "
+            "two held hand shapes. Left out in all others.",
+        ),
+    ] = []
     moving_hands: Annotated[
         list[HandEntry],
         Field(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -95,6 +96,11 @@ class HandShape:
         """Return the shape turned in the image, clockwise."""
         cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
         return replace(self, xy=self.xy @ np.array([[cosine, sine], [-sine, cosine]]))
+
+
+def mirror_hands(hands: Sequence[HandShape]) -> tuple[HandShape, ...]:
+    """Return the mirror images of one hand or two, left then right."""
+    return tuple(hand.mirror() for hand in reversed(hands))
 
 
 def measure_palms(hands: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.hand_shape import HandShape, mirror_hands
 from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
 
@@ -60,6 +60,9 @@ class Trajectory:
     hands
         The hands that hold a shape, left then right (`find_held_hands`); empty where something
         moves or no hand is seen, and in demonstrations that are a movement.
+    then_hands
+        The same hands with the second of two shapes that they hold one after the other
+        (`find_holds`); empty where `hands` are all.
     moving_hands
         The hands that keep a shape during a movement, left then right (`find_moving_hands`); empty
         where none is seen for long enough, and where nobody asks for them.
@@ -72,6 +75,7 @@ class Trajectory:
     unit: Unit
     depth: FloatArray | None = None
     hands: tuple[HandShape, ...] = ()
+    then_hands: tuple[HandShape, ...] = ()
     moving_hands: tuple[HandShape, ...] = ()
 
     @classmethod
@@ -116,6 +120,11 @@ class Trajectory:
     def __len__(self) -> int:
         """Count the moments, T."""
         return len(self.time)
+
+    @property
+    def held_shapes(self) -> tuple[tuple[HandShape, ...], ...]:
+        """The hands of each shape that is held, in their order; empty where none is."""
+        return tuple(hands for hands in (self.hands, self.then_hands) if hands)
 
     @cached_property
     def _computed(self) -> dict[Hashable, Any]:
@@ -211,8 +220,9 @@ class Trajectory:
             self,
             landmarks=names,
             xy=self.xy * (-1.0, 1.0) + 0.0,
-            hands=tuple(hand.mirror() for hand in reversed(self.hands)),
-            moving_hands=tuple(hand.mirror() for hand in reversed(self.moving_hands)),
+            hands=mirror_hands(self.hands),
+            then_hands=mirror_hands(self.then_hands),
+            moving_hands=mirror_hands(self.moving_hands),
         )
 
     def recentre(self) -> Trajectory:

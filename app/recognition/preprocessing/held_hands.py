@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, measure_palms, normalize_hands
+from app.recognition.poses.frame import SIDES
+from app.recognition.poses.hand_shape import HandShape, measure_palms, normalize_hands
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -34,17 +34,6 @@ MOST_CHANGE = 0.5
 """Largest median distance of a frame's shape from the median shape, in sizes of the hand: a hand
 that opens and closes has no shape. A wobbling flat hand ("something is wrong") changes by up to
 0.48; two shapes are 0.7 and more apart."""
-
-LEAST_SHARE = 1 / 3
-"""Least share of a hand's frames in which each of two shapes is held: the hand model errs for less,
-by up to 1.1 sizes of the hand in a quarter of a sign's frames."""
-
-TWO_SHAPES = 0.65
-"""Distance of two shapes that one hand holds one after the other, in sizes of the hand: the parts
-of one sign are up to 0.58 apart where the hand wobbles or turns, two signs 0.7 and more."""
-
-AGREEING = 0.85
-"""Least share of the frames of a part that show its own shape: the change itself takes some."""
 
 SMALLER = 0.6
 """Share of the smallest movement of a language below which a take is none of them: people's takes
@@ -87,9 +76,9 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
     Parameters
     ----------
     poses
-        Repaired poses of a take.
+        Repaired poses of a take, or of a part of it.
     trajectory
-        The trajectory of `poses`, with as many moments or condensed.
+        The trajectory of the take, with as many moments or condensed.
 
     Returns
     -------
@@ -108,57 +97,12 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
         if _measure_travel(shown) >= MIN_DISPLACEMENT * PALMS_PER_TORSO:
             continue
         shape = HandShape.of_frames(side, shown)
-        if np.median(_distances(normalize_hands(shown), shape.xy)) <= MOST_CHANGE:
+        if np.median(measure_distances(normalize_hands(shown), shape.xy)) <= MOST_CHANGE:
             held.append(shape)
     return tuple(held)
 
 
-def find_second_shape(poses: PoseSequence, sides: Iterable[Side] = SIDES) -> float | None:
-    """Return when a hand that held a shape takes another one and holds that too.
-
-    Parameters
-    ----------
-    poses
-        Repaired poses of a take in which nothing moves clearly.
-    sides
-        The person's hands that are looked at.
-
-    Returns
-    -------
-    Seconds, as in `poses`; None where every hand keeps its shape.
-
-    """
-    if poses.hands is None:
-        return None
-    for side in sides:
-        hands = poses.hands[:, SIDES.index(side)]
-        seen = np.flatnonzero(np.isfinite(hands).all(axis=(1, 2)))
-        if len(seen) < LEAST_SEEN * len(poses) or not len(seen):
-            continue
-        every = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_FRAMES)).round().astype(int)]
-        shown = normalize_hands(hands[every])
-        least = max(1, int(np.ceil(LEAST_SHARE * len(shown))))
-        cuts = range(least, len(shown) - least + 1)
-        apart = [_measure_difference(shown[:cut], shown[cut:]) for cut in cuts]
-        if max(apart, default=0.0) >= TWO_SHAPES:
-            return float(poses.time[every[cuts[int(np.argmax(apart))]]])
-    return None
-
-
-def _measure_difference(before: FloatArray, after: FloatArray) -> float:
-    """Return how far the shapes held in two parts are apart, in sizes of the hand.
-
-    0 where a part holds none: where fewer than `AGREEING` of its frames are nearer to its own
-    median shape than to the other's.
-    """
-    one, other = (normalize_hands(np.median(part, axis=0)[None])[0] for part in (before, after))
-    for part, own, foreign in ((before, one, other), (after, other, one)):
-        if np.mean(_distances(part, own) < _distances(part, foreign)) < AGREEING:
-            return 0.0
-    return float(_distances(one[None], other)[0])
-
-
-def _distances(hands: FloatArray, shape: FloatArray) -> FloatArray:
+def measure_distances(hands: FloatArray, shape: FloatArray) -> FloatArray:
     """Return how far hands ``(T, 21, 2)`` are from a shape, ``(T,)`` in sizes of the hand."""
     return np.asarray(np.sqrt(((hands - shape) ** 2).sum(axis=2).mean(axis=1)))
 

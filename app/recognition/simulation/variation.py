@@ -154,7 +154,8 @@ def draw_variants(
     -------
     `count` trajectories with the demonstration's landmarks, unit and number of moments, from
     second 0 on. What does not move varies in tempo alone; a single moment does not vary. Of a
-    held hand shape the hands alone vary (`hand_variation`), of a movement those that move too.
+    held hand shape, or of two in sequence, the hands alone vary (`hand_variation`), of a movement
+    those that move too.
 
     Raises
     ------
@@ -163,8 +164,12 @@ def draw_variants(
 
     """
     if trajectory.hands:
-        varied = vary_hands(trajectory.hands, max(count, 0), HAND_SPREADS[person], seed=seed)
-        return tuple(replace(trajectory, hands=hands) for hands in varied)
+        first = len(trajectory.hands)
+        every = (*trajectory.hands, *trajectory.then_hands)
+        varied = vary_hands(every, max(count, 0), HAND_SPREADS[person], seed=seed)
+        return tuple(
+            replace(trajectory, hands=hands[:first], then_hands=hands[first:]) for hands in varied
+        )
     made = vary(trajectory, count, SPREADS[person], seed=seed)
     if not trajectory.moving_hands:
         return made

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from math import ceil
 from typing import Final
 
@@ -11,11 +11,10 @@ import cv2
 import numpy as np
 
 from app.recognition import Gesture, Language
-from app.recognition.features.hand_image import APART
+from app.recognition.features.hand_image import PlacedHands, place_hands
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.language.file import seal
 from app.recognition.language.short_code import short_code
-from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
@@ -177,6 +176,8 @@ def _foot(language: Language) -> Iterator[Part]:
     held = any(gesture.is_held for gesture in language.gestures)
     if held:
         hands += "   A hand with its fingers is held still for a second."
+    if any(len(gesture.held_shapes) > 1 for gesture in language.gestures):
+        hands += " An arrow leads to its next shape."
     if held or any(_initial(name) in "RL" for each in language.gestures for name in each.salient):
         yield Words(hands, (MARGIN, height - MARGIN - 4), 3.2, grey=True)
 
@@ -238,8 +239,8 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
     """Yield the strokes of a gesture in a square, with start dots and arrows."""
     corners = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0))
     yield Path(tuple((left + side * x, top + side * y) for x, y in corners), 0.2)
-    if gesture.trajectory is not None and gesture.is_held:
-        yield from _hands(gesture.trajectory.hands, left, top, side)
+    if gesture.is_held:
+        yield from _hands(place_hands(*gesture.held_shapes), left, top, side)
         return
     paths = _paths(gesture)
     if not paths:
@@ -259,15 +260,18 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
         yield from _start(name, path[0], side)
 
 
-def _hands(hands: Sequence[HandShape], left: float, top: float, side: float) -> Iterator[Part]:
-    """Yield held hands: palm, fingers and initial; of two, the right hand on the left."""
-    order = sorted(hands, key=lambda hand: hand.side == "left")
-    places = [hand.xy + (APART * index, 0.0) for index, hand in enumerate(order)]
-    every = np.concatenate(places)
+def _hands(placed: PlacedHands, left: float, top: float, side: float) -> Iterator[Part]:
+    """Yield held hands, palm, fingers and initial; and the arrow from one shape to the next."""
+    every = np.concatenate([place for _, place in placed.hands])
     low, high = every.min(axis=0), every.max(axis=0)
     scale = HAND_SHARE * side / float((high - low).max())
     middle, centre = (low + high) / 2, np.array([left + side / 2, top + side / 2])
-    for hand, place in zip(order, places, strict=True):
+    if placed.arrow is not None:
+        arrow = (placed.arrow - middle) * scale + centre
+        shaft = (arrow[0], arrow.mean(axis=0))  # the head covers its end
+        yield Path(tuple((float(x), float(y)) for x, y in shaft), 0.028 * side)
+        yield _arrow_head(arrow[1], arrow[1] - arrow[0], 0.095 * side)
+    for hand, place in placed.hands:
         drawn = [(float(x), float(y)) for x, y in (place - middle) * scale + centre]
         yield Shape(tuple(drawn[index] for index in PALM_OUTLINE))
         for finger in range(5):
@@ -306,14 +310,17 @@ def _arrows(path: FloatArray, side: float) -> Iterator[Part]:
             (_chord(path, lengths, share + shift, size) for shift in SHIFTS),
             key=lambda chord: float(np.hypot(*(chord[1] - chord[0]))),
         )
-        along = tip - tail
-        if (norm := float(np.hypot(*along))) == 0:
-            continue
-        along = along / norm
-        across = np.array([-along[1], along[0]]) * 0.55 * size
-        back = tip - along * size
-        corners = (tip + along * 0.15 * size, back + across, back - across)
-        yield Shape(tuple((float(x), float(y)) for x, y in corners))
+        if (tip != tail).any():
+            yield _arrow_head(tip, tip - tail, size)
+
+
+def _arrow_head(tip: FloatArray, along: FloatArray, size: float) -> Shape:
+    """Return the head of an arrow that points along a vector."""
+    along = along / float(np.hypot(*along))
+    across = np.array([-along[1], along[0]]) * 0.55 * size
+    back = tip - along * size
+    corners = (tip + along * 0.15 * size, back + across, back - across)
+    return Shape(tuple((float(x), float(y)) for x, y in corners))
 
 
 def _chord(

@@ -268,6 +268,11 @@ export interface components {
             /** Salient */
             salient: string[];
             /**
+             * Held Shapes
+             * @description Hand shapes that are held: 0 in a movement, 2 in a sequence of two
+             */
+            held_shapes: number;
+            /**
              * Seconds
              * @description How long it lasts; null: only its image is known
              */
@@ -590,6 +595,11 @@ export interface components {
             } | null;
             /** Salient */
             salient: string[];
+            /**
+             * Held Shapes
+             * @description Hand shapes that are held: 0 in a movement, 2 in a sequence of two
+             */
+            held_shapes: number;
             /**
              * Direction
              * @enum {string}
@@ -1464,6 +1474,11 @@ export interface components {
              * @description The keypoints that are drawn
              */
             salient: string[];
+            /**
+             * Held Shapes
+             * @description Hand shapes that are held: 0 in a movement, 2 in a sequence of two
+             */
+            held_shapes: number;
             /**
              * Keypoints
              * @description Empty without a demonstration

@@ -43,8 +43,13 @@ export function toggle(landmark, preview) {
  */
 function noteOn(preview, count) {
   if (!preview) return "\u2026";
-  if (preview.image && !preview.problem && !preview.salient.length)
-    return "Nothing moves: the shape of the hand is the gesture. To follow a movement instead, choose keypoints.";
+  if (preview.image && !preview.problem && !preview.salient.length) {
+    const gesture =
+      preview.held_shapes > 1
+        ? "two hand shapes one after the other are the gesture"
+        : "the shape of the hand is the gesture";
+    return `Nothing moves: ${gesture}. To follow a movement instead, choose keypoints.`;
+  }
   if (count) {
     const unit = preview.unit === "torso_length" ? "torso lengths" : "shares of the largest extent";
     return `Movement in ${unit}. From the line, ${(preview.threshold ?? 0).toFixed(2)}, a keypoint is proposed.`;

@@ -11,7 +11,7 @@ import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
-import { isHeld, listFollowed } from "./held-shape.js";
+import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
 /** @import { Clip, Demonstration, Gesture, Source, Take } from "../core/types.d.ts" */
 
@@ -110,7 +110,7 @@ function figure(gesture, demonstration) {
     h("img", {
       src: withMarks(thumbnail),
       alt: isHeld(demonstration)
-        ? `${name} of ${gesture.label}, a hand shape`
+        ? `${name} of ${gesture.label}, ${nameShapes(demonstration)}`
         : `${name} of ${gesture.label}, from the dot along the arrow`,
       width: 160,
       height: 160,

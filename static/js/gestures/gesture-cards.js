@@ -10,7 +10,7 @@ import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
-import { isHeld, listFollowed } from "./held-shape.js";
+import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
 
 /** @import { Gesture, Language, Recognition, State } from "../core/types.d.ts" */
@@ -72,7 +72,7 @@ function draw(gesture, element) {
     h("img", {
       src: image,
       alt: isHeld(gesture)
-        ? `Hand shape of ${gesture.label}`
+        ? `Picture of ${gesture.label}, ${nameShapes(gesture)}`
         : `Trajectory of ${gesture.label}, from the dot along the arrow`,
       loading: "lazy",
       width: 112,

@@ -1,4 +1,4 @@
-// What a gesture is made of: the keypoints that are followed, or a held hand shape.
+// What a gesture is made of: the keypoints that are followed, or one or two held hand shapes.
 
 import { readable } from "../core/format.js";
 
@@ -11,7 +11,17 @@ export function isHeld({ salient, has_trajectory: kept, seconds }) {
   return !salient.length && (kept ?? seconds !== null);
 }
 
-/** @param {Parameters<typeof isHeld>[0]} shown */
+/** @param {Parameters<typeof isHeld>[0] & { held_shapes: number }} shown */
 export function listFollowed(shown) {
+  if (shown.held_shapes > 1) return "two held hand shapes in sequence";
   return isHeld(shown) ? "held hand shape" : shown.salient.map(readable).join(", ");
+}
+
+/**
+ * How a held gesture is drawn, for those who do not see the picture.
+ *
+ * @param {{ held_shapes: number }} shown
+ */
+export function nameShapes({ held_shapes: count }) {
+  return count > 1 ? "two hand shapes, from the first along the arrow" : "a hand shape";
 }

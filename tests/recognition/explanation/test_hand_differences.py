@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, RecognitionContext, Recognizer, explain
-from app.recognition.explanation.hand_differences import find_hand_differences, measure_bends
+from app.recognition.explanation.hand_differences import (
+    find_hand_differences,
+    find_held_differences,
+    measure_bends,
+)
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import PoseSequence
-from tests.recognition.held_takes import CURLED, FIST, FLAT, TWO, fingers, hold
+from tests.recognition.held_takes import CURLED, FIST, FLAT, TWO, fingers, follow, hold
 from tests.recognition.parametric_hand import Finger, Fingers, hand_xy
 
 
@@ -70,3 +74,71 @@ def test_a_movement_instead_of_a_held_shape_is_explained(language: Language) -> 
     )
     assert "no hand holds a shape" in explained(mixed, circle, "fist")
     assert "'fist'" in explained(mixed, hold(FIST, seed=2), "circle")
+
+
+SEQUENCE = ((shape(FLAT),), (shape(FIST),))
+
+
+@pytest.mark.parametrize(
+    ("shapes", "words"),
+    [
+        ((), "no hand holds two shapes in this take, and 'go' is two in sequence"),
+        (SEQUENCE[:1], "the second shape is missing: 'go' is two in sequence"),
+        (SEQUENCE[1:], "the first shape is missing: 'go' is two in sequence"),
+        ((((shape(TWO).turn(90)),),), "one hand shape is held in this take, and 'go' is two in "),
+        (SEQUENCE[::-1], "the shapes come in the other order than in 'go'"),
+    ],
+)
+def test_what_a_sequence_lacks_is_told_first(
+    shapes: tuple[tuple[HandShape, ...], ...], words: str
+) -> None:
+    (only,) = find_held_differences("go", shapes, SEQUENCE)
+    assert only.words.startswith(words)
+    assert only.share > 0.5
+
+
+def test_a_wrong_finger_is_told_with_the_shape_in_which_it_is_wrong() -> None:
+    shown = ((shape(FIST),), (shape(TWO),))
+    for seen, ordinal in (
+        ((shape(FIST), shape(fingers(0))), "second"),
+        ((shape(fingers(1)), shape(TWO)), "first"),
+    ):
+        first, *_ = find_held_differences("go", [(hand,) for hand in seen], shown)
+        assert first.words.startswith(f"in the {ordinal} shape the middle finger is bent ")
+    mirrored = [(hand.mirror(),) for hand in (shape(FIST), shape(fingers(0)))]
+    first, *_ = find_held_differences("go", mirrored, shown)
+    assert first.words.startswith("in the second shape the middle finger is bent ")
+
+
+def test_both_wrong_shapes_are_told_the_farther_one_first() -> None:
+    shown = ((shape(TWO),), (shape(FLAT),))
+    seen = ((shape(TWO).turn(40),), (shape(FLAT).turn(90),))
+    first, *others = find_held_differences("go", seen, shown)
+    assert first.words == "in the second shape the hand is turned by 90 degrees clockwise"
+    assert any(each.words.startswith("in the first shape the hand is turned") for each in others)
+
+
+def test_the_same_sequence_differs_in_nothing() -> None:
+    assert find_held_differences("go", SEQUENCE, SEQUENCE) == ()
+
+
+def test_a_sequence_is_explained_beside_its_single_shapes(language: Language) -> None:
+    go = Gesture.from_demonstration("go", follow(hold(FLAT), hold(FIST)))
+    beside = Language(name="signs", gestures=[*language.gestures, go])
+    swapped, alone = follow(hold(FIST, seed=3), hold(FLAT, seed=4)), hold(FLAT, seed=3)
+    assert "the shapes come in the other order" in explained(beside, swapped, "go")
+    assert "the second shape is missing" in explained(beside, alone, "go")
+    assert "two hand shapes are held one after the other" in explained(beside, swapped, "fist")
+    assert "as expected" in explained(beside, follow(hold(FLAT, seed=5), hold(FIST)), "go")
+
+
+def test_a_refused_sequence_would_be_read_by_the_take_as_its_demonstration(
+    language: Language,
+) -> None:
+    go = Gesture.from_demonstration("go", follow(hold(FLAT), hold(FIST)))
+    poses = follow(hold(FIST, seed=3), hold(FLAT, seed=4))
+    recognizer = Recognizer(Language(name="signs", gestures=[*language.gestures, go]))
+    found = explain(
+        RecognitionContext(recognizer=recognizer, poses=poses, whole=poses), "go"
+    ).counterfactuals.found
+    assert {each.change.kind for each in found} >= {"further_demonstration"}

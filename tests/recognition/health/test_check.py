@@ -10,6 +10,7 @@ from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
 from app.recognition.health.report import MOST_CONFUSION, HealthReport
 from tests.recognition.demonstrations import pool, shown
+from tests.recognition.held_takes import FIST, FLAT, follow, hold
 from tests.recognition.strategies import circle, line
 
 HEALTHY = pool(circle=circle, line=line)
@@ -114,3 +115,23 @@ def test_progress_is_told_and_can_cancel() -> None:
 
     with pytest.raises(InterruptedError, match="rehearsing"):
         check_health(HEALTHY, takes=3, progress=cancel)
+
+
+def test_sequences_of_hand_shapes_are_confused_with_their_like_alone() -> None:
+    shown = {
+        "go": (FLAT, FIST),
+        "went": (FLAT, FIST),
+        "back": (FIST, FLAT),
+        "flat": (FLAT,),
+        "fist": (FIST,),
+    }
+    gestures = [
+        Gesture.from_demonstration(label, follow(*(hold(shape, seed=seed) for shape in shapes)))
+        for seed, (label, shapes) in enumerate(shown.items())
+    ]
+    report = check_health(Language("signs", gestures), takes=4, person="same")
+    (error,) = [each for each in report.findings if each.below_bar]
+    assert (error.code, error.gestures) == ("duplicate", ("go", "went"))
+    assert "are the same sequence of hand shapes" in error.message
+    missed = {each.label: each.missed for each in report.gestures}
+    assert all(missed[label] is not None for label in shown)

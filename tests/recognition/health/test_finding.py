@@ -15,6 +15,8 @@ from app.recognition.health.finding import (
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.simulation.background_motion import simulate_background_motion
 from tests.recognition.demonstrations import shown
+from tests.recognition.held_takes import FIST, FLAT, follow, hold
+from tests.recognition.parametric_hand import salute
 from tests.recognition.strategies import circle, line
 
 GOOD = shown("circle", circle, frames=60)
@@ -82,3 +84,13 @@ def test_half_hidden_is_half_seen() -> None:
 
 def test_a_line_that_is_quick_but_possible_is_no_fault() -> None:
     assert codes(shown("line", line, frames=20)) == []
+
+
+def test_a_salute_within_a_sequence_is_found_with_its_place() -> None:
+    saluting = salute(gap=40)
+    for shapes, place in (((FIST, saluting), "second"), ((saluting, FIST), "first")):
+        gesture = Gesture.from_demonstration("go", follow(*map(hold, shapes)))
+        (finding,) = check_demonstration(gesture)
+        assert finding.code == "salute_like"
+        assert finding.message.startswith(f"the {place} shape of go looks like the salute")
+    assert codes(Gesture.from_demonstration("go", follow(hold(FIST), hold(FLAT)))) == []

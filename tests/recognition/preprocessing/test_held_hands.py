@@ -3,18 +3,11 @@
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
-from app.recognition.errors import GestureError
-from app.recognition.gestures.demonstration import Demonstration
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.held_hands import (
-    find_held_hands,
-    find_second_shape,
-    rests_between_ends,
-)
+from app.recognition.preprocessing.held_hands import find_held_hands, rests_between_ends
 from tests.recognition.held_takes import FIST, FLAT, hold
 
 
@@ -75,28 +68,3 @@ def test_a_hand_seen_in_a_few_frames_is_not_held() -> None:
     rare[10:] = np.nan
     assert found(replace(poses, hands=rare)) == ()
     assert found(replace(poses, hands=None)) == ()
-
-
-def changing(share: float) -> PoseSequence:
-    """Return a take in which a hand is flat first, and from a share of the time on a fist."""
-    flat, fist = hold(FLAT), hold(FIST)
-    assert flat.hands is not None
-    assert fist.hands is not None
-    hands = flat.hands.copy()
-    hands[round(share * len(flat)) :] = fist.hands[round(share * len(flat)) :]
-    return replace(flat, hands=hands)
-
-
-@pytest.mark.parametrize("share", [0.4, 0.5, 0.6])
-def test_a_hand_that_changes_its_shape_shows_two(share: float) -> None:
-    poses = changing(share)
-    assert find_second_shape(poses) == pytest.approx(poses.time[round(share * len(poses))])
-    with pytest.raises(GestureError, match="shows two hand shapes, the second from"):
-        Demonstration.from_poses("both", poses)
-
-
-@pytest.mark.parametrize("share", [0.0, 0.2, 0.85])
-def test_a_shape_that_is_seen_for_a_moment_is_none(share: float) -> None:
-    poses = changing(share)
-    assert find_second_shape(poses) is None
-    assert Demonstration.from_poses("one", poses).is_held

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from app.recognition import Gesture, Language
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
 from app.recognition.recording.segmentation import TakeState
@@ -19,6 +20,7 @@ from app.robot import (
     TakeRejected,
 )
 from tests.api.recordings import recording_of
+from tests.recognition.held_takes import FIST, FLAT, between_salutes, follow, hold
 from tests.robot.languages import language_of, moments_of, run_listener, spoken
 from tests.robot.listeners.test_salute_listener import cut, moved
 
@@ -138,3 +140,17 @@ def test_the_state_and_the_language_are_those_of_the_listener_inside() -> None:
     run_listener(listener, cut(recording_of("circle"), 1.5))
     assert listener.state is TakeState.recording
     assert listener.language.name == "pool"
+
+
+def test_a_sequence_of_two_hand_shapes_is_one_gesture_of_a_message() -> None:
+    shown = {
+        "start": follow(hold(FLAT), hold(FIST)),
+        "flat": hold(FLAT),
+        "end": follow(hold(FIST), hold(FLAT)),
+    }
+    gestures = [Gesture.from_demonstration(label, take) for label, take in shown.items()]
+    grammar = Grammar((Phrase("dive", (OneOf(("flat",)),)),), start="start", end="end", timeout=9)
+    speaking = ActiveLanguage.from_json(Language("pool", gestures, grammar=grammar).to_json())
+    heard = run_listener(PhraseListener(Listener(speaking)), between_salutes(*shown.values()))
+    assert [each.label for each in heard if isinstance(each, TakeRecognized)] == [*shown]
+    assert phrases(heard)[-1] == ("complete", "mission: dive")

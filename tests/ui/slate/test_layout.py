@@ -15,11 +15,12 @@ from app.recognition.errors import OsgError
 from app.recognition.triggers.trigger import NO_TRIGGER
 from app.ui.slate.drawing import Disc, Page, Path, Shape, Words, estimate_width, wrap
 from app.ui.slate.fonts import find_font
-from app.ui.slate.layout import ARROWS, MARGIN, lay_out
+from app.ui.slate.layout import ARROWS, HEAD, MARGIN, lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg
 from tests.conftest import ROOT
 from tests.posed import BY_BELLY, BY_BELLY_AND_HEAD
+from tests.recognition.held_takes import FIST, FLAT, follow, hold
 
 TABLE_2 = Language.load(ROOT / "languages" / "osg-table-2.json")
 
@@ -80,6 +81,25 @@ def test_a_held_hand_is_drawn_with_its_fingers_within_its_square() -> None:
     ]
     assert any("held still" in text for text in words_of(page))
     assert not any("held still" in text for text in words_of(lay_out(TABLE_2)))
+
+
+def test_two_shapes_in_sequence_are_drawn_with_an_arrow_from_the_first() -> None:
+    go = Gesture.from_demonstration("go", follow(hold(FLAT), hold(FIST)))
+    page = lay_out(Language("pool", [go]))
+    paths = [part for part in page.parts if isinstance(part, Path)]
+    fingers = [part for part in paths if len(part.points) == 4]
+    assert len(fingers) == 10
+    (arrow,) = (
+        part for part in paths if len(part.points) == 2 and part.points[0][1] > MARGIN + HEAD
+    )
+    (head,) = (part for part in page.parts if isinstance(part, Shape) and len(part.points) == 3)
+    (tail, tip) = arrow.points
+    assert all(x < tail[0] for finger in fingers[:5] for x, _ in finger.points)
+    assert all(x > max(corner[0] for corner in head.points) for x, _ in fingers[5].points)
+    assert tail[0] < tip[0]
+    assert any("An arrow leads to its next shape" in text for text in words_of(page))
+    alone = lay_out(Language("pool", [Gesture.from_demonstration("flat", hold(FLAT))]))
+    assert not any("An arrow leads" in text for text in words_of(alone))
 
 
 def test_every_stroke_has_a_start_dot_with_its_hand_and_arrows() -> None:

@@ -19,6 +19,8 @@ from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
 
 SwitchPosition = Literal["auto", "on", "off"]
 
+HELD_SHAPES = "Hand shapes that are held: 0 in a movement, 2 in a sequence of two"
+
 
 class NewDemonstration(Body):
     """Where the demonstration of a gesture is."""
@@ -107,6 +109,7 @@ class DemonstrationView(BaseModel):
     index: int = Field(description="Its place among the gesture's demonstrations, from 0")
     diver: str = Field(description="Name of the diver who shows it; empty: unknown")
     salient: list[str]
+    held_shapes: int = Field(description=HELD_SHAPES)
     seconds: float | None = Field(description="How long it lasts; null: only its image is known")
     thumbnail: str = Field(description="Path of its trajectory image, a PNG")
     source: SourceView | None = Field(
@@ -121,6 +124,7 @@ class GestureView(BaseModel):
     description: str
     command: str | dict[str, Any] | None
     salient: list[str]
+    held_shapes: int = Field(description=HELD_SHAPES)
     direction: SwitchPosition
     tempo: SwitchPosition
     mirror: SwitchPosition

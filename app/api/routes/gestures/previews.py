@@ -15,7 +15,7 @@ from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
-from app.api.http.schemas.gestures import GestureChange, SwitchPosition
+from app.api.http.schemas.gestures import HELD_SHAPES, GestureChange, SwitchPosition
 from app.api.http.schemas.values import Body, Label
 from app.api.services.gesture_edits import (
     change_gesture_of,
@@ -97,6 +97,7 @@ class PreviewView(BaseModel):
     problem: str | None = Field(description="Why it cannot be saved like this; null: it can")
     image: str | None = Field(description="The trajectory image, a data URI of a PNG")
     salient: list[str] = Field(description="The keypoints that are drawn")
+    held_shapes: int = Field(description=HELD_SHAPES)
     keypoints: list[KeypointView] = Field(description="Empty without a demonstration")
     threshold: Annotated[float, Field(ge=0)] | None = Field(
         description="Displacement from which a keypoint is proposed"
@@ -266,6 +267,7 @@ def _view(
         problem=problem,
         image=None if gesture is None else _image(gesture, marks=marks),
         salient=[] if gesture is None else list(gesture.salient),
+        held_shapes=0 if gesture is None else len(gesture.held_shapes),
         keypoints=_keypoints(trajectory) if known and trajectory else [],
         threshold=find_least_displacement(trajectory) if known and trajectory else None,
         unit="torso_length" if trajectory is None else trajectory.unit,

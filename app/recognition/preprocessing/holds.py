@@ -1,0 +1,257 @@
+"""Holds: the hand shapes that a take holds one after the other, in which nothing else moves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations_with_replacement, pairwise
+from math import ceil
+from typing import Final
+
+import numpy as np
+
+from app.recognition.poses.frame import SIDES, Side
+from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, normalize_hands
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.held_hands import (
+    LEAST_SEEN,
+    find_held_hands,
+    measure_distances,
+)
+
+MOST_HOLDS: Final = 2
+"""Most shapes of one gesture: longer sequences are phrases, which name each of their signs."""
+
+MOST_TOLD: Final = 3
+"""Most shapes that are told apart, one more than a gesture has. Each of two is held in a third of
+a hand's frames at least, of three in a quarter: the hand model errs for less, by up to 1.1 sizes of
+the hand in a quarter of a sign's frames."""
+
+TWO_SHAPES: Final = 0.65
+"""Distance of two shapes that one hand holds one after the other, in sizes of the hand: the parts
+of one sign are up to 0.58 apart where the hand wobbles or turns, most signs 0.7 and more."""
+
+TWO_STILL_SHAPES: Final = 0.5
+"""The same where both are held still: two fingers and a flat hand are 0.6 apart, one sign changes
+by up to 0.43 at once. Nearer shapes are accepted for each other."""
+
+STILL: Final = 0.2
+"""Largest median distance of the frames from their own shape where it is held still, over that of
+the two shapes: 0.05 to 0.13 for two drawn shapes, 0.24 and more for one rendered sign in two parts.
+"""
+
+AGREEING: Final = 0.85
+"""Least share of the frames of a part that show its own shape: the change itself takes some."""
+
+CLEARLY: Final = 2.0
+"""How many times nearer to its own shape than to the next one a hand is while it holds it; between
+them it is on its way."""
+
+MOST_DRIFT: Final = 0.4
+"""Largest distance of the first third of a shape between two others from its last third, in sizes
+of the hand: a hand that slowly goes from one to the other drifts by 0.6, one that holds a sign by
+0.07 (median) to 0.44 (95 %)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """A stretch of a take in which the hands keep their shapes.
+
+    Attributes
+    ----------
+    hands
+        One or two, left then right; of the same sides in all holds of a take.
+    start, end
+        Seconds, as in the take's poses, between which they are seen.
+
+    """
+
+    hands: tuple[HandShape, ...]
+    start: float
+    end: float
+
+
+def find_holds(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
+    """Find the hand shapes that a take holds one after the other, where nothing moves clearly.
+
+    A hand takes another shape where its frames before and after differ by `TWO_SHAPES`, by less
+    where it holds both still (`TWO_STILL_SHAPES`). Between two
+    holds the hand may be unseen; what it shows on its way counts with the shape it is nearer to.
+
+    Parameters
+    ----------
+    poses
+        Repaired poses of a take.
+    trajectory
+        The trajectory of `poses`, with as many moments or condensed.
+
+    Returns
+    -------
+    None, one or several, in their order; none where a hand or the head moves clearly, or no hand
+    holds a shape (`find_held_hands`).
+
+    """
+    several = [_find_holds_of(side, poses, trajectory) for side in SIDES]
+    return max(several, key=len) or find_single_hold(poses, trajectory)
+
+
+def find_single_hold(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
+    """Find the hand shape of a take as if it held one only; parameters as for `find_holds`."""
+    hands = find_held_hands(poses, trajectory)
+    return (Hold(hands, float(poses.time[0]), float(poses.time[-1])),) if hands else ()
+
+
+def keep_holds(trajectory: Trajectory, holds: Sequence[Hold]) -> Trajectory:
+    """Return a trajectory with the hands of its holds; without any of more than `MOST_HOLDS`."""
+    if len(holds) > MOST_HOLDS:
+        return trajectory
+    hands, then_hands = (*(hold.hands for hold in holds), (), ())[:MOST_HOLDS]
+    return replace(trajectory, hands=hands, then_hands=then_hands)
+
+
+def describe_excess(holds: Sequence[Hold]) -> str:
+    """Return that a take shows three shapes, and a gesture has two, in words."""
+    second, third = (hold.start for hold in holds[1:])
+    return (
+        f"three hand shapes one after the other, the second from {second:.1f} s and the third from "
+        f"{third:.1f} s on, and a gesture has two at most"
+    )
+
+
+def _find_holds_of(side: Side, poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
+    """Return the holds of a hand that takes another shape; none of one that does not."""
+    found = []
+    for start, end in _find_stretches(side, poses):
+        hands = find_held_hands(poses.between(start, end), trajectory)
+        if side not in [hand.side for hand in hands]:
+            return ()
+        found.append(Hold(hands, start, end))
+    common = set(SIDES).intersection(*({hand.side for hand in each.hands} for each in found))
+    return tuple(
+        replace(each, hands=tuple(hand for hand in each.hands if hand.side in common))
+        for each in found
+    )
+
+
+def _find_stretches(side: Side, poses: PoseSequence) -> list[tuple[float, float]]:
+    """Return the seconds between which a hand is seen to hold each shape, if there are several."""
+    if poses.hands is None:
+        return []
+    hands = poses.hands[:, SIDES.index(side)]
+    seen = np.flatnonzero(np.isfinite(hands).all(axis=(1, 2)))
+    if not len(seen) or len(seen) < LEAST_SEEN * len(poses):
+        return []
+    every = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_FRAMES)).round().astype(int)]
+    shown = normalize_hands(hands[every])
+    starts = _divide(shown)
+    if len(starts) == 1:
+        return []
+    moments: FloatArray = poses.time[every]
+    held = _leave_out_changes(shown, starts)
+    return [(float(moments[start]), float(moments[end])) for start, end in held]
+
+
+def _leave_out_changes(shown: FloatArray, starts: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Return the first and the last frame of every shape in a division of ``(T, 21, 2)``.
+
+    At a change the hand shows a shape from where it is `CLEARLY` nearer to it than to the other
+    one; nothing where it never is.
+    """
+    parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
+    shapes = [_take_median(shown[slice(*part)]) for part in parts]
+    held = []
+    for number, (start, end) in enumerate(parts):
+        part, own = shown[start:end], shapes[number]
+        others = (*shapes[max(0, number - 1) : number], *shapes[number + 1 : number + 2])
+        nearest = np.min([measure_distances(part, other) for other in others], axis=0)
+        clear = start + np.flatnonzero(CLEARLY * measure_distances(part, own) < nearest)
+        if not len(clear):
+            return []
+        first = start if number == 0 else int(clear[0])
+        last = end - 1 if number == len(parts) - 1 else int(clear[-1])
+        held.append((first, last))
+    return held
+
+
+def _divide(shown: FloatArray) -> tuple[int, ...]:
+    """Return the numbers of the frames ``(T, 21, 2)`` at which a shape begins, the first 0.
+
+    The most shapes into which they can be divided. Of all ways to do so, the one with most frames
+    that show their own shape, and of those the one with the shapes farthest apart.
+    """
+    medians: dict[tuple[int, int], FloatArray] = {}
+    for count in range(MOST_TOLD, 1, -1):
+        found = [
+            (*quality, starts)
+            for starts in _list_divisions(len(shown), count)
+            if (quality := _judge(shown, starts, medians)) is not None
+        ]
+        if found:
+            return max(found)[-1]
+    return (0,)
+
+
+def _list_divisions(frames: int, count: int) -> Iterator[tuple[int, ...]]:
+    """Yield the starts of all divisions into `count` parts of a share of 1 / (count + 1) each."""
+    least = max(1, ceil(frames / (count + 1)))
+    for more in combinations_with_replacement(range(frames - count * least + 1), count - 1):
+        yield (0, *(number * least + each for number, each in enumerate(more, start=1)))
+
+
+def _judge(
+    shown: FloatArray, starts: tuple[int, ...], medians: dict[tuple[int, int], FloatArray]
+) -> tuple[int, float] | None:
+    """Return how many frames of a division show their own shape, and how far these are apart.
+
+    None where two shapes that follow each other are alike, too few frames agree with theirs, or a
+    shape between two others is the hand on its way.
+
+    Parameters
+    ----------
+    shown, starts
+        The frames, and where parts begin.
+    medians
+        By start and end the median shapes that are known; more are added.
+
+    """
+    parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
+    for start, end in parts:
+        if (start, end) not in medians:
+            medians[start, end] = _take_median(shown[start:end])
+    if any(_measure_drift(shown[slice(*part)]) > MOST_DRIFT for part in parts[1:-1]):
+        return None
+    agreeing, nearest = 0, np.inf
+    for one, other in pairwise(parts):
+        apart = float(measure_distances(medians[one][None], medians[other])[0])
+        spread = max(
+            float(np.median(measure_distances(shown[slice(*part)], medians[part])))
+            for part in (one, other)
+        )
+        if apart < (TWO_STILL_SHAPES if spread <= STILL * apart else TWO_SHAPES):
+            return None
+        nearest = min(nearest, apart)
+        for own, foreign in ((one, other), (other, one)):
+            part = shown[slice(*own)]
+            own_side = measure_distances(part, medians[own]) < measure_distances(
+                part, medians[foreign]
+            )
+            if own_side.mean() < AGREEING:
+                return None
+            agreeing += int(own_side.sum())
+    return agreeing, nearest
+
+
+def _take_median(shown: FloatArray) -> FloatArray:
+    """Return the median shape ``(21, 2)`` of ``(T, 21, 2)``."""
+    median: FloatArray = normalize_hands(np.median(shown, axis=0)[None])[0]
+    return median
+
+
+def _measure_drift(shown: FloatArray) -> float:
+    """Return how far the first and the last third of ``(T, 21, 2)`` are apart."""
+    third = max(1, len(shown) // 3)
+    ends = normalize_hands(
+        np.stack([np.median(part, axis=0) for part in (shown[:third], shown[-third:])])
+    )
+    return float(measure_distances(ends[:1], ends[1])[0])
