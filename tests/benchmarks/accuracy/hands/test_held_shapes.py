@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.accuracy.hand_shapes import RELATIONS, Answer, answer, report
+from benchmarks.accuracy.hands.held_shapes import RELATIONS, Answer, answer, report
 from benchmarks.sets.held_signs import HeldSigns
 from tests.recognition.held_takes import FIST, FLAT, TWO, hold
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.evaluation.proportion import Share
-from benchmarks.accuracy.moving_shapes import (
+from benchmarks.accuracy.hands.moving_shapes import (
     Answer,
     Composer,
     Draw,

@@ -10,7 +10,7 @@ import pytest
 from app.recognition import GestureError, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_holds
-from benchmarks.accuracy.shape_sequences import (
+from benchmarks.accuracy.hands.shape_sequences import (
     ALONE,
     FOREIGN,
     FOUND_OF,

@@ -1,0 +1,1 @@
+"""Hand shapes: how often held ones, moving ones and sequences are recognised."""
