@@ -33,7 +33,7 @@ water for up to half a second."""
 MOST_CHANGE = 0.5
 """Largest median distance of a frame's shape from the median shape, in sizes of the hand: a hand
 that opens and closes has no shape. A wobbling flat hand ("something is wrong") changes by up to
-0.48; two shapes are 0.7 and more apart."""
+0.48; most pairs of signs are 0.7 and more apart."""
 
 SMALLER = 0.6
 """Share of the smallest movement of a language below which a take is none of them: people's takes
