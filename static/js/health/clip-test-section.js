@@ -144,12 +144,21 @@ const leftOutNote = (count) =>
       )
     : null;
 
-/** The clips of the library that can be tested, to be chosen. */
-function libraryChoice() {
+/**
+ * The clips of the library that can be tested, to be chosen.
+ *
+ * @param {Map<string, boolean>} ticks Clips that the user has chosen or not; more are added.
+ */
+function libraryChoice(ticks) {
   const clips = candidates();
   if (!clips.length) return null;
   const boxes = clips.map(({ clip, expected }) => {
-    const box = h("input", { type: "checkbox", value: clip.id, checked: Boolean(expected) });
+    const box = h("input", {
+      type: "checkbox",
+      value: clip.id,
+      checked: ticks.get(clip.id) ?? Boolean(expected),
+      onchange: () => ticks.set(clip.id, box.checked),
+    });
     return { box, row: h("label", { className: "check" }, box, h("span", {}, clip.name)) };
   });
   const add = h(
@@ -300,7 +309,9 @@ export function batchSection() {
       .join();
   let drawn = "";
   let offered = "";
-  /** Offer the clips of the library; what is chosen among them stays while they are the same. */
+  /** @type {Map<string, boolean>} */
+  const ticks = new Map();
+  /** Offer the clips of the library; what is chosen among them stays when others come and go. */
   const drawChoice = () => {
     const now = candidates()
       .map(({ clip }) => clip.id)
@@ -308,7 +319,7 @@ export function batchSection() {
     if (now === offered) return;
     offered = now;
     const open = choice.querySelector("details")?.open ?? false;
-    const drawnAnew = libraryChoice();
+    const drawnAnew = libraryChoice(ticks);
     if (drawnAnew) drawnAnew.open = open;
     choice.replaceChildren(drawnAnew ?? "");
   };

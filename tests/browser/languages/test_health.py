@@ -255,6 +255,19 @@ def test_a_change_while_a_clip_is_added_to_the_test_holds(
         expect(shows).to_have_value("line")
 
 
+def test_a_chosen_clip_stays_chosen_when_another_one_goes(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="chosen.mp4")
+    other = add_clip(server, "line", name="going.mp4")
+    page = open_page(health_of(library), scene=False)
+    page.get_by_text("Choose from the").click()
+    page.get_by_role("checkbox", name="chosen.mp4").check()
+    library.client.delete(f"/api/v1/clips/{other}").raise_for_status()
+    expect(page.get_by_role("checkbox", name="going.mp4")).to_have_count(0)
+    expect(page.get_by_role("checkbox", name="chosen.mp4")).to_be_checked()
+
+
 def test_a_dropped_clip_is_labelled_by_its_name(
     open_page: OpenPage, library: Library, clips: Path
 ) -> None:
