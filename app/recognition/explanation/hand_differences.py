@@ -6,7 +6,7 @@ demonstration, or the hand turned back, and the voters compare again.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -83,14 +83,12 @@ def find_held_differences(
     if swapped <= OTHER_SHAPE < whole:
         words = f"the shapes come in the other order than in {label!r}"
         return (_difference(_share(whole, swapped), words),)
-    found = [
-        _difference(share * apart / whole, f"in the {ordinal} shape {words}")
+    return _name_largest(
+        (share * apart / whole, f"in the {ordinal} shape {words}")
         for ordinal, (query, example) in zip(ORDINALS, pairs, strict=True)
         if (apart := measure_distance(query, example)) > 0
         for share, words in _list_shares(query, example, label)
-        if share * apart / whole >= LEAST_SHARE
-    ]
-    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+    )
 
 
 def _describe_number(label: str, shapes: HeldShapes, shown: HeldShapes) -> str:
@@ -140,16 +138,8 @@ def find_hand_differences(
         The gesture's.
 
     """
-    pairs = [
-        (seen, example) for example in shown for hand in hands for seen in (hand, hand.mirror())
-    ]
-    query, example = min(pairs, key=lambda pair: measure_distance(*pair))
-    found = [
-        _difference(share, words)
-        for share, words in _list_shares(query, example, label)
-        if share >= LEAST_SHARE
-    ]
-    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+    [(query, example)], _ = _pair_parts([hands], [shown])
+    return _name_largest(_list_shares(query, example, label))
 
 
 def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[tuple[float, str]]:
@@ -192,18 +182,19 @@ def find_moving_hand_differences(
     either = [_turn_to(hand, example) for hand in (seen[worst], seen[worst].mirror())]
     query = min(either, key=lambda hand: measure_distance(hand, example))
     whole = measure_distance(query, example)
-    found = [
-        _difference(share, words)
-        for share, words in _fingers(query, example, whole, label)
-        if share >= LEAST_SHARE
-    ]
-    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
+    return _name_largest(_fingers(query, example, whole, label))
 
 
 def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
     """Return a hand turned in the image to where it fits another one best."""
     one, other = (each.xy[:, 0] + 1j * each.xy[:, 1] for each in (hand, example))
     return hand.turn(float(np.degrees(np.angle(one.conj() @ other))))
+
+
+def _name_largest(shares: Iterable[tuple[float, str]]) -> tuple[Difference, ...]:
+    """Return the differences with the largest shares, each given with its words."""
+    found = [_difference(share, words) for share, words in shares if share >= LEAST_SHARE]
+    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
 
 
 def _difference(share: float, words: str) -> Difference:

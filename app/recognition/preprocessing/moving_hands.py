@@ -11,7 +11,7 @@ from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, normalize_hands
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.preprocessing.held_hands import MOST_CHANGE
+from app.recognition.preprocessing.held_hands import MOST_CHANGE, measure_distances
 
 LEAST_SEEN: Final = 0.25
 """Least share of the frames in which a moving hand is seen: the hand model loses quick hands, and
@@ -62,8 +62,7 @@ def find_moving_hands(
         shown = hands[seen]
         every = np.linspace(0, len(shown) - 1, min(len(shown), MOST_FRAMES)).round().astype(int)
         aligned, middle = _align(normalize_hands(shown[every]))
-        apart = np.sqrt(((aligned - middle) ** 2).sum(axis=2).mean(axis=1))
-        if np.median(apart) <= MOST_CHANGE:
+        if np.median(measure_distances(aligned, middle)) <= MOST_CHANGE:
             shapes.append(HandShape.of_frames(side, aligned))
     return tuple(shapes)
 
