@@ -1660,7 +1660,7 @@ export interface components {
             };
             /**
              * Findings
-             * @description What was repaired or not seen, in sentences
+             * @description What was repaired, or is more than a gesture has, in sentences
              */
             findings?: string[];
             /**

@@ -67,7 +67,8 @@ class RecognitionView(BaseModel):
         default_factory=dict, description="Each voter's normalised weight; 0: not counted"
     )
     findings: list[str] = Field(
-        default_factory=list, description="What was repaired or not seen, in sentences"
+        default_factory=list,
+        description="What was repaired, or is more than a gesture has, in sentences",
     )
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
     facing: float | None = Field(
