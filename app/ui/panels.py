@@ -11,7 +11,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.wording import humanize
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui import charts
-from app.ui.style import PANEL_STYLE, SHEET_HIDDEN
+from app.ui.panel_style import PANEL_STYLE, SHEET_HIDDEN
 
 PANEL_WIDTH: Final = 320
 """Pixels; the cube is beside it."""

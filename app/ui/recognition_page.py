@@ -21,7 +21,7 @@ from app.recognition.recording.video import read_frames
 from app.resources import static_dir
 from app.ui import charts
 from app.ui.palette import read_tokens
-from app.ui.style import alias_chart_colours
+from app.ui.panel_style import alias_chart_colours
 from app.ui.workspace import Range, WorkspaceView, compared_images
 
 MAX_WIDTH = 400

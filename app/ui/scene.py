@@ -13,7 +13,7 @@ from app.recognition import PoseSequence
 from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry, Points, find_complete
 from app.ui.palette import Rgb
-from app.ui.theme import Theme, map_time_colours, to_linear
+from app.ui.scene_theme import Theme, map_time_colours, to_linear
 
 WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""

@@ -31,7 +31,7 @@ from app.ui.loopback_server import quiet, start_server
 from app.ui.panels import Inspector, TimeCursor
 from app.ui.playback import Playback
 from app.ui.scene import SpaceTimeCube
-from app.ui.theme import DARK, LIGHT
+from app.ui.scene_theme import DARK, LIGHT
 
 TRANSITION_SECONDS = 0.45
 TRANSITION_STEPS = 12

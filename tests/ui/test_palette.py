@@ -8,7 +8,7 @@ import pytest
 
 from app.resources import static_dir
 from app.ui.palette import load_palette, parse_colour, read_tokens
-from app.ui.style import CHART_COLOURS, PANEL_STYLE, alias_chart_colours
+from app.ui.panel_style import CHART_COLOURS, PANEL_STYLE, alias_chart_colours
 
 
 def test_a_colour_of_the_style_sheet_is_red_green_blue() -> None:

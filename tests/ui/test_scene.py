@@ -14,7 +14,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.ui.back_wall import Wall
 from app.ui.geometry import CubeGeometry
 from app.ui.scene import SpaceTimeCube, text_image
-from app.ui.theme import DARK, LIGHT
+from app.ui.scene_theme import DARK, LIGHT
 from app.ui.workspace import Range
 from tests.ui.views import view_in
 

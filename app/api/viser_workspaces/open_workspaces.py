@@ -1,4 +1,4 @@
-"""The registry of open workspaces, as a dependency of routes."""
+"""Open workspaces: their registry as a dependency of routes, and how one is found by its id."""
 
 from __future__ import annotations
 

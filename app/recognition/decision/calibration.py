@@ -31,7 +31,7 @@ from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.negatives import draw_negatives
+from app.recognition.simulation.out_of_vocabulary import draw_negatives
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variant_bias import VARIANT_BIASES
 from app.recognition.simulation.variation import SPREADS, draw_variants

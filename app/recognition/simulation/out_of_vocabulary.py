@@ -1,4 +1,4 @@
-"""Negatives: simulated out-of-vocabulary movements of a language.
+"""Out-of-vocabulary movements, simulated: what a diver may show that is no gesture of a language.
 
 Background motion (`background_motion`), and splices: the first half of one gesture followed by the
 second half of another one.

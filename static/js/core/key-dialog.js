@@ -1,7 +1,7 @@
 // The dialog that lists all keys; `?` opens it.
 
 import { byId, h } from "./dom.js";
-import { bind, bindings } from "./keys.js";
+import { bind, bindings } from "./key-bindings.js";
 
 /** @import { KeyListActions } from "./types.d.ts" */
 

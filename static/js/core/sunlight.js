@@ -1,7 +1,7 @@
 // The look for direct sunlight: black on white with large targets, kept by the browser.
 
 import { byId } from "./dom.js";
-import { bind } from "./keys.js";
+import { bind } from "./key-bindings.js";
 
 const KEY = "osg-studio.look"; // localStorage: a tablet on a boat stays as it was set.
 const SUN = "sun";

@@ -1,7 +1,7 @@
 // Undo and redo of what was done in this tab, kept over reloads until the tab closes.
 
 import { byId } from "./dom.js";
-import { bind } from "./keys.js";
+import { bind } from "./key-bindings.js";
 import { complain, toast } from "./toasts.js";
 
 /** @import { Action, UndoHandlers } from "./types.d.ts" */

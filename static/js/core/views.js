@@ -1,7 +1,7 @@
 // The views of the page: one is shown at a time, named in the URL, and imported when first shown.
 
 import { byId, h, reconcile } from "./dom.js";
-import { holdKeys } from "./keys.js";
+import { holdKeys } from "./key-bindings.js";
 import { follow, state, update } from "./state.js";
 
 /** @import { State, View } from "./types.d.ts" */

@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
 import { ago } from "../core/format.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";

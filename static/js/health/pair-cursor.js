@@ -2,7 +2,7 @@
 
 import { h, icon, svg } from "../core/dom.js";
 import { moment } from "../core/format.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
 
 /** @import { PairDifference } from "../core/types.d.ts" */

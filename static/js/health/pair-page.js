@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { h, icon } from "../core/dom.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { editLink, pairOf } from "./finding-links.js";

@@ -19,7 +19,7 @@ import {
 } from "../camera/video-source.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { follow, state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";

@@ -4,7 +4,7 @@ import { figure } from "./pose-picture.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { movingWrists } from "./wrist-motion.js";

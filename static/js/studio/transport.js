@@ -2,7 +2,7 @@
 
 import { byId, h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
-import { bind } from "../core/keys.js";
+import { bind } from "../core/key-bindings.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./stage-picture.js";

@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { listenToKeys } from "../core/keys.js";
+import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame } from "./playback.js";

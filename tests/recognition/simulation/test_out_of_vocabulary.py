@@ -7,7 +7,12 @@ from app.recognition import Gesture, PoseSequence
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.background_motion import MANNERS
-from app.recognition.simulation.negatives import MOST_SPLICES, draw_negatives, splice, splice_all
+from app.recognition.simulation.out_of_vocabulary import (
+    MOST_SPLICES,
+    draw_negatives,
+    splice,
+    splice_all,
+)
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
 
 WRIST = ("right_wrist",)

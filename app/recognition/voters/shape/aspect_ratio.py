@@ -3,10 +3,10 @@
 from math import log2
 
 from app.recognition.features.trajectory_image import Drawing
-from app.recognition.voters.shape.proportion import Proportion
+from app.recognition.voters.shape.proportion_voter import ProportionVoter
 
 
-class AspectRatio(Proportion):
+class AspectRatio(ProportionVoter):
     """Difference of ``log2(width / height)`` of the box around the strokes.
 
     The paper has no logarithm; with it, twice as wide and twice as high are equally far from

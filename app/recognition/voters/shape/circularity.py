@@ -3,10 +3,10 @@
 from math import pi
 
 from app.recognition.features.trajectory_image import Drawing
-from app.recognition.voters.shape.proportion import Proportion
+from app.recognition.voters.shape.proportion_voter import ProportionVoter
 
 
-class Circularity(Proportion):
+class Circularity(ProportionVoter):
     """``4 pi a / p^2`` of the contour's area a and perimeter p: 1 for a disc, 0.79 for a square."""
 
     name = "circularity"

@@ -1,10 +1,10 @@
 """Voter `path_complexity`: the length of the contour relative to its bounding box."""
 
 from app.recognition.features.trajectory_image import Drawing
-from app.recognition.voters.shape.proportion import Proportion
+from app.recognition.voters.shape.proportion_voter import ProportionVoter
 
 
-class PathComplexity(Proportion):
+class PathComplexity(ProportionVoter):
     """Length of the contour over the perimeter of its bounding box: high for a zigzag."""
 
     name = "path_complexity"

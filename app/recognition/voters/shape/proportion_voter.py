@@ -10,7 +10,7 @@ from app.recognition.voters.shape.shape_voter import ShapeVoter
 from app.recognition.voters.voter import absolute_differences
 
 
-class Proportion(ShapeVoter):
+class ProportionVoter(ShapeVoter):
     """Base of voters with one number as descriptor, compared by difference (paper, Sec. IV-D2)."""
 
     def length(self, keypoints: int) -> int:

@@ -1,10 +1,10 @@
 """Voter `solidity`: the contour's area relative to its convex hull."""
 
 from app.recognition.features.trajectory_image import Drawing
-from app.recognition.voters.shape.proportion import Proportion
+from app.recognition.voters.shape.proportion_voter import ProportionVoter
 
 
-class Solidity(Proportion):
+class Solidity(ProportionVoter):
     """Area of the contour over the area of its convex hull: 1 for a disc, small for a V."""
 
     name = "solidity"
