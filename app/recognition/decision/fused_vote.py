@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.decision.confidence import estimate_confidence
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
 from app.recognition.decision.hand_references import HandReferences
 from app.recognition.decision.motion_references import (
@@ -26,7 +27,6 @@ from app.recognition.decision.rejection import (
     CUE_GROUPS,
     HAND_CUE_GROUP,
     build_novelty_weights,
-    estimate_confidence,
     gather_thresholds,
     is_rejected,
     measure_clearness,

@@ -17,7 +17,6 @@ in the language file.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Final
@@ -59,13 +58,6 @@ CLEARNESS_EXPONENT = 2.0
 
 MOST_CLEAR = 1 / 3
 """Least clearness: however far the other gestures are, thresholds widen three times at most."""
-
-CONFIDENCE_AT_ONE = -1.15
-CONFIDENCE_PER_NOVELTY = -0.9
-CONFIDENCE_PER_SHARE = -0.95
-"""Coefficients of `estimate_confidence`, fitted on eleven sets, in languages of half of the
-classes; fitted on ten, they are within 0.2 of these but without `utkinect`
-(`benchmarks/studies/people.md`)."""
 
 
 def gather_thresholds(gestures: Sequence[Gesture], voters: Sequence[str]) -> FloatArray:
@@ -167,38 +159,3 @@ def compare_with_other(scores: FloatArray, others: FloatArray) -> FloatArray:
 def is_rejected(novelty: float) -> bool:
     """Return whether a gesture is rejected; one without thresholds (NaN) never is."""
     return novelty > 1.0
-
-
-TIE_EXPONENT = 5.0
-"""Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
-seven recorded sets. With a runner-up 1.2 times as far it is 0.71, twice as far 0.97."""
-
-
-def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
-    """Estimate the probability that the nearest gesture is the one meant.
-
-    ``1 / (1 + exp(-(b0 + b1 ln n + b2 ln(s / t))))`` for the novelty n and the scores s of the
-    nearest and t of the second gesture, 0.02 added to each: novelty separates gestures from
-    out-of-vocabulary movements, the ratio separates the two gestures. The coefficients are a
-    logistic regression on other people's recordings, half of them out-of-vocabulary; the
-    reliability table is in `docs/results.md`. At most ``1 / (1 + (s / t)^5)``: two gestures
-    equally near have probability 0.5, however near.
-
-    Parameters
-    ----------
-    novelty
-        Of the nearest gesture. NaN where it has no thresholds: the score is used instead, which is
-        about 1 for another gesture.
-    nearest, second
-        Scores of `fusion.fuse`; without a second gesture infinite, which counts as the typical
-        distance 1.
-
-    """
-    far = math.log((novelty if math.isfinite(novelty) else nearest) + SCORE_FLOOR)
-    here = math.log(nearest + SCORE_FLOOR)
-    there = math.log((second if math.isfinite(second) else 1.0) + SCORE_FLOOR)
-    odds = CONFIDENCE_AT_ONE + CONFIDENCE_PER_NOVELTY * far + CONFIDENCE_PER_SHARE * (here - there)
-    # Both exponents are at most 700, just below the overflow of a double.
-    meant = 1.0 / (1.0 + math.exp(min(-odds, 700.0)))
-    this_one = 1.0 / (1.0 + math.exp(min(TIE_EXPONENT * (here - there), 700.0)))
-    return min(meant, this_one)

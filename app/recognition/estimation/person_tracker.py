@@ -7,8 +7,8 @@ from typing import Final
 import numpy as np
 
 from app.recognition.estimation.landmark_models.suppression import measure_overlaps
+from app.recognition.poses.gaps import MAX_GAP_SECONDS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import MAX_GAP_SECONDS
 
 SAME_PERSON: Final = 0.3
 """Least intersection over union of a person's boxes in two frames. Stretching an arm halves it; two

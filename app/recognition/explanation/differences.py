@@ -17,9 +17,10 @@ from app.recognition.explanation.divergence import find_divergence
 from app.recognition.explanation.pairing import ALIKE, Pairing
 from app.recognition.features.motion import STEPS, build_movement, list_limbs
 from app.recognition.features.trajectory_image import MIN_EXTENT
+from app.recognition.poses.gaps import MAX_GAP_SECONDS
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import MAX_GAP_SECONDS, Trajectory
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.side_swaps import find_side_swaps, swap_sides
 from app.recognition.text.wording import humanize
 from app.recognition.voters.motion.wrist_bend import WristBend

@@ -15,6 +15,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.poses.gaps import fill_all_gaps
 from app.recognition.poses.landmarks import TORSO, other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -371,22 +372,7 @@ def _smooth(trajectory: Trajectory) -> Trajectory:
     np.exp(np.negative(weights, out=weights), out=weights)
     # A column of ones beside the coordinates: its average is the sum of the weights.
     beside = np.ones((len(time), 2 * len(trajectory.landmarks) + 1))
-    beside[:, :-1] = _bridge_gaps(trajectory).reshape(len(time), -1)
+    beside[:, :-1] = fill_all_gaps(trajectory.xy, time).reshape(len(time), -1)
     averaged = weights @ beside
     xy = averaged[:, :-1] / averaged[:, -1:]
     return replace(trajectory, xy=xy.reshape(trajectory.xy.shape))
-
-
-def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
-    """Return ``(T, K, 2)`` without gaps; NaN for landmarks that were never seen."""
-    xy, time = trajectory.xy, trajectory.time
-    finite = np.isfinite(xy)
-    if finite.all():
-        return xy
-    bridged = xy.copy()
-    known = np.asarray(finite[..., 0] & finite[..., 1])
-    for index in np.flatnonzero(known.any(axis=0) & ~known.all(axis=0)):
-        seen = known[:, index]
-        for axis in range(2):
-            bridged[:, index, axis] = np.interp(time, time[seen], xy[seen, index, axis])
-    return bridged

@@ -11,6 +11,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from app.recognition.errors import PoseError
+from app.recognition.poses.gaps import MAX_GAP_SECONDS, bridge_short_gaps, fill_all_gaps
 from app.recognition.poses.hand_shape import HandShape, mirror_hands
 from app.recognition.poses.landmarks import HIPS, SHOULDERS, TORSO, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence, find_columns
@@ -18,13 +19,6 @@ from app.recognition.poses.sequence import FloatArray, PoseSequence, find_column
 Result = TypeVar("Result")
 
 Unit = Literal["torso_length", "extent"]
-
-MAX_GAP_SECONDS = 0.5
-"""Longest gap that is bridged by a straight line, seconds.
-
-Reaching movements last 0.5 s and more (Flash and Hogan 1985): a longer line could replace a whole
-stroke, and an invented stroke is worse than a gap.
-"""
 
 MIN_MOMENTS_OF_DRIFT = 3
 """Least moments from which the torso's drift is told from its sway: two are always a line."""
@@ -234,23 +228,13 @@ class Trajectory:
     def fill_gaps(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
         """Bridge gaps of at most `max_gap` seconds by straight lines; longer ones stay NaN.
 
-        A gap lasts from the last moment a landmark is seen to the next one. Before the first
-        and after the last of them there is nothing to bridge to.
+        See `gaps.bridge_short_gaps`. Depth is smooth, and used for known landmarks only: it is
+        interpolated in all gaps.
         """
+        depth = None if self.depth is None else _interpolate_depth(self.depth, self.time, self.time)
         if np.isfinite(self.xy).all():
-            return self if self.depth is None else replace(self, depth=self._fill_depth())
-        xy = self.xy.copy()
-        seen = np.asarray(np.isfinite(xy).all(axis=2))
-        for index in np.flatnonzero(~seen.all(axis=0)):
-            path, known = xy[:, index], np.flatnonzero(seen[:, index])
-            for gap in np.flatnonzero(np.diff(known) > 1):
-                before, after = known[gap], known[gap + 1]
-                span = self.time[after] - self.time[before]
-                if span <= max_gap:
-                    inside = slice(before + 1, after)
-                    share = (self.time[inside] - self.time[before]) / span
-                    path[inside] = path[before] + share[:, None] * (path[after] - path[before])
-        return replace(self, xy=xy, depth=self._fill_depth())
+            return self if depth is None else replace(self, depth=depth)
+        return replace(self, xy=bridge_short_gaps(self.xy, self.time, max_gap), depth=depth)
 
     def resample_in_time(self, count: int) -> Trajectory:
         """Resample to `count` moments at equal times, linearly.
@@ -324,12 +308,8 @@ class Trajectory:
         np.copyto(xy, low, where=share == 0)
         depth = self.depth
         if depth is not None:
-            depth = _interpolate_columns(depth, self.time, moments)
+            depth = _interpolate_depth(depth, self.time, moments)
         return replace(self, xy=xy, time=moments, depth=depth)
-
-    def _fill_depth(self) -> FloatArray | None:
-        """Return `depth` with gaps bridged: it is smooth, and used for known landmarks only."""
-        return None if self.depth is None else _interpolate_columns(self.depth, self.time)
 
 
 @lru_cache(maxsize=16)
@@ -363,17 +343,9 @@ def _measure_depth(poses: PoseSequence) -> FloatArray | None:
     return np.concatenate([depth, np.zeros((len(poses), 1))], axis=1)
 
 
-def _interpolate_columns(
-    values: FloatArray, time: FloatArray, moments: FloatArray | None = None
-) -> FloatArray:
-    """Interpolate the known values of each column of ``(T, K)``; unknown columns stay NaN."""
-    at = time if moments is None else moments
-    filled = np.full((len(at), values.shape[1]), np.nan)
-    for index, column in enumerate(values.T):
-        known = np.isfinite(column)
-        if known.any():
-            filled[:, index] = np.interp(at, time[known], column[known])
-    return filled
+def _interpolate_depth(depth: FloatArray, time: FloatArray, moments: FloatArray) -> FloatArray:
+    """Return depths ``(T, K)`` of `time` at `moments`, without gaps; NaN where never known."""
+    return fill_all_gaps(depth[..., None], time, moments)[..., 0]
 
 
 def _extent(xy: FloatArray) -> float:

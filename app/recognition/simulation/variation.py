@@ -28,6 +28,7 @@ import numpy.typing as npt
 
 from app.recognition.errors import OsgError
 from app.recognition.features.motion import SIDES, parse_body_part
+from app.recognition.poses.gaps import fill_all_gaps
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.limb_length import limit_limbs
@@ -193,7 +194,7 @@ def vary(
         raise OsgError(f"cannot draw {count} variants: give 0 or more")
     if len(trajectory) < 2:
         return (trajectory,) * count
-    xy = _bridge_gaps(trajectory)
+    xy = np.nan_to_num(fill_all_gaps(trajectory.xy, trajectory.time))
     centre = xy.mean(axis=0)
     draws = _Draws(np.random.default_rng(seed), count, len(trajectory.landmarks))
     paths = _displace(xy, trajectory.landmarks, draws, spread)
@@ -269,7 +270,7 @@ def _turn_hands(
     Parameters
     ----------
     xy
-        ``(T, K, 2)``: the demonstration, see `_bridge_gaps`.
+        ``(T, K, 2)``: the demonstration without gaps; 0 for landmarks that are never seen.
     varied
         ``(count, T, K, 2)``: variants, relative to the mean positions in `xy`.
     landmarks, wrists
@@ -378,20 +379,6 @@ def _name_limb(landmark: str) -> str:
 def _without_side(part: str) -> str:
     """Return the name of a body part without its side."""
     return next((part.removeprefix(side) for side in SIDES if part.startswith(side)), part)
-
-
-def _bridge_gaps(trajectory: Trajectory) -> FloatArray:
-    """Return ``(T, K, 2)`` without gaps: bridged, constant at the ends, 0 where never seen."""
-    xy = np.zeros_like(trajectory.xy)
-    for index in range(len(trajectory.landmarks)):
-        path = trajectory.xy[:, index]
-        known = np.isfinite(path).all(axis=1)
-        if known.any():
-            for axis in range(2):
-                xy[:, index, axis] = np.interp(
-                    trajectory.time, trajectory.time[known], path[known, axis]
-                )
-    return xy
 
 
 def _measure_way(xy: FloatArray) -> FloatArray:

@@ -27,7 +27,7 @@ few seconds."""
 
 SILENT_SECONDS: Final = 5.0
 """Without a frame for so long, a stream counts as lost. The slowest that a gesture could be seen in
-gives two frames a second (`app.recognition.poses.trajectory.MAX_GAP_SECONDS`)."""
+gives two frames a second (`app.recognition.poses.gaps.MAX_GAP_SECONDS`)."""
 
 MOST_PIXELS: Final = 16_000_000
 """Of one frame, as for clips (`VideoLimits`)."""

@@ -11,7 +11,6 @@ from app.recognition.decision.rejection import (
     CUE_GROUPS,
     MOST_CLEAR,
     build_novelty_weights,
-    estimate_confidence,
     gather_thresholds,
     is_rejected,
     measure_clearness,
@@ -109,16 +108,6 @@ def test_an_imported_gesture_is_not_rejected() -> None:
     assert result.label == "circle"
     assert np.isnan(result.novelty).all()
     assert 0.0 <= result.confidence <= 1.0
-
-
-def test_confidence_falls_with_novelty_and_with_a_second_gesture_near() -> None:
-    alone = [estimate_confidence(far, far, np.inf) for far in (0.0, 0.1, 0.3, 1.0, 5.0)]
-    assert alone == sorted(alone, reverse=True)
-    assert alone[0] > 0.99
-    assert alone[-1] < 0.01
-    beside = [estimate_confidence(0.3, 0.1, second) for second in (0.1, 0.3, 1.0)]
-    assert beside == sorted(beside)
-    assert 0.0 <= estimate_confidence(1e300, 1e300, 1e300) < 1e-9
 
 
 def test_thresholds_widen_for_a_gesture_that_is_much_nearer_than_any_other() -> None:

@@ -1,0 +1,52 @@
+"""Confidence: the probability that the label of a take is right.
+
+Profile ``full`` estimates it from the novelty of the nearest gesture and from how much farther the
+second one is. Profile ``paper`` has the share of votes in its place (`majority_vote`).
+"""
+
+from __future__ import annotations
+
+import math
+
+from app.recognition.decision.rejection import SCORE_FLOOR
+
+CONFIDENCE_AT_ONE = -1.15
+CONFIDENCE_PER_NOVELTY = -0.9
+CONFIDENCE_PER_SHARE = -0.95
+"""Coefficients of `estimate_confidence`, fitted on eleven sets, in languages of half of the
+classes; fitted on ten, they are within 0.2 of these but without `utkinect`
+(`benchmarks/studies/people.md`)."""
+
+TIE_EXPONENT = 5.0
+"""Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
+seven recorded sets. With a runner-up 1.2 times as far it is 0.71, twice as far 0.97."""
+
+
+def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
+    """Estimate the probability that the nearest gesture is the one meant.
+
+    ``1 / (1 + exp(-(b0 + b1 ln n + b2 ln(s / t))))`` for the novelty n and the scores s of the
+    nearest and t of the second gesture, 0.02 added to each: novelty separates gestures from
+    out-of-vocabulary movements, the ratio separates the two gestures. The coefficients are a
+    logistic regression on other people's recordings, half of them out-of-vocabulary; the
+    reliability table is in `docs/results.md`. At most ``1 / (1 + (s / t)^5)``: two gestures
+    equally near have probability 0.5, however near.
+
+    Parameters
+    ----------
+    novelty
+        Of the nearest gesture. NaN where it has no thresholds: the score is used instead, which is
+        about 1 for another gesture.
+    nearest, second
+        Scores of `fusion.fuse`; without a second gesture infinite, which counts as the typical
+        distance 1.
+
+    """
+    far = math.log((novelty if math.isfinite(novelty) else nearest) + SCORE_FLOOR)
+    here = math.log(nearest + SCORE_FLOOR)
+    there = math.log((second if math.isfinite(second) else 1.0) + SCORE_FLOOR)
+    odds = CONFIDENCE_AT_ONE + CONFIDENCE_PER_NOVELTY * far + CONFIDENCE_PER_SHARE * (here - there)
+    # Both exponents are at most 700, just below the overflow of a double.
+    meant = 1.0 / (1.0 + math.exp(min(-odds, 700.0)))
+    this_one = 1.0 / (1.0 + math.exp(min(TIE_EXPONENT * (here - there), 700.0)))
+    return min(meant, this_one)
