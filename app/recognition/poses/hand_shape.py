@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import SIDES, Side
@@ -19,7 +20,7 @@ KNUCKLES_PER_PALM = 1.2
 """Palm length over the width of the knuckles, for foreshortened palms (as in `salute`)."""
 
 MOST_FRAMES = 64
-"""Frames whose median is taken, evenly chosen: more change no digit."""
+"""Frames that say what a hand's shape is, see `choose_frames`: more change no digit of a median."""
 
 
 _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
@@ -75,8 +76,7 @@ class HandShape:
             ``(T, 21, 2)`` pixels, T >= 1, without NaN.
 
         """
-        every = np.linspace(0, len(hands) - 1, min(len(hands), MOST_FRAMES)).round().astype(int)
-        middle = np.median(normalize_hands(hands[every]), axis=0)
+        middle = np.median(normalize_hands(hands[choose_frames(len(hands))]), axis=0)
         # Adding 0 turns -0.0 into 0.0, which files do not distinguish.
         return cls(side, np.round(normalize_hands(middle[None])[0], DIGITS) + 0.0)
 
@@ -96,6 +96,12 @@ class HandShape:
         """Return the shape turned in the image, clockwise."""
         cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
         return replace(self, xy=self.xy @ np.array([[cosine, sine], [-sine, cosine]]))
+
+
+def choose_frames(count: int) -> npt.NDArray[np.intp]:
+    """Choose at most `MOST_FRAMES` of `count` frames, evenly, the first and the last among them."""
+    chosen = np.linspace(0, count - 1, min(count, MOST_FRAMES)).round()
+    return chosen.astype(np.intp)
 
 
 def mirror_hands(hands: Sequence[HandShape]) -> tuple[HandShape, ...]:

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, normalize_hands
+from app.recognition.poses.hand_shape import HandShape, choose_frames, normalize_hands
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import (
@@ -142,7 +142,7 @@ def _find_stretches(side: Side, poses: PoseSequence) -> list[tuple[float, float]
     seen = np.flatnonzero(np.isfinite(hands).all(axis=(1, 2)))
     if not len(seen) or len(seen) < LEAST_SEEN * len(poses):
         return []
-    every = seen[np.linspace(0, len(seen) - 1, min(len(seen), MOST_FRAMES)).round().astype(int)]
+    every = seen[choose_frames(len(seen))]
     shown = normalize_hands(hands[every])
     starts = _divide(shown)
     if len(starts) == 1:

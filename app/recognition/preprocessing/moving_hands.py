@@ -9,7 +9,7 @@ import numpy as np
 
 from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.frame import SIDES, Side
-from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, normalize_hands
+from app.recognition.poses.hand_shape import HandShape, choose_frames, normalize_hands
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.preprocessing.held_hands import MOST_CHANGE, measure_distances
 
@@ -60,8 +60,7 @@ def find_moving_hands(
         if side not in sides or seen.sum() < max(LEAST_FRAMES, LEAST_SEEN * len(poses)):
             continue
         shown = hands[seen]
-        every = np.linspace(0, len(shown) - 1, min(len(shown), MOST_FRAMES)).round().astype(int)
-        aligned, middle = _align(normalize_hands(shown[every]))
+        aligned, middle = _align(normalize_hands(shown[choose_frames(len(shown))]))
         if np.median(measure_distances(aligned, middle)) <= MOST_CHANGE:
             shapes.append(HandShape.of_frames(side, aligned))
     return tuple(shapes)

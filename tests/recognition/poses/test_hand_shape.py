@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import PoseError
-from app.recognition.poses.hand_shape import HandShape
+from app.recognition.poses.hand_shape import MOST_FRAMES, HandShape, choose_frames
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.held_takes import FIST, FLAT, TWO
 from tests.recognition.parametric_hand import hand_xy
@@ -50,3 +50,12 @@ def test_the_palm_of_a_fist_is_large_beside_that_of_an_open_hand() -> None:
 def test_what_is_no_hand_is_refused(xy: FloatArray) -> None:
     with pytest.raises(PoseError, match="hand shape"):
         HandShape("right", xy)
+
+
+@pytest.mark.parametrize("count", [1, 2, MOST_FRAMES, MOST_FRAMES + 1, 1000])
+def test_few_frames_are_chosen_evenly_from_the_first_to_the_last(count: int) -> None:
+    chosen = choose_frames(count)
+    assert len(chosen) == min(count, MOST_FRAMES)
+    assert (chosen[0], chosen[-1]) == (0, count - 1)
+    steps = np.diff(chosen)
+    assert steps.size == 0 or 1 <= steps.min() <= steps.max() <= steps.min() + 1
