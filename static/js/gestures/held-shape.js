@@ -5,13 +5,13 @@ import { readable } from "../core/format.js";
 /**
  * Whether nothing moves in it, and the hand's shape is the gesture.
  *
- * @param {{ salient: string[], has_trajectory?: boolean, seconds?: number | null }} shown
+ * @param {{ held_shapes: number }} shown
  */
-export function isHeld({ salient, has_trajectory: kept, seconds }) {
-  return !salient.length && (kept ?? seconds !== null);
+export function isHeld({ held_shapes: count }) {
+  return count > 0;
 }
 
-/** @param {Parameters<typeof isHeld>[0] & { held_shapes: number }} shown */
+/** @param {{ held_shapes: number, salient: string[] }} shown */
 export function listFollowed(shown) {
   if (shown.held_shapes > 1) return "two held hand shapes in sequence";
   return isHeld(shown) ? "held hand shape" : shown.salient.map(readable).join(", ");
