@@ -3,37 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import httpx
 import pytest
-import schemathesis
 from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
-from schemathesis.checks import not_a_server_error
-from schemathesis.core.result import Ok
-from schemathesis.specs.openapi.checks import (
-    content_type_conformance,
-    response_schema_conformance,
-    status_code_conformance,
-)
 
 from app.server import create_app
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, running
 
+if TYPE_CHECKING:
+    from schemathesis import Case
+
 pytestmark = pytest.mark.slow
 
-CHECKS = (
-    not_a_server_error,
-    content_type_conformance,
-    response_schema_conformance,
-    status_code_conformance,
+TAGS = (
+    "administration",
+    "clips",
+    "gestures",
+    "health",
+    "jobs",
+    "languages",
+    "recognitions",
+    "revisions",
+    "samples",
+    "workspaces",
 )
-
-# A part of a file is plain bytes, whatever the tus protocol calls them.
-schemathesis.serializer.alias("application/offset+octet-stream", "application/octet-stream")
+"""Nouns by which the description groups its operations."""
 
 
 @pytest.fixture(scope="module")
@@ -47,32 +46,59 @@ def lasting_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running
         yield server
 
 
-def described() -> list[Any]:
-    """Return the described operations, without the stream that never ends."""
+@pytest.fixture(scope="module")
+def operations() -> list[Any]:
+    """Return the described operations, without the stream that never ends.
+
+    The description is made, and its library loaded, by the one worker that tests it.
+    """
+    import schemathesis
+    from schemathesis.core.result import Ok
+
+    # A part of a file is plain bytes, whatever the tus protocol calls them.
+    schemathesis.serializer.alias("application/offset+octet-stream", "application/octet-stream")
     schema = schemathesis.openapi.from_dict(create_app(Settings()).openapi())
-    operations = [found.ok() for found in schema.get_all_operations() if isinstance(found, Ok)]
-    return [operation for operation in operations if operation.path != "/api/v1/events"]
+    described = [found.ok() for found in schema.get_all_operations() if isinstance(found, Ok)]
+    return [operation for operation in described if operation.path != "/api/v1/events"]
 
 
-OPERATIONS = described()
+def test_every_operation_has_one_of_the_tags_that_are_tested(operations: list[Any]) -> None:
+    assert {tag for operation in operations for tag in operation.tags} == set(TAGS)
+    assert all(operation.tags for operation in operations)
 
 
-@pytest.mark.parametrize("operation", OPERATIONS, ids=lambda operation: operation.label)
+@pytest.mark.parametrize("tag", TAGS)
 def test_no_request_breaks_the_server_or_the_description(
-    lasting_server: Running, operation: Any
+    lasting_server: Running, operations: list[Any], tag: str, subtests: pytest.Subtests
 ) -> None:
-    @given(case=operation.as_strategy())
-    @hypothesis_settings(
+    from schemathesis.checks import not_a_server_error
+    from schemathesis.specs.openapi.checks import (
+        content_type_conformance,
+        response_schema_conformance,
+        status_code_conformance,
+    )
+
+    checks = [
+        not_a_server_error,
+        content_type_conformance,
+        response_schema_conformance,
+        status_code_conformance,
+    ]
+
+    def answer_as_described(case: Case[Any]) -> None:
+        response = case.call(base_url=lasting_server.address, timeout=60)
+        case.validate_response(response, checks=checks)
+
+    examples = hypothesis_settings(
         max_examples=8, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
     )
-    def answer_as_described(case: schemathesis.Case[Any]) -> None:
-        response = case.call(base_url=lasting_server.address, timeout=60)
-        case.validate_response(response, checks=list(CHECKS))
+    for operation in operations:
+        if tag in operation.tags:
+            with subtests.test(operation.label):
+                examples(given(case=operation.as_strategy())(answer_as_described))()
 
-    answer_as_described()
 
-
-def test_real_objects_answer_as_described(lasting_server: Running) -> None:
+def test_real_objects_answer_as_described(lasting_server: Running, operations: list[Any]) -> None:
     """Follow ids that exist, which generated requests never hit."""
     clip_id = add_recorded_clip(lasting_server.studio, recording_of("circle"))
     with httpx.Client(base_url=lasting_server.address, timeout=60) as client:
@@ -91,7 +117,7 @@ def test_real_objects_answer_as_described(lasting_server: Running) -> None:
         }
         readable = [
             operation
-            for operation in OPERATIONS
+            for operation in operations
             if operation.method == "get"
             and "workspace" not in operation.path
             # Two gestures are compared by their labels in the query.
