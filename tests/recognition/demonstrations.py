@@ -1,7 +1,9 @@
 """Languages of a simulated diver, with a health known beforehand."""
 
-from app.recognition import Gesture, Language
-from tests.recognition.strategies import Shape, recording
+from functools import cache
+
+from app.recognition import Gesture, Language, Recognizer
+from tests.recognition.strategies import SHAPES, Shape, recording
 
 ARMS = ("left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_wrist", "right_wrist")
 """Landmarks enough for a torso and both hands."""
@@ -15,3 +17,18 @@ def shown(label: str, shape: Shape, *, frames: int = 45) -> Gesture:
 def pool(**shapes: Shape) -> Language:
     """Return a language of these gestures."""
     return Language("pool", [shown(label, shape) for label, shape in shapes.items()])
+
+
+@cache
+def drawn_language() -> Language:
+    """Return the language of all `SHAPES`, made when a test first asks for it."""
+    shapes = SHAPES.items()
+    return Language(
+        "pool", [Gesture.from_demonstration(label, recording(s)) for label, s in shapes]
+    )
+
+
+@cache
+def drawn_recognizer(profile: str) -> Recognizer:
+    """Return a recogniser of `drawn_language`."""
+    return Recognizer(drawn_language(), profile)

@@ -20,20 +20,16 @@ from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.shape_voter import describe_drawing
+from tests.recognition.demonstrations import drawn_language
 from tests.recognition.strategies import SHAPES, circle, line, recording, rest, wedge
 from tests.recognition.voters.figures import drawing_of
-
-LANGUAGE = Language(
-    "pool",
-    [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()],
-)
 
 
 def test_a_gesture_without_a_salient_keypoint_does_not_break_the_language() -> None:
     """There: an empty contour, an IndexError, and no gesture of the language loads."""
     with pytest.raises(GestureError, match="nothing moves"):
         Gesture.from_demonstration("still", recording(rest))
-    content = json.loads(LANGUAGE.to_json())
+    content = json.loads(drawn_language().to_json())
     content["gestures"][0]["salient"] = []
     content["gestures"][1]["image"] = json.loads(_blank().to_json())["gestures"][0]["image"]
     del content["sha256"]
@@ -75,7 +71,7 @@ def test_drift_distance_and_the_cameras_aspect_do_not_change_the_shape(
 def test_reference_and_query_go_through_one_pipeline(name: str) -> None:
     """There: other Canny thresholds, a second blur and a binarisation on one side only."""
     for profile in PROFILES:
-        result = Recognizer(LANGUAGE, profile).recognize(recording(SHAPES[name]))
+        result = Recognizer(drawn_language(), profile).recognize(recording(SHAPES[name]))
         distances = result.distances[:, result.gestures.index(name)]
         np.testing.assert_array_equal(distances[np.isfinite(distances)], 0.0)
 
@@ -83,31 +79,36 @@ def test_reference_and_query_go_through_one_pipeline(name: str) -> None:
 def test_hu_and_zernike_keep_their_magnitudes() -> None:
     """There: each vector is z-scored within itself, which forgets how large its entries are."""
     for name in ("hu", "zernike"):
-        vectors = [gesture.descriptors[name] for gesture in LANGUAGE.gestures]
+        vectors = [gesture.descriptors[name] for gesture in drawn_language().gestures]
         assert len({round(float(np.std(vector)), 3) for vector in vectors}) > 1
         assert any(abs(vector.mean()) > 0.1 for vector in vectors)
 
 
 def test_every_contour_counts_in_a_defined_order() -> None:
     """There: the first contour found is taken, which may be a speck."""
-    image = LANGUAGE.gesture("line").image.copy()
+    image = drawn_language().gesture("line").image.copy()
     image[2:5, 2:5] = 255
     contours = Contour.of(image).contours
     assert len(contours) == 2
     assert contours[0][:, 0].mean() < contours[1][:, 0].mean()
-    line_alone = Contour.of(LANGUAGE.gesture("line").image)
+    line_alone = Contour.of(drawn_language().gesture("line").image)
     assert Contour.of(image).area == pytest.approx(line_alone.area, rel=0.01)
 
 
 def test_fourier_descriptors_are_real_numbers_of_one_length_for_any_contour() -> None:
     """There: complex numbers with the DC term, and a mismatch below twelve contour points."""
-    tiny = LANGUAGE.gestures[0].image.copy()
+    tiny = drawn_language().gestures[0].image.copy()
     tiny[:] = 0
     tiny[100:102, 100:102] = 255
     speck = Gesture(label="speck", salient=("right_wrist",), image=tiny).redraw()
     assert speck.descriptors["fourier"].dtype == np.float64
-    assert speck.descriptors["fourier"].shape == LANGUAGE.gestures[0].descriptors["fourier"].shape
-    result = Recognizer(LANGUAGE.with_gesture(speck)).recognize(recording(wedge, jitter=0.01))
+    assert (
+        speck.descriptors["fourier"].shape
+        == drawn_language().gestures[0].descriptors["fourier"].shape
+    )
+    result = Recognizer(drawn_language().with_gesture(speck)).recognize(
+        recording(wedge, jitter=0.01)
+    )
     assert result.label == "wedge"
 
 
@@ -127,7 +128,7 @@ def test_a_tie_does_not_go_to_whichever_gesture_comes_first() -> None:
     distances[:3, 0], distances[3:6, 1] = 0.9, 0.1
     distances[6] = np.inf  # one voter abstains, so that three votes stand against three
     for gestures in (("circle", "wedge"), ("wedge", "circle")):
-        language = Language("two", [LANGUAGE.gesture(label) for label in gestures])
+        language = Language("two", [drawn_language().gesture(label) for label in gestures])
         two = Recognizer(language, "paper")
         assert isinstance(two.vote, MajorityVote)
         assert two.vote.count_votes(distances).label == gestures[1]
@@ -145,8 +146,8 @@ def test_recognition_writes_no_files(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 def test_the_file_says_who_made_it_when_how_and_from_which_motion() -> None:
     """There: 850 kB of pixels a gesture, and no trajectory, units, author or versions."""
-    text = LANGUAGE.to_json()
-    assert len(text) < 40_000 * len(LANGUAGE.gestures)
+    text = drawn_language().to_json()
+    assert len(text) < 40_000 * len(drawn_language().gestures)
     content = json.loads(text)
     assert {"format", "version", "author", "created", "revision", "settings"} <= set(content)
     for entry in content["gestures"]:

@@ -12,12 +12,8 @@ from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
+from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings
-
-LANGUAGE = Language(
-    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
-)
-RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 
 
 def compared(recognizer: Recognizer, poses: PoseSequence) -> ScoreTable:
@@ -27,22 +23,22 @@ def compared(recognizer: Recognizer, poses: PoseSequence) -> ScoreTable:
 @pytest.mark.parametrize("profile", PROFILES)
 @given(recordings())
 def test_the_distances_are_those_of_the_recognition(profile: str, query: PoseSequence) -> None:
-    comparison = compared(RECOGNIZERS[profile], query)
-    result = RECOGNIZERS[profile].recognize(query)
+    comparison = compared(drawn_recognizer(profile), query)
+    result = drawn_recognizer(profile).recognize(query)
     assert comparison.voters == result.voters
     np.testing.assert_array_equal(comparison.distances, result.distances)
 
 
 @given(recordings())
 def test_the_smallest_score_wins_in_profile_full(query: PoseSequence) -> None:
-    scores = compared(RECOGNIZERS["full"], query).scores
-    nearest = RECOGNIZERS["full"].recognize(query).nearest
-    assert LANGUAGE.labels[int(scores.argmin())] == nearest
+    scores = compared(drawn_recognizer("full"), query).scores
+    nearest = drawn_recognizer("full").recognize(query).nearest
+    assert drawn_language().labels[int(scores.argmin())] == nearest
 
 
 def test_a_figure_read_backwards_costs_half_as_much_again() -> None:
-    comparison = compared(RECOGNIZERS["full"], recording(lambda share: line(1 - share)))
-    at = LANGUAGE.labels.index("line")
+    comparison = compared(drawn_recognizer("full"), recording(lambda share: line(1 - share)))
+    at = drawn_language().labels.index("line")
     traversal = comparison.traversals[at]
     assert traversal is not None
     assert traversal.backward
@@ -52,7 +48,7 @@ def test_a_figure_read_backwards_costs_half_as_much_again() -> None:
 def test_the_mirror_image_that_fits_is_named() -> None:
     gestures = [
         replace(gesture, switches=Switches(mirror="on")) if gesture.label == "wedge" else gesture
-        for gesture in LANGUAGE.gestures
+        for gesture in drawn_language().gestures
     ]
     recognizer = Recognizer(Language("pool", gestures), "full")
     shown = PoseSequence(
@@ -64,13 +60,13 @@ def test_the_mirror_image_that_fits_is_named() -> None:
     assert not compared(recognizer, shown).mirrored.any()
     trajectory = condense(Trajectory.from_poses(shown)).mirror()
     assert recognizer.compare(trajectory).mirrored.tolist() == [
-        label == "wedge" for label in LANGUAGE.labels
+        label == "wedge" for label in drawn_language().labels
     ]
 
 
 def test_what_no_voter_can_compare_is_infinitely_far() -> None:
     left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
-    language = Language("pool", [*LANGUAGE.gestures, left])
+    language = Language("pool", [*drawn_language().gestures, left])
     landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
     query = recording(circle, landmarks=landmarks)
     for profile in PROFILES:

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer, Take
+from app.recognition import GestureError, Language, PoseSequence, Recognizer, Take
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_kinds import (
     FurtherDemonstration,
@@ -21,16 +21,13 @@ from app.recognition.explanation.counterfactual_kinds import (
 )
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
-from tests.recognition.strategies import SHAPES, circle, recording, wedge
-
-LANGUAGE = Language(
-    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
-)
+from tests.recognition.demonstrations import drawn_language
+from tests.recognition.strategies import circle, recording, wedge
 
 
 @pytest.fixture(scope="module")
 def context() -> RecognitionContext:
-    recognizer = Recognizer(LANGUAGE, "full", tuning=Tuning(weights={"hu": 3.0}))
+    recognizer = Recognizer(drawn_language(), "full", tuning=Tuning(weights={"hu": 3.0}))
     whole = recording(wedge)
     return RecognitionContext(recognizer=recognizer, poses=whole.between(0.5, 1.5), whole=whole)
 
@@ -68,7 +65,7 @@ def test_other_salient_keypoints_are_drawn_anew(context: RecognitionContext) -> 
     change = SalientKeypoints(size=0.5, label="circle", salient=both)
     changed = change.apply(context).language.gesture("circle")
     assert changed.salient == both
-    assert (changed.image != LANGUAGE.gesture("circle").image).any()
+    assert (changed.image != drawn_language().gesture("circle").image).any()
     with pytest.raises(GestureError, match="not in this recording"):
         replace(change, salient=("left_knee",)).apply(context)
 
@@ -82,8 +79,8 @@ def test_a_switch_is_the_only_thing_that_changes_about_a_gesture(
 
 
 def test_a_new_demonstration_keeps_what_the_author_wrote() -> None:
-    told = replace(LANGUAGE.gesture("circle"), description="round", command="orbit")
-    gestures = [told if each.label == "circle" else each for each in LANGUAGE.gestures]
+    told = replace(drawn_language().gesture("circle"), description="round", command="orbit")
+    gestures = [told if each.label == "circle" else each for each in drawn_language().gestures]
     query = recording(wedge)
     before = RecognitionContext(
         recognizer=Recognizer(Language("pool", gestures), "paper"), poses=query, whole=query
@@ -92,7 +89,7 @@ def test_a_new_demonstration_keeps_what_the_author_wrote() -> None:
     after = NewDemonstration(size=1.0, label="circle").apply(before)
     made = after.language.gesture("circle")
     assert (made.description, made.command) == ("round", "orbit")
-    assert (made.image == LANGUAGE.gesture("wedge").image).all()
+    assert (made.image == drawn_language().gesture("wedge").image).all()
     assert after.result.label == "circle"  # of two that are now the same, the first
 
 
@@ -106,11 +103,13 @@ def test_a_new_demonstration_keeps_the_further_ones(context: RecognitionContext)
 @pytest.mark.parametrize("profile", PROFILES)
 def test_a_further_demonstration_leaves_the_others_as_they_are(profile: str) -> None:
     query = recording(wedge)
-    context = RecognitionContext(recognizer=Recognizer(LANGUAGE, profile), poses=query, whole=query)
+    context = RecognitionContext(
+        recognizer=Recognizer(drawn_language(), profile), poses=query, whole=query
+    )
     after = FurtherDemonstration(size=0.5, label="circle").apply(context)
     first, second = after.language.gesture("circle").single_demonstrations()
-    assert (first.image == LANGUAGE.gesture("circle").image).all()
-    assert (second.image == LANGUAGE.gesture("wedge").image).all()
+    assert (first.image == drawn_language().gesture("circle").image).all()
+    assert (second.image == drawn_language().gesture("wedge").image).all()
     assert (after.profile, after.poses) == (context.profile, query)
 
 

@@ -19,13 +19,9 @@ from app.recognition.explanation.counterfactual_search import (
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
 from tests.recognition.damaged_poses import with_sides_exchanged
+from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_differences import HOOK, corners
 from tests.recognition.strategies import SHAPES, recording, wedge
-
-LANGUAGE = Language(
-    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
-)
-RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
 
 
 def found_for(
@@ -39,7 +35,7 @@ def found_for(
 @pytest.mark.parametrize("profile", PROFILES)
 def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
     query = recording(wedge, jitter=0.02)
-    context = RecognitionContext(recognizer=RECOGNIZERS[profile], poses=query, whole=query)
+    context = RecognitionContext(recognizer=drawn_recognizer(profile), poses=query, whole=query)
     told = find_counterfactuals(context, "circle")
     assert told.found
     assert told.tried >= len(told.found)
@@ -51,7 +47,7 @@ def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_what_teaches_most_comes_first_and_not_too_many_of_a_kind(profile: str) -> None:
-    told = found_for(recording(SHAPES["square"], jitter=0.03), "circle", RECOGNIZERS[profile])
+    told = found_for(recording(SHAPES["square"], jitter=0.03), "circle", drawn_recognizer(profile))
     sizes = [each.change.size for each in told.found]
     ranks = [(ORDER.index(each.change.kind), each.change.size) for each in told.found]
     assert ranks == sorted(ranks)
@@ -88,7 +84,7 @@ def test_a_stroke_cut_too_short_is_made_longer() -> None:
 
 def test_bad_keypoints_are_repaired() -> None:
     mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
-    told = found_for(mistaken, "wedge", RECOGNIZERS["paper"])
+    told = found_for(mistaken, "wedge", drawn_recognizer("paper"))
     repairs = [each for each in told.found if each.change.kind == "keypoint_repair"]
     assert len(repairs) == 1
     assert repairs[0].change.size == pytest.approx(12 / 60, abs=0.07)
@@ -96,7 +92,7 @@ def test_bad_keypoints_are_repaired() -> None:
 
 def test_the_other_hand_counts_with_the_mirror_switch() -> None:
     two = Gesture.from_demonstration("other", recording(SHAPES["line"], hand="left_wrist"))
-    language = Language("pool", [*LANGUAGE.gestures, two])
+    language = Language("pool", [*drawn_language().gestures, two])
     query = recording(wedge)
     mirrored = PoseSequence(
         landmarks=tuple(other_side(name) for name in query.landmarks),
@@ -110,7 +106,7 @@ def test_the_other_hand_counts_with_the_mirror_switch() -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_none_makes_a_gesture_of_the_language_lose_a_take(profile: str) -> None:
-    told = found_for(recording(SHAPES["line"], jitter=0.01), "circle", RECOGNIZERS[profile])
+    told = found_for(recording(SHAPES["line"], jitter=0.01), "circle", drawn_recognizer(profile))
     effects = [each.effect for each in told.found if each.effect is not None]
     assert all(effect.takes == 2 * len(SHAPES) and effect.lost == () for effect in effects)
     # A circle shown as a line is no circle any more, and takes lines for itself.
@@ -135,7 +131,7 @@ def test_another_demonstration_is_offered_first() -> None:
 def test_a_trim_keeps_most_of_the_stroke() -> None:
     whole = recording(corners(*HOOK), frames=90)
     stroke = whole.between(1.0, 2.0)
-    context = RecognitionContext(recognizer=RECOGNIZERS["full"], poses=stroke, whole=whole)
+    context = RecognitionContext(recognizer=drawn_recognizer("full"), poses=stroke, whole=whole)
     trims = [
         change
         for series in list_interventions(context, "circle")
@@ -149,10 +145,10 @@ def test_a_trim_keeps_most_of_the_stroke() -> None:
 
 
 def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() -> None:
-    circled = LANGUAGE.gesture("circle")
+    circled = drawn_language().gesture("circle")
     for seed in range(4):
         circled = circled.with_demonstration(recording(SHAPES["circle"], jitter=0.01, seed=seed))
-    full = Recognizer(LANGUAGE.with_changed(circled), "paper")
+    full = Recognizer(drawn_language().with_changed(circled), "paper")
     query = recording(SHAPES["line"], jitter=0.01)
     context = RecognitionContext(recognizer=full, poses=query, whole=query)
     kinds = {each.kind for series in list_interventions(context, "circle") for each in series}
@@ -162,7 +158,7 @@ def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() ->
 
 def test_no_weight_helps_a_gesture_whose_keypoint_is_not_seen() -> None:
     left = Gesture.from_demonstration("left", recording(wedge, hand="left_wrist"))
-    recognizer = Recognizer(Language("pool", [*LANGUAGE.gestures, left]), "paper")
+    recognizer = Recognizer(Language("pool", [*drawn_language().gestures, left]), "paper")
     landmarks = tuple(name for name in POSE_LANDMARKS if name != "left_wrist")
     told = found_for(recording(SHAPES["circle"], landmarks=landmarks), "left", recognizer)
     assert {each.change.kind for each in told.found} <= {

@@ -14,15 +14,9 @@ from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.text.wording import humanize
 from tests.recognition.damaged_poses import with_sides_exchanged
+from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_differences import corners
-from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, square, wedge
-
-LANGUAGE = Language(
-    "pool", [Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()]
-)
-
-
-RECOGNIZERS = {profile: Recognizer(LANGUAGE, profile) for profile in PROFILES}
+from tests.recognition.strategies import circle, line, recording, recordings, square, wedge
 
 
 def context(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
@@ -30,7 +24,7 @@ def context(poses: PoseSequence, recognizer: Recognizer) -> RecognitionContext:
 
 
 def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanation:
-    return explain(context(poses, RECOGNIZERS[profile]), expected, with_counterfactuals=False)
+    return explain(context(poses, drawn_recognizer(profile)), expected, with_counterfactuals=False)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
@@ -41,10 +35,10 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
     profile: str, expected: str, query: PoseSequence
 ) -> None:
     explanation = why(query, expected, profile)
-    scores = context(query, RECOGNIZERS[profile]).score_table.scores
+    scores = context(query, drawn_recognizer(profile)).score_table.scores
     assert explanation.other is not None
-    difference = scores[LANGUAGE.labels.index(expected)]
-    difference -= scores[LANGUAGE.labels.index(explanation.other)]
+    difference = scores[drawn_language().labels.index(expected)]
+    difference -= scores[drawn_language().labels.index(explanation.other)]
     told = sum(verdict.against for verdict in explanation.verdicts) + explanation.turned
     assert told == pytest.approx(difference, abs=1e-9)
     assert explanation.margin == pytest.approx(-difference, abs=1e-9)
@@ -103,7 +97,9 @@ def test_moments_are_those_of_the_querys_clock() -> None:
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_what_was_right_is_held_against_the_runner_up(profile: str) -> None:
-    explanation = explain(context(recording(circle, jitter=0.01), RECOGNIZERS[profile]), "circle")
+    explanation = explain(
+        context(recording(circle, jitter=0.01), drawn_recognizer(profile)), "circle"
+    )
     assert explanation.right
     assert explanation.other != "circle"
     assert explanation.margin > 0
@@ -123,7 +119,7 @@ def test_an_explanation_is_plain_json(profile: str) -> None:
 
 
 def test_a_language_of_one_gesture_has_nothing_to_hold_against() -> None:
-    language = Language("one", LANGUAGE.gestures[:1])
+    language = Language("one", drawn_language().gestures[:1])
     explanation = explain(context(recording(circle), Recognizer(language, "full")), "circle")
     assert explanation.other is None
     assert explanation.right
@@ -132,7 +128,7 @@ def test_a_language_of_one_gesture_has_nothing_to_hold_against() -> None:
 
 def test_a_gesture_that_cannot_be_compared_is_told() -> None:
     left = Gesture.from_demonstration("left", recording(circle, hand="left_wrist"))
-    language = Language("pool", [*LANGUAGE.gestures, left])
+    language = Language("pool", [*drawn_language().gestures, left])
     landmarks = tuple(name for name in recording(circle).landmarks if name != "left_wrist")
     for profile in PROFILES:
         query = recording(line, landmarks=landmarks)
@@ -143,7 +139,7 @@ def test_a_gesture_that_cannot_be_compared_is_told() -> None:
 
 
 def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
-    pictures = [replace(gesture, trajectory=None) for gesture in LANGUAGE.gestures]
+    pictures = [replace(gesture, trajectory=None) for gesture in drawn_language().gestures]
     language = Language("pictures", pictures)
     for profile in PROFILES:
         query = recording(wedge, jitter=0.02)
@@ -155,12 +151,12 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
 
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
     with pytest.raises(OsgError, match=r"no gesture 'spiral'.*circle, wedge"):
-        explain(context(recording(circle), RECOGNIZERS["full"]), "spiral")
+        explain(context(recording(circle), drawn_recognizer("full")), "spiral")
 
 
 def test_who_was_rejected_is_told_by_how_much() -> None:
     zigzag = corners((-1.2, -0.4), (-0.3, -0.3), (-1.2, -0.2), (-0.3, -0.1), (-1.2, 0.0))
-    examined = context(recording(zigzag), RECOGNIZERS["full"])
+    examined = context(recording(zigzag), drawn_recognizer("full"))
     assert examined.result.label is None
     nearest = examined.result.nearest
     explanation = explain(examined, nearest, with_counterfactuals=False)
@@ -169,7 +165,7 @@ def test_who_was_rejected_is_told_by_how_much() -> None:
     allowed = f"{explanation.novelty:.1f} times as far from it as its thresholds allow"
     assert allowed in explanation.sentence
     limits = {verdict.voter: verdict.limit for verdict in explanation.verdicts}
-    assert limits["path"] == LANGUAGE.calibrated().gesture(nearest).thresholds["path"]
+    assert limits["path"] == drawn_language().calibrated().gesture(nearest).thresholds["path"]
     assert limits["hu"] is None
 
 
@@ -180,7 +176,7 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
     poor = PoseSequence(
         landmarks=query.landmarks, xy=xy, time=query.time, frame_size=query.frame_size
     )
-    explanation = explain(context(poor, RECOGNIZERS["full"]), "circle")
+    explanation = explain(context(poor, drawn_recognizer("full")), "circle")
     assert explanation.label is None
     assert explanation.fault is not None
     assert explanation.fault in explanation.sentence
@@ -189,7 +185,7 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
 @pytest.mark.parametrize("profile", PROFILES)
 def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
     mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
-    unrepaired = Recognizer(LANGUAGE, profile, tuning=Tuning(keypoints_repaired=False))
+    unrepaired = Recognizer(drawn_language(), profile, tuning=Tuning(keypoints_repaired=False))
     explanation = explain(context(mistaken, unrepaired), "wedge")
     assert not explanation.right
     cause = explanation.differences[0]
@@ -206,7 +202,7 @@ def test_the_sentence_names_the_cause_and_the_remedy(profile: str) -> None:
 
 def test_votes_without_weight_are_not_counted() -> None:
     tuning = Tuning(weights={"hu": 0.0, "zernike": 0.0})
-    silent = Recognizer(LANGUAGE, "paper", tuning=tuning)
+    silent = Recognizer(drawn_language(), "paper", tuning=tuning)
     explanation = explain(context(recording(circle, jitter=0.01), silent), "circle")
     assert sum(explanation.votes.values()) == 5
     assert sum(explanation.support.values()) == pytest.approx(1)
@@ -216,8 +212,12 @@ def test_votes_without_weight_are_not_counted() -> None:
 
 
 def test_the_take_is_aligned_with_the_demonstration_that_is_nearest() -> None:
-    both = LANGUAGE.gesture("circle").with_demonstration(recording(wedge, hand="left_wrist"), "Ben")
-    recognizer = Recognizer(LANGUAGE.with_changed(both), "paper")
+    both = (
+        drawn_language()
+        .gesture("circle")
+        .with_demonstration(recording(wedge, hand="left_wrist"), "Ben")
+    )
+    recognizer = Recognizer(drawn_language().with_changed(both), "paper")
     for query, nearest in (
         (recording(circle, jitter=0.01), 0),
         (recording(wedge, hand="left_wrist", jitter=0.01), 1),
