@@ -3,7 +3,7 @@
 The threshold of a voter is a multiple (`REACH`) of the geometric mean of its distances to simulated
 takes (`variation`) and of its within-class distance, since the logarithms of distances spread alike
 for all gestures. Other people's takes are about twice as far as the demonstrator's own. Simulated
-out-of-vocabulary movements (`negatives`) that would be accepted lower the thresholds a little.
+out-of-vocabulary movements that would be accepted lower the thresholds a little.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from app.recognition.gestures.gesture import Gesture, Rates
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.simulation.out_of_vocabulary import draw_negatives
+from app.recognition.simulation.out_of_vocabulary import draw_out_of_vocabulary
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variant_bias import VARIANT_BIASES
 from app.recognition.simulation.variation import SPREADS, draw_variants
@@ -261,7 +261,7 @@ def _measure_negatives(
         return np.full((1, len(gestures)), np.nan)
     measuring = vote.with_thresholds(thresholds)
     found = []
-    for movement in draw_negatives(gestures):
+    for movement in draw_out_of_vocabulary(gestures):
         compared = measuring.compare(movement, drawn=False)
         if np.isfinite(compared.scores).any():
             nearest = int(compared.scores.argmin())

@@ -81,7 +81,7 @@ class Rates:
     miss
         Share of other people's takes of the gesture that are rejected.
     false_alarm
-        Share of out-of-vocabulary movements (`negatives`) that are recognised as the gesture.
+        Share of simulated out-of-vocabulary movements that are recognised as the gesture.
 
     """
 

@@ -20,7 +20,7 @@ MOST_SPLICES = 16
 """Most splices of a language, as many as there are kinds of background motion."""
 
 
-def draw_negatives(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
+def draw_out_of_vocabulary(gestures: Sequence[Gesture]) -> tuple[Trajectory, ...]:
     """Return movements that are no gesture of the language: background motion, then splices.
 
     All of them are condensed, as queries are.

@@ -9,7 +9,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.background_motion import MANNERS
 from app.recognition.simulation.out_of_vocabulary import (
     MOST_SPLICES,
-    draw_negatives,
+    draw_out_of_vocabulary,
     splice,
     splice_all,
 )
@@ -53,4 +53,4 @@ def test_a_language_has_accidental_movements_and_splices_against_it() -> None:
     gestures = [
         Gesture.from_demonstration(name, recording(shape)) for name, shape in SHAPES.items()
     ]
-    assert len(draw_negatives(gestures)) == len(MANNERS) + len(SHAPES)
+    assert len(draw_out_of_vocabulary(gestures)) == len(MANNERS) + len(SHAPES)
