@@ -7,7 +7,6 @@ CMake files would do is done here: translate to IDL, generate C and Python, comp
 from __future__ import annotations
 
 import io
-import shutil
 import subprocess
 import sys
 import sysconfig
@@ -32,6 +31,8 @@ from rosidl_cli.command.helpers import (
 )
 from rosidl_generator_type_description import generate_type_hash
 
+from tests.ros2.compilers import PYTHON_HEADERS, find_compilers
+
 PREFIX = Path(sys.prefix)
 """Where pip put ROS 2: headers in include, libraries in lib, definitions in share."""
 
@@ -52,15 +53,6 @@ LIBRARIES = (
     "rosidl_typesupport_fastrtps_c",
     "rosidl_typesupport_fastrtps_cpp",
 )
-
-
-PYTHON_HEADERS = Path(sysconfig.get_paths()["include"])
-
-
-def compilers() -> tuple[str, str] | None:
-    """Return the C and the C++ compiler, or None where one or Python's headers are missing."""
-    c, cpp = shutil.which("gcc"), shutil.which("g++")
-    return (c, cpp) if c and cpp and (PYTHON_HEADERS / "Python.h").is_file() else None
 
 
 def build(package: Path, into: Path) -> None:
@@ -138,7 +130,7 @@ def compile_extension(name: str, made: Path) -> None:
     Most sources are compiled as one, which takes a tenth of the time; only the descriptions use the
     same names for different things.
     """
-    found = compilers()
+    found = find_compilers()
     assert found is not None
     c, cpp = found
     includes = [

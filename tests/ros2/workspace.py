@@ -10,6 +10,8 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+from tests.ros2.compilers import find_compilers
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ROOT / "ros2"
 OTHERS = Path(__file__).parent / "other_packages"
@@ -33,9 +35,7 @@ def missing() -> str | None:
     """Tell why there can be no workspace here; None: there can."""
     if find_spec("rclpy") is None:
         return "needs rclpy, of which there are wheels for Linux on x86-64 and Python up to 3.13"
-    from tests.ros2.typesupport import compilers
-
-    if compilers() is None:
+    if find_compilers() is None:
         return "needs gcc, g++ and Python.h (python3-dev), to compile the message packages"
     return None
 
@@ -68,14 +68,15 @@ def environment(domain: int) -> dict[str, str]:
 
 
 def _built() -> Path:
-    from tests.ros2.typesupport import build
-
     place = KEPT / _fingerprint()
     KEPT.mkdir(parents=True, exist_ok=True)
     # Two workers of one test run ask at the same time.
     with (KEPT / "lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not place.exists():
+            # ROS 2's generators take long to import, and mostly all is built.
+            from tests.ros2.typesupport import build
+
             for old in KEPT.glob("built-*"):
                 shutil.rmtree(old)
             partial = KEPT / "partial"
