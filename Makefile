@@ -51,8 +51,10 @@ test: $(VENV)/.development models  ## Check and test everything
 check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes and a half
 	@$(MAKE) --jobs 2 lint quick
 
+# Those in the browser are all slow, and take long to collect.
 quick: $(VENV)/.development $(PAGE_TOOLS) models
-	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci -m "not slow" -q
+	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci -m "not slow" -q \
+	  --ignore tests/browser
 
 # What the tests execute, by branch, in their processes too; takes longer than the tests alone. Of the
 # quick tests alone: make coverage TESTS='-m "not slow"'.

@@ -66,10 +66,11 @@ OpenPage = Callable[..., Page]
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Try a failed test of this folder once more, and tell it in the summary.
+    """Mark a test of this folder as slow; if it fails, try it once more and tell it in the summary.
 
     A browser on a loaded machine sometimes misses a step; what is broken fails again.
     """
+    item.add_marker(pytest.mark.slow)
     item.add_marker(pytest.mark.flaky(reruns=1))
 
 

@@ -30,8 +30,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of seven seconds on a loaded machine."""
 

@@ -14,8 +14,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.numbered_clips import number_on, numbered_clip
 
-pytestmark = pytest.mark.slow
-
 FRAMES = 30
 
 EXTRACTION_MS = 300_000

@@ -20,8 +20,6 @@ from tests.browser.library import library_of
 from tests.keypoint_files.files import renamed, write_named, write_openpose
 from tests.recognition.strategies import BODY, circle, recording
 
-pytestmark = pytest.mark.slow
-
 ARMS = tuple(BODY)
 
 

@@ -15,8 +15,6 @@ from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip
 
-pytestmark = pytest.mark.slow
-
 CLIPS = CLIPS_OF_A_PAGE + 40
 
 

@@ -13,8 +13,6 @@ from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 WARNING = "This range contains 2 Vulcan salutes"
 
 

@@ -17,8 +17,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 SESSION = "**/session.mcap"
 
 

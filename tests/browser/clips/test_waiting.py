@@ -6,14 +6,11 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
 from playwright.sync_api import expect
 
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.short_clips import shortened
-
-pytestmark = pytest.mark.slow
 
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip on a loaded machine."""

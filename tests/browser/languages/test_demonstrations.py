@@ -14,8 +14,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:

@@ -16,8 +16,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of six seconds on a loaded machine."""
 

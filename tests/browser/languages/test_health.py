@@ -17,8 +17,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def library(server: Running) -> Iterator[Library]:

@@ -14,8 +14,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:

@@ -14,8 +14,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def library(server: Running) -> Iterator[Library]:

@@ -14,8 +14,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.posed import posed_clip, posed_recording
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:

@@ -12,8 +12,6 @@ from tests.api.running import Running
 from tests.browser.camera import see_seconds
 from tests.browser.conftest import OpenPage, started
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def browser(browser: Browser) -> Iterator[Browser]:

@@ -16,8 +16,6 @@ from tests.browser.camera import camera_showing, see_seconds, write_feed
 from tests.browser.conftest import OpenPage, started
 from tests.browser.library import add_clip
 
-pytestmark = pytest.mark.slow
-
 FEED_RATE = 2
 """Frames a second of the fake camera: every second frame of a clip of 25 Hz, so that the diver
 moves at a sixth of the speed and a busy machine sees enough of the salutes."""

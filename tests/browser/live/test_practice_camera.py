@@ -15,8 +15,6 @@ from tests.browser.accessibility import faults
 from tests.browser.camera import camera_showing, see_seconds, write_feed
 from tests.browser.conftest import OpenPage, started
 
-pytestmark = pytest.mark.slow
-
 FEED_RATE = 12
 """Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
 

@@ -13,8 +13,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 SHOWN = {
     "Studio": "role=button[name=/^Take 1/]",
     "Languages": "role=link[name='accessible']",

@@ -15,8 +15,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_clips import write_clip
 
-pytestmark = pytest.mark.slow
-
 MOST_TABS = 120
 """More steps than there are in any view."""
 

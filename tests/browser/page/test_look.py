@@ -12,8 +12,6 @@ from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture(scope="module")
 def library(server: Running) -> Iterator[Library]:

@@ -18,8 +18,6 @@ from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_clips import write_clip
 
-pytestmark = pytest.mark.slow
-
 MARKUP = '<img src=x onerror="window.broken=1">'
 
 

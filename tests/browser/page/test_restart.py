@@ -20,8 +20,6 @@ from tests.browser.files import drop
 from tests.browser.library import library_of
 from tests.recognition.damaged_clips import write_clip
 
-pytestmark = pytest.mark.slow
-
 FRAME = 12
 
 

@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 
 import httpx
-import pytest
 from playwright.sync_api import Browser, Route, expect
 
 from app.settings import Settings
@@ -14,8 +13,6 @@ from app.store import Role, TokenFile
 from tests.api.running import running
 from tests.browser.files import drop
 from tests.browser.library import add_clip, library_of
-
-pytestmark = pytest.mark.slow
 
 MISREAD = "unfinished-triangle.mp4"
 """Name of the example's clip."""

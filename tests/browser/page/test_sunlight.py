@@ -13,8 +13,6 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 SMALL = """() => [...document.querySelectorAll("button, select, summary, a.button")]
   .filter((each) => each.checkVisibility() && !each.closest("#transport, .timeline"))
   .map((each) => [each.getBoundingClientRect().height, each.outerHTML.slice(0, 80)])

@@ -12,8 +12,6 @@ from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:

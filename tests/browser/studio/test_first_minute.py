@@ -15,8 +15,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip
 from tests.conftest import RECORDINGS
 
-pytestmark = pytest.mark.slow
-
 SAMPLE = "Table 2: eight signs"
 
 MISREAD = "unfinished-triangle"

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import httpx
-import pytest
 from playwright.sync_api import FrameLocator, Locator, Page, expect
 
 from app.recognition import Language
@@ -16,8 +15,6 @@ from app.ui.workspace import initial_frame
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-
-pytestmark = pytest.mark.slow
 
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of six seconds on a loaded machine."""

@@ -20,8 +20,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.browser.numbered_clips import corners_on, number_on, numbered_clip, painted_corners
 
-pytestmark = pytest.mark.slow
-
 WITHOUT_WEBGL = """
 const original = HTMLCanvasElement.prototype.getContext;
 HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {

@@ -17,8 +17,6 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_poses import with_sides_exchanged
 
-pytestmark = pytest.mark.slow
-
 WEIGHT = "with 2 times the weight on the voter aspect ratio"
 
 
