@@ -30,6 +30,7 @@ from app.recognition import (
     GestureError,
     Language,
     PoseError,
+    PoseSequence,
     Recognizer,
     Recording,
     takes_in,
@@ -83,10 +84,17 @@ def _clip_answers(folder: Path) -> Iterator[tuple[str, Any]]:
         takes = []
         for take in takes_in(Recording.load(file)):
             spans = [take.start, take.end, take.stroke_start, take.stroke_end]
-            found = {name: one.recognize(take.poses) for name, one in recognizers.items()}
-            results = {name: result.to_dict() for name, result in found.items()}
+            results = {name: answer(one, take.poses) for name, one in recognizers.items()}
             takes.append({"spans": spans, "closed": take.closed, "results": results})
         yield file.stem, takes
+
+
+def answer(recognizer: Recognizer, poses: PoseSequence) -> dict[str, Any]:
+    """Return all of a recognition, or why the take cannot be compared."""
+    try:
+        return recognizer.recognize(poses).to_dict()
+    except PoseError as error:
+        return {"refused": str(error)}
 
 
 def _rebuild(file: Path) -> dict[str, Any]:
@@ -116,11 +124,7 @@ def _set_answers(recorded: RecordedSet) -> Iterator[tuple[str, Any]]:
     for profile in PROFILES:
         recognizer = Recognizer(Language(recorded.name, gestures=gestures), profile=profile)
         for index in np.linspace(0, len(recorded.recordings) - 1, QUERIES).astype(int).tolist():
-            try:
-                answer = recognizer.recognize(recorded.recordings[index]).to_dict()
-            except PoseError:
-                answer = {"refused": True}
-            yield f"{profile} {index}", answer
+            yield f"{profile} {index}", answer(recognizer, recorded.recordings[index])
 
 
 def _command_answers() -> Iterator[tuple[str, Any]]:
