@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
-from app.recognition.poses.sequence import FloatArray
+FloatArray = npt.NDArray[np.float64]
 
 MAX_GAP_SECONDS = 0.5
 """Longest gap that is bridged by a straight line, seconds.

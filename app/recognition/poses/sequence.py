@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import PoseError
+from app.recognition.poses.gaps import fill_all_gaps
 from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, SHOULDERS
 
 FloatArray = npt.NDArray[np.float64]
@@ -211,7 +212,7 @@ class PoseSequence:
         half = np.median(torso[both], axis=0) / 2 if both.any() else np.zeros(2)
         centre = np.where(both[:, None], (shoulders + hips) / 2, shoulders + half)
         centre = np.where(np.isfinite(centre), centre, hips - half)
-        centre = _interpolate(centre, self.time)
+        centre = fill_all_gaps(centre[:, None], self.time)[:, 0]
         centre.setflags(write=False)
         return centre
 
@@ -372,12 +373,3 @@ def _all_finite(points: FloatArray) -> npt.NDArray[np.bool_]:
     """Return ``(...)``: which of the points ``(..., 2)`` have both coordinates."""
     known = np.isfinite(points)
     return np.asarray(known[..., 0] & known[..., 1], dtype=np.bool_)
-
-
-def _interpolate(path: FloatArray, time: FloatArray) -> FloatArray:
-    """Fill NaN rows of ``(T, 2)`` linearly in time, the nearest value beyond the ends."""
-    known = _all_finite(path)
-    if known.all():
-        return path
-    filled = [np.interp(time, time[known], path[known, axis]) for axis in range(2)]
-    return np.stack(filled, axis=1)

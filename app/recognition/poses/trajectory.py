@@ -231,7 +231,7 @@ class Trajectory:
         See `gaps.bridge_short_gaps`. Depth is smooth, and used for known landmarks only: it is
         interpolated in all gaps.
         """
-        depth = None if self.depth is None else _interpolate_depth(self.depth, self.time, self.time)
+        depth = None if self.depth is None else _interpolate_depth(self.depth, self.time)
         if np.isfinite(self.xy).all():
             return self if depth is None else replace(self, depth=depth)
         return replace(self, xy=bridge_short_gaps(self.xy, self.time, max_gap), depth=depth)
@@ -343,8 +343,10 @@ def _measure_depth(poses: PoseSequence) -> FloatArray | None:
     return np.concatenate([depth, np.zeros((len(poses), 1))], axis=1)
 
 
-def _interpolate_depth(depth: FloatArray, time: FloatArray, moments: FloatArray) -> FloatArray:
-    """Return depths ``(T, K)`` of `time` at `moments`, without gaps; NaN where never known."""
+def _interpolate_depth(
+    depth: FloatArray, time: FloatArray, moments: FloatArray | None = None
+) -> FloatArray:
+    """Return depths ``(T, K)`` without gaps, at `moments` if given; NaN where never known."""
     return fill_all_gaps(depth[..., None], time, moments)[..., 0]
 
 
