@@ -1,4 +1,4 @@
-"""Watched language: reloads a language file when it is replaced while the robot runs."""
+"""Language watcher: reloads a language file when it is replaced while the robot runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FileState = tuple[int, int, int] | None
 """Inode, size in bytes and time of the last write in nanoseconds; None for a missing file."""
 
 
-class WatchedLanguage:
+class LanguageWatcher:
     """Watcher of a language file: reads it again when it is replaced or `reload` is called.
 
     A separate thread polls and reads, so that no frame waits for it. A file is read once its size

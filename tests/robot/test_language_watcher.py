@@ -12,7 +12,7 @@ import pytest
 from app.recognition import LanguageError, OsgError
 from app.recognition.gestures.tuning import Tuning
 from app.robot import ActiveLanguage
-from app.robot.watched_language import POLL_INTERVAL, WatchedLanguage
+from app.robot.language_watcher import POLL_INTERVAL, LanguageWatcher
 from tests.robot.languages import language_of, spoken
 
 PATIENCE = 60.0
@@ -24,7 +24,7 @@ def save(path: Path, *labels: str, revision: int = 1) -> ActiveLanguage:
     return spoken(*labels, revision=revision)
 
 
-def news(language: WatchedLanguage) -> ActiveLanguage | OsgError:
+def news(language: LanguageWatcher) -> ActiveLanguage | OsgError:
     end = clock.monotonic() + PATIENCE
     while clock.monotonic() < end:
         if change := language.next_change():
@@ -40,7 +40,7 @@ def file(tmp_path: Path) -> Path:
 
 def test_the_first_language_has_the_seal_of_its_file(file: Path) -> None:
     saved = save(file, "circle")
-    with WatchedLanguage(file) as language:
+    with LanguageWatcher(file) as language:
         assert language.first.sha256 == saved.sha256
         assert f'"sha256": "{saved.sha256}"' in file.read_text()
         assert language.next_change() is None
@@ -49,16 +49,16 @@ def test_the_first_language_has_the_seal_of_its_file(file: Path) -> None:
 def test_a_language_is_heard_as_its_author_kept_it_unless_told_otherwise(file: Path) -> None:
     tuned = replace(language_of("circle"), profile="paper", tuning=Tuning(weights={"hu": 0.0}))
     tuned.save(file)
-    with WatchedLanguage(file) as language:
+    with LanguageWatcher(file) as language:
         recognizer = language.first.recognizer
         assert (recognizer.profile, recognizer.tuning) == ("paper", tuned.tuning)
-    with WatchedLanguage(file, "full") as language:
+    with LanguageWatcher(file, "full") as language:
         assert language.first.recognizer.profile == "full"
 
 
 def test_a_replaced_file_is_read_and_told_once(file: Path) -> None:
     save(file, "circle")
-    with WatchedLanguage(file) as language:
+    with LanguageWatcher(file) as language:
         saved = save(file, "circle", "line", revision=2)
         change = news(language)
         assert isinstance(change, ActiveLanguage)
@@ -80,7 +80,7 @@ def test_a_broken_file_is_told_once_and_its_successor_is_spoken(
     file: Path, spoil: Callable[[Path], object], reason: str
 ) -> None:
     save(file, "circle")
-    with WatchedLanguage(file) as language:
+    with LanguageWatcher(file) as language:
         spoil(file)
         refused = news(language)
         assert isinstance(refused, LanguageError)
@@ -93,7 +93,7 @@ def test_a_broken_file_is_told_once_and_its_successor_is_spoken(
 
 def test_who_asks_is_answered_also_when_nothing_changed(file: Path) -> None:
     saved = save(file, "circle")
-    with WatchedLanguage(file) as language:
+    with LanguageWatcher(file) as language:
         language.reload()
         change = news(language)
     assert isinstance(change, ActiveLanguage)

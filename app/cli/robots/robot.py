@@ -38,10 +38,10 @@ from app.robot import (
     open_source,
 )
 from app.robot.event_messages import format_line
+from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import Network, Publisher, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.cameras import SCHEMES
-from app.robot.watched_language import WatchedLanguage
 from app.system.service_manager import ServiceManager
 
 NOTHING_RECOGNISED = 1
@@ -114,14 +114,14 @@ def robot(
     if (mavlink is None) != (vehicle is None):
         raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
     with ExitStack() as opened:
-        watched = opened.enter_context(WatchedLanguage(language, profile))
+        watcher = opened.enter_context(LanguageWatcher(language, profile))
         sees_hands = hands != NO_HANDS
-        if watched.first.trigger.kind == "salute" and not (without_salutes or sees_hands):
+        if watcher.first.trigger.kind == "salute" and not (without_salutes or sees_hands):
             raise EstimatorError(
                 f"--hands {hands} finds no hand and so no salute: choose other hands, give the "
                 "language another trigger, or add --without-salutes"
             )
-        listener = create_listener(watched.first, without_salutes=without_salutes, hands=sees_hands)
+        listener = create_listener(watcher.first, without_salutes=without_salutes, hands=sees_hands)
         frames = opened.enter_context(closing(open_source(source)))
         finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
         if profile_stages:
@@ -147,9 +147,9 @@ def robot(
             bridge = open_bridge(mavlink, vehicle, listener, frames)
             handlers.append(opened.enter_context(closing(bridge)).publish)
         runtime = Runtime(
-            frames, finder, listener, water=water, changes=watched.next_change, observer=observer
+            frames, finder, listener, water=water, changes=watcher.next_change, observer=observer
         )
-        with handle_signals(runtime.stop, watched.reload):
+        with handle_signals(runtime.stop, watcher.reload):
             recognised = emit_all(runtime, handlers)
     if not recognised and not frames.live:
         raise typer.Exit(NOTHING_RECOGNISED)
