@@ -74,8 +74,8 @@ LEAST_SHARE = 0.9
 accepts one in a hundred more of them (`benchmarks/studies/rejection.md`)."""
 
 PLAUSIBLE = 0.2
-"""Novelty below which a negative is in fact the gesture: about that of a typical take, 1 / `REACH`.
-"""
+"""Novelty below which an out-of-vocabulary movement is in fact the gesture: about that of a typical
+take, 1 / `REACH`."""
 
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
@@ -124,7 +124,7 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
     """
     vote = FusedVote(gestures)
     reach = _measure_reach(gestures, vote)
-    negatives = _measure_negatives(gestures, vote, reach.thresholds)
+    movements = _measure_out_of_vocabulary(gestures, vote, reach.thresholds)
     return tuple(
         replace(gesture, thresholds={}, rates=None)
         if gesture.trajectory is None
@@ -134,7 +134,7 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
             _set_thresholds(gesture, reach.thresholds[:, index], reach.takes[index], others),
             vote.find_counting_hands(index),
         )
-        for index, (gesture, others) in enumerate(zip(gestures, negatives.T, strict=True))
+        for index, (gesture, others) in enumerate(zip(gestures, movements.T, strict=True))
     )
 
 
@@ -153,7 +153,7 @@ def _choose_hand_thresholds(shapes: HeldShapes) -> dict[str, float]:
 
 
 def _set_thresholds(
-    gesture: Gesture, reach: FloatArray, takes: FloatArray, negatives: FloatArray
+    gesture: Gesture, reach: FloatArray, takes: FloatArray, movements: FloatArray
 ) -> Gesture:
     """Return one gesture with thresholds and rates.
 
@@ -163,22 +163,22 @@ def _set_thresholds(
         The gesture.
     reach
         ``(V,)`` thresholds by the simulated takes alone.
-    takes, negatives
-        Novelties with these thresholds, of other people's takes and of negatives; infinite for a
-        negative that is nearer to another gesture, NaN if not known.
+    takes, movements
+        Novelties with these thresholds, of other people's takes and of out-of-vocabulary movements;
+        infinite for a movement that is nearer to another gesture, NaN if not known.
 
     """
-    near = negatives[negatives > PLAUSIBLE].min(initial=1.0)
+    near = movements[movements > PLAUSIBLE].min(initial=1.0)
     limit = max(LEAST_SHARE, float(near))
     thresholds = {
         voter: float(f"{limit * reach[VOTER_NAMES.index(voter)]:.{DIGITS}g}") for voter in CUES
     }
-    if not np.isfinite(takes).all() or np.isnan(negatives).any():
+    if not np.isfinite(takes).all() or np.isnan(movements).any():
         return replace(gesture, thresholds=thresholds, rates=None)
     margins = np.log(limit) - np.log(np.maximum(takes, 1e-9))
     rates = Rates(
         miss=round(RateEstimate.of_margins(margins, VARIANT_BIASES["another"]).rate, DIGITS),
-        false_alarm=round(float((negatives < limit).mean()), DIGITS),
+        false_alarm=round(float((movements < limit).mean()), DIGITS),
     )
     return replace(gesture, thresholds=thresholds, rates=rates)
 
@@ -245,7 +245,7 @@ def _distances_to_takes(gesture: Gesture, vote: FusedVote, row: int) -> FloatArr
     return distances
 
 
-def _measure_negatives(
+def _measure_out_of_vocabulary(
     gestures: Sequence[Gesture], vote: FusedVote, thresholds: FloatArray
 ) -> FloatArray:
     """Measure the novelties of out-of-vocabulary movements for their nearest gestures.
