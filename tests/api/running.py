@@ -5,8 +5,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import httpx
 import uvicorn
@@ -66,6 +67,29 @@ def running(
     finally:
         server.should_exit = True
         thread.join(PATIENCE_SECONDS)
+
+
+@contextmanager
+def running_two(
+    folder: Path, database_url: str, storage: Path | str
+) -> Iterator[tuple[Running, Running]]:
+    """Serve one database, one storage of clips and one list of tokens twice."""
+    with ExitStack() as stack:
+        one, two = (
+            stack.enter_context(
+                running(
+                    Settings(
+                        data_dir=folder / name,
+                        samples_dir=folder / "none",
+                        database_url=database_url,
+                        storage=storage,
+                        tokens_file=folder / "tokens.json",
+                    )
+                )
+            )
+            for name in ("one", "two")
+        )
+        yield one, two
 
 
 def until(condition: Callable[[], object]) -> None:

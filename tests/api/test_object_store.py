@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack
 from pathlib import Path
 
 import httpx
 import pytest
 
-from app.settings import Settings
 from app.store.clips import RECORDING
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import Running, assert_problem, running, until
+from tests.api.running import Running, assert_problem, running_two, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.s3 import BUCKET, S3Server
@@ -26,22 +24,8 @@ pytestmark = pytest.mark.slow
 @pytest.fixture
 def servers(tmp_path: Path, postgres: Cluster, s3: S3Server) -> Iterator[tuple[Running, Running]]:
     """Serve one database and one bucket twice."""
-    url = postgres.new_database()
-    with ExitStack() as stack:
-        one, two = (
-            stack.enter_context(
-                running(
-                    Settings(
-                        data_dir=tmp_path / name,
-                        samples_dir=tmp_path / "none",
-                        database_url=url,
-                        storage=f"s3://{BUCKET}",
-                    )
-                )
-            )
-            for name in ("one", "two")
-        )
-        yield one, two
+    with running_two(tmp_path, postgres.new_database(), f"s3://{BUCKET}") as servers:
+        yield servers
 
 
 def test_a_clip_of_one_server_is_played_and_recognised_on_the_other(

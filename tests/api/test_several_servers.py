@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 from threading import Barrier
@@ -15,13 +15,12 @@ from typing import Any
 import httpx
 import pytest
 
-from app.settings import Settings
 from app.store import Clip, ClipStore, Role, TokenFile
 from app.store.jobs import JobStore
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import Running, assert_problem, running, until
+from tests.api.running import Running, assert_problem, running_two, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.recognition.damaged_clips import write_clip
@@ -32,23 +31,8 @@ JOBS = "/api/v1/jobs"
 @pytest.fixture
 def servers(tmp_path: Path, postgres: Cluster) -> Iterator[tuple[Running, Running]]:
     """Serve one database and one folder of clips twice."""
-    url = postgres.new_database()
-    with ExitStack() as stack:
-        one, two = (
-            stack.enter_context(
-                running(
-                    Settings(
-                        data_dir=tmp_path / name,
-                        samples_dir=tmp_path / "none",
-                        database_url=url,
-                        storage=tmp_path / "clips",
-                        tokens_file=tmp_path / "tokens.json",
-                    )
-                )
-            )
-            for name in ("one", "two")
-        )
-        yield one, two
+    with running_two(tmp_path, postgres.new_database(), tmp_path / "clips") as servers:
+        yield servers
 
 
 @contextmanager
