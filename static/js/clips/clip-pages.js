@@ -11,6 +11,8 @@ const NAMED_AT_ONCE = 100; // ids in one address
 
 /** @type {Set<string>} */
 const named = new Set(); // clips that were asked for by their ids
+/** @type {Set<string>} */
+let found = new Set(); // clips that the last search found
 
 /**
  * The order of all lists of clips.
@@ -53,17 +55,17 @@ export const merged = (clips, loaded) =>
  */
 async function loadNamed(ids) {
   /** @type {Clip[]} */
-  const found = [];
+  const loaded = [];
   for (let at = 0; at < ids.length; at += NAMED_AT_ONCE) {
     const page = await api.clips.page({ id: ids.slice(at, at + NAMED_AT_ONCE) });
-    found.push(...page.clips);
+    loaded.push(...page.clips);
   }
-  return found;
+  return loaded;
 }
 
 /**
  * Load the newest clips, as many as were listed before, and beyond them those that are busy, on
- * display or named by something.
+ * display, found by the last search or named by something.
  */
 async function loadKnown() {
   const wanted = state.clips.filter((clip) => isListed(clip, state)).length;
@@ -77,7 +79,9 @@ async function loadKnown() {
   if (!page.more) return { clips, library: { last: null, older: 0 } };
   const last = clips.at(-1) ?? null;
   const listed = new Set(clips.map(({ id }) => id));
-  const ids = [...named, state.clip].filter((id) => id !== null && !listed.has(id));
+  const ids = [...new Set([...named, ...found, state.clip])].filter(
+    (id) => id !== null && !listed.has(id),
+  );
   const busy = await api.clips.page({ status: [...BUSY] });
   const others = [...busy.clips, ...(await loadNamed(/** @type {string[]} */ (ids)))];
   return { clips: merged(others, clips), library: { last, older: total - listed.size } };
@@ -87,7 +91,8 @@ async function loadKnown() {
 let turn = Promise.resolve();
 
 /**
- * Load one part of the list after the other: each goes on where the one before ended.
+ * Load one part of the list after the other: each goes on where the one before ended, and the whole
+ * list, loaded anew, undoes none that came while it was on its way.
  *
  * @template T
  * @param {() => Promise<T>} load
@@ -112,11 +117,12 @@ export const reloadClips = () =>
  *
  * @param {string} id
  */
-export async function loadClip(id) {
-  const clip = await api.clips.get(id);
-  take(clip);
-  return clip;
-}
+export const loadClip = (id) =>
+  inTurn(async () => {
+    const clip = await api.clips.get(id);
+    take(clip);
+    return clip;
+  });
 
 /**
  * Know a clip.
@@ -165,13 +171,16 @@ async function loadNext() {
  * @param {string} text
  * @param {string} [after]
  */
-export async function searchClips(text, after) {
-  const page = await attempt("Looking for clips", () =>
-    api.clips.page(after ? { q: text, after } : { q: text }),
-  );
-  if (page) update({ clips: merged(state.clips, page.clips) });
-  return page;
-}
+export const searchClips = (text, after) =>
+  inTurn(async () => {
+    const page = await attempt("Looking for clips", () =>
+      api.clips.page(after ? { q: text, after } : { q: text }),
+    );
+    if (!page) return null;
+    found = new Set([...(after ? found : []), ...page.clips.map(({ id }) => id)]);
+    update({ clips: merged(state.clips, page.clips) });
+    return page;
+  });
 
 /**
  * Load clips that something names, where they are not known yet.
@@ -184,10 +193,12 @@ export async function knowClips(ids) {
   const missing = [...new Set(ids)].filter((id) => id && !known.has(id) && !named.has(id));
   if (!missing.length) return;
   for (const id of missing) named.add(/** @type {string} */ (id));
-  const found = await attempt("Loading the clips", () =>
-    loadNamed(/** @type {string[]} */ (missing)),
-  );
-  if (found?.length) update({ clips: merged(state.clips, found) });
+  await inTurn(async () => {
+    const loaded = await attempt("Loading the clips", () =>
+      loadNamed(/** @type {string[]} */ (missing)),
+    );
+    if (loaded?.length) update({ clips: merged(state.clips, loaded) });
+  });
 }
 
 /**

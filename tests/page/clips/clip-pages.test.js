@@ -7,8 +7,9 @@ import {
   loadOlder,
   merged,
   reloadClips,
+  searchClips,
 } from "../../../static/js/clips/clip-pages.js";
-import { state } from "../../../static/js/core/state.js";
+import { state, update } from "../../../static/js/core/state.js";
 
 const clip = (number, status = "done") => ({
   id: `c${number}`,
@@ -53,4 +54,37 @@ test("older clips that are asked for while the list loads anew are not undone by
   await both;
   assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
   assert.deepEqual(state.library, { last: null, older: 0 });
+});
+
+test("clips that are found while the list loads anew stay known, and at the next time too", async (t) => {
+  /** Whether the list's answers are held until `release`. */
+  let held = false;
+  const waiting = [];
+  const release = () => waiting.splice(0).forEach((go) => go());
+  t.mock.method(globalThis, "fetch", async (address) => {
+    const { searchParams } = new URL(address, "http://studio");
+    const list = !["q", "id", "status"].some((name) => searchParams.has(name));
+    if (held && list) await new Promise((go) => waiting.push(go));
+    const clips = list
+      ? [clip(3), clip(2)]
+      : searchParams.get("q") === "one" || searchParams.getAll("id").includes("c1")
+        ? [clip(1)]
+        : [];
+    const older = list ? { Link: "<older>" } : {};
+    return Response.json(clips, { headers: { "X-Total-Count": "3", ...older } });
+  });
+  update({ clips: [], library: { last: null, older: 0 } });
+  await reloadClips();
+  held = true;
+  const both = Promise.all([reloadClips(), searchClips("one")]);
+  await new Promise(setImmediate);
+  release();
+  await both;
+  assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
+  held = false;
+  await reloadClips();
+  assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
+  await searchClips("none");
+  await reloadClips();
+  assert.deepEqual(ids(state.clips), ["c3", "c2"]);
 });
