@@ -10,7 +10,7 @@ from app.api.services.studio import Studio
 from app.recognition.models import installed_models
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import PATIENCE_SECONDS, Running, running
+from tests.api.running import Running, client_of, running
 from tests.recognition.damaged_clips import write_clip
 
 
@@ -27,7 +27,7 @@ def server(settings: Settings) -> Iterator[Running]:
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=PATIENCE_SECONDS) as client:
+    with client_of(server.address) as client:
         yield client
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import ssl
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import httpx
 import uvicorn
@@ -90,6 +93,19 @@ def running_two(
             for name in ("one", "two")
         )
         yield one, two
+
+
+@cache
+def _certificates() -> ssl.SSLContext:
+    # Reading them takes longer than most requests, and a client reads them also without TLS.
+    return ssl.create_default_context()
+
+
+def client_of(address: str, **options: Any) -> httpx.Client:
+    """Return a client of the server at `address`, as patient as the tests; see `httpx.Client`."""
+    return httpx.Client(
+        base_url=address, **{"timeout": PATIENCE_SECONDS, "verify": _certificates()} | options
+    )
 
 
 def until(condition: Callable[[], object]) -> None:

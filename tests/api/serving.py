@@ -13,7 +13,7 @@ from typing import TextIO
 
 import httpx
 
-from tests.api.running import PATIENCE_SECONDS
+from tests.api.running import client_of
 
 SERVE = """
 import sys
@@ -51,7 +51,7 @@ def served(
         assert process.stdout is not None
         line = process.stdout.readline()
         address = next(word for word in line.split() if word.startswith("http://"))
-        with httpx.Client(base_url=address, timeout=PATIENCE_SECONDS) as client:
+        with client_of(address) as client:
             yield process, client
     finally:
         process.kill()

@@ -13,7 +13,7 @@ from app.store.clips import RECORDING
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import Running, assert_problem, running_two, until
+from tests.api.running import Running, assert_problem, client_of, running_two, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.s3 import BUCKET, S3Server
@@ -34,7 +34,7 @@ def test_a_clip_of_one_server_is_played_and_recognised_on_the_other(
     one, two = servers
     clip = add_recorded_clip(one.studio, recording_of("circle"))
     assert not list(two.studio.clips.folder.iterdir())
-    with httpx.Client(base_url=two.address, timeout=60) as client:
+    with client_of(two.address) as client:
         language = client.post(LANGUAGES, json={"name": "pool"}).json()["id"]
         add_gesture(client, language, clip)
         body = {"clip_id": clip, "language_id": language}
@@ -49,9 +49,9 @@ def test_what_a_job_finds_is_read_on_the_other_server(
     servers: tuple[Running, Running], small_clip: Path, s3: S3Server, models: None
 ) -> None:
     one, two = servers
-    with httpx.Client(base_url=one.address, timeout=60) as client:
+    with client_of(one.address) as client:
         clip = upload(client, small_clip).json()["id"]
-    with httpx.Client(base_url=two.address, timeout=60) as client:
+    with client_of(two.address) as client:
         until(lambda: client.get(f"{CLIPS}/{clip}").json()["status"] == "done")
         names = ("video", "recording.npz", "poster.jpg", "filmstrip.jpg")
         assert s3.names() == {f"{clip}/{name}" for name in names}
@@ -65,7 +65,7 @@ def test_while_the_object_store_is_away_requests_are_asked_to_come_again(
     one, two = servers
     clip = add_recorded_clip(one.studio, recording_of("circle"))
     s3.stop()
-    with httpx.Client(base_url=two.address, timeout=60) as client:
+    with client_of(two.address) as client:
         away = client.get(f"{CLIPS}/{clip}/video")
         assert_problem(away, 503, "store_unavailable")
         assert away.headers["retry-after"]
@@ -80,7 +80,7 @@ def test_while_the_object_store_is_away_requests_are_asked_to_come_again(
 def test_a_job_keeps_what_it_found_until_the_object_store_is_back(
     servers: tuple[Running, Running], small_clip: Path, s3: S3Server, models: None
 ) -> None:
-    with httpx.Client(base_url=servers[0].address, timeout=60) as client:
+    with client_of(servers[0].address) as client:
         clip = upload(client, small_clip).json()["id"]
         until(lambda: workers_of(os.getpid()))
         s3.stop()

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-import httpx
 import pytest
 from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
@@ -13,7 +12,7 @@ from hypothesis import settings as hypothesis_settings
 from app.server import create_app
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import Running, running
+from tests.api.running import Running, client_of, running
 
 if TYPE_CHECKING:
     from schemathesis import Case
@@ -101,7 +100,7 @@ def test_no_request_breaks_the_server_or_the_description(
 def test_real_objects_answer_as_described(lasting_server: Running, operations: list[Any]) -> None:
     """Follow ids that exist, which generated requests never hit."""
     clip_id = add_recorded_clip(lasting_server.studio, recording_of("circle"))
-    with httpx.Client(base_url=lasting_server.address, timeout=60) as client:
+    with client_of(lasting_server.address) as client:
         language_id = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
         body: dict[str, Any] = {"label": "circle", "clip_id": clip_id}
         client.post(f"/api/v1/languages/{language_id}/gestures", json=body)

@@ -18,7 +18,7 @@ from websockets.sync.client import connect
 
 from app.api.ingest.multipart import FRAME_BYTES
 from app.settings import Settings
-from tests.api.running import until
+from tests.api.running import client_of, until
 from tests.conftest import ROOT
 
 pytestmark = pytest.mark.slow
@@ -177,7 +177,7 @@ def test_only_a_trusted_proxy_is_believed(tmp_path: Path) -> None:
     ):
         with (
             serving(tmp_path / (trusted or "none"), OSG_FORWARDED_ALLOW_IPS=trusted) as port,
-            httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=60) as client,
+            client_of(f"http://127.0.0.1:{port}") as client,
         ):
             client.post(f"{API}/languages", json={"name": "pool"}, headers=claims)
             (noted,) = client.get(f"{API}/audit", headers=SIGNED_IN).json()

@@ -20,7 +20,7 @@ from app.store.jobs import JobStore
 from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import Running, assert_problem, running_two, until
+from tests.api.running import Running, assert_problem, client_of, running_two, until
 from tests.api.running_workers import linux, workers_of
 from tests.postgres import Cluster
 from tests.recognition.damaged_clips import write_clip
@@ -58,7 +58,7 @@ def test_a_change_on_one_server_reaches_the_pages_and_lists_of_the_other(
     servers: tuple[Running, Running],
 ) -> None:
     one, two = servers
-    with httpx.Client(base_url=two.address, timeout=60) as client:
+    with client_of(two.address) as client:
         empty = client.get(LANGUAGES)
         assert empty.json() == []
         with events(two) as heard:
@@ -95,14 +95,14 @@ def test_a_job_is_seen_and_cancelled_from_any_server(
 ) -> None:
     one, two = servers
     clip = write_clip(tmp_path / "long.mp4", frames=2000)
-    with httpx.Client(base_url=two.address, timeout=60) as client:
-        job_id = upload(httpx.Client(base_url=one.address, timeout=60), clip).json()["job_id"]
+    with client_of(two.address) as client:
+        job_id = upload(client_of(one.address), clip).json()["job_id"]
         until(lambda: workers_of(os.getpid()))
         (worker,) = workers_of(os.getpid())
         until(lambda: client.get(f"{JOBS}/{job_id}").json()["stage"] in ("starting", "poses"))
         running_here = one if job_id in one.studio.extractions._running else two
         elsewhere = two if running_here is one else one
-        with httpx.Client(base_url=elsewhere.address, timeout=60) as other:
+        with client_of(elsewhere.address) as other:
             assert other.get(f"{JOBS}/{job_id}").json()["stage"] != "running"
             assert other.delete(f"{JOBS}/{job_id}").json()["status"] == "cancelled"
         until(lambda: worker not in workers_of(os.getpid()))
@@ -127,7 +127,7 @@ def test_the_job_of_a_server_that_vanished_is_run_by_the_other(
     for server in servers:
         loop = server.studio.broadcast._loop
         loop.call_soon_threadsafe(server.studio.extractions.look)
-    with httpx.Client(base_url=two.address, timeout=60) as client:
+    with client_of(two.address) as client:
         until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] in ("done", "failed"))
     assert one.studio.jobs.get(job_id).attempts == 2
 
@@ -152,7 +152,7 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
     headers = {"Authorization": f"Bearer {secret}"}
 
     def send(server: Running) -> int:
-        with httpx.Client(base_url=server.address, headers=headers, timeout=60) as client:
+        with client_of(server.address, headers=headers) as client:
             return upload(client, small_clip).status_code
 
     with ThreadPoolExecutor(2) as uploaders:
@@ -174,8 +174,8 @@ def test_an_upload_that_one_server_receives_counts_on_the_other(
     length = {"Upload-Length": str(len(content))}
     part = {"Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
     with (
-        httpx.Client(base_url=one.address, headers=headers, timeout=60) as first,
-        httpx.Client(base_url=two.address, headers=headers, timeout=60) as second,
+        client_of(one.address, headers=headers) as first,
+        client_of(two.address, headers=headers) as second,
     ):
         given_up = first.post("/api/v1/uploads", headers=length).headers["location"]
         assert_problem(second.post("/api/v1/uploads", headers=length), 507, "quota_exceeded")

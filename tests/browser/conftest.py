@@ -44,6 +44,9 @@ program that plays one takes several times as long."""
 WHOLE = ("chromium", "chromium-browser")
 """Names of the browser that people use."""
 
+ONE_PROCESS = ("--process-per-site",)
+"""Has the pages of one server share a process, which need not be made for each."""
+
 SHELL = "chromium-headless-shell"
 """Debian's Chromium without all that is around a page: it takes a third of the processor's time,
 but cannot be asked for a camera."""
@@ -101,7 +104,7 @@ def started(kind: BrowserType, *more: str, whole: bool = False) -> Iterator[Brow
     executable = next(filter(None, map(shutil.which, names)), None)
     if executable is None:
         pytest.skip(f"needs Chromium: apt-get install {names[0]}")
-    args = [*WEBGL, *WITHOUT_WINDOW, *more]
+    args = [*WEBGL, *WITHOUT_WINDOW, *ONE_PROCESS, *more]
     browser = kind.launch(executable_path=executable, args=args, timeout=PATIENCE_MS)
     yield browser
     browser.close()
@@ -163,15 +166,17 @@ def new_context(browser: Browser) -> BrowserContext:
 
 
 def forget_visit(context: BrowserContext, address: str) -> None:
-    """Leave nothing behind of what the pages of a context kept, but for what is cached."""
+    """Leave nothing behind of what the pages of a context kept, but its first one and the cache."""
     context.set_offline(False)
     context.clear_permissions()
     context.clear_cookies()
-    page = context.new_page()
-    command = {"origin": address, "storageTypes": "local_storage,indexeddb,service_workers"}
-    context.new_cdp_session(page).send("Storage.clearDataForOrigin", command)
-    for page in context.pages:
+    lasting, *pages = context.pages
+    for page in pages:
         page.close()
+    command = {"origin": address, "storageTypes": "local_storage,indexeddb,service_workers"}
+    session = context.new_cdp_session(lasting)
+    session.send("Storage.clearDataForOrigin", command)
+    session.detach()
 
 
 @pytest.fixture
@@ -196,6 +201,9 @@ def open_page(
         scene: bool = True,
         first_visit: bool = False,
     ) -> Page:
+        if not shared_context.pages:
+            # Stays open, so that the process of the others goes on between two tests.
+            shared_context.new_page().goto(f"{server.address}/api/v1/server")
         context = new_context(browser) if contexts else shared_context
         contexts.append(context)
         if not scene:

@@ -17,7 +17,7 @@ from app.recognition.explanation.pair_difference import compare_pair
 from app.recognition.health.gesture_estimate import GestureEstimate
 from app.recognition.recognizer import Recognizer
 from tests.api.languages import LANGUAGES
-from tests.api.running import Running, until
+from tests.api.running import Running, client_of, until
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
@@ -92,7 +92,7 @@ def test_more_previews_than_places_wait_and_are_all_answered(
     statuses: list[int] = []
 
     def ask() -> None:
-        with httpx.Client(base_url=client.base_url, timeout=60) as own:
+        with client_of(client.base_url) as own:
             answer = own.post(f"{LANGUAGES}/{language}/preview", json=body)
             statuses.append(answer.status_code)
 

@@ -8,7 +8,7 @@ import pytest
 
 from app import resources
 from app.settings import Settings
-from tests.api.running import running
+from tests.api.running import client_of, running
 
 PAGE = '<script type="module" src="/static/js/main.js"></script>'
 
@@ -27,7 +27,7 @@ def client(
 ) -> Iterator[httpx.Client]:
     monkeypatch.setattr(resources, "static_dir", lambda: folder)
     settings = Settings(data_dir=tmp_path_factory.mktemp("data"))
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         yield client
 
 

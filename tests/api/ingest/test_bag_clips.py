@@ -14,7 +14,7 @@ import pytest
 from app.recognition.recording.video import probe
 from app.settings import Settings
 from tests.api.recordings import recording_of
-from tests.api.running import assert_problem, running, until
+from tests.api.running import assert_problem, client_of, running, until
 from tests.bags.bag_files import (
     START,
     Row,
@@ -185,7 +185,7 @@ def test_what_packs_to_nothing_does_not_fill_the_disk(tmp_path: Path) -> None:
         data_dir=tmp_path / "data", samples_dir=tmp_path / "samples", worker_file_bytes=1_000_000
     )
     bomb = zip_of(tmp_path / "dive.zip", {"dive.mcap": bytes(50_000_000)})
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         problem = assert_problem(upload(client, bomb), 422, "storage_unavailable")
         assert "File too large" in str(problem["detail"])
         assert_nothing_kept(client, settings)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
 from app.settings import Settings
 from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept, upload
-from tests.api.running import Running, assert_problem, running, until
+from tests.api.running import Running, assert_problem, client_of, running, until
 
 FORM = {"Content-Type": "multipart/form-data; boundary=b"}
 PART = b'--b\r\nContent-Disposition: form-data; name="%s"; filename="x.mp4"\r\n\r\n'
@@ -137,7 +137,7 @@ def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
         answer = connection.recv(10_000)
         assert answer.startswith(b"HTTP/1.1 408 ")
         assert b'"upload_too_slow"' in answer or b'"upload_too_slow"' in connection.recv(10_000)
-        with httpx.Client(base_url=server.address, timeout=60) as client:
+        with client_of(server.address) as client:
             assert_nothing_kept(client, impatient)
 
 

@@ -13,7 +13,7 @@ import pytest
 
 from app.settings import Settings
 from app.store import Clip
-from tests.api.running import Running, running, until
+from tests.api.running import Running, client_of, running, until
 
 pytestmark = pytest.mark.slow
 
@@ -50,7 +50,7 @@ def status(client: httpx.Client, job_id: str) -> str:
 def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
     impatient: Running, settings: Settings, small_clip: Path
 ) -> None:
-    with httpx.Client(base_url=impatient.address, timeout=60) as client:
+    with client_of(impatient.address) as client:
         job_id = upload(client, small_clip)
         until(lambda: status(client, job_id) == "running")
         with locked(settings):
@@ -72,7 +72,7 @@ def test_a_job_that_cannot_be_started_starts_later(
     impatient: Running, settings: Settings, small_clip: Path
 ) -> None:
     studio = impatient.studio
-    with httpx.Client(base_url=impatient.address, timeout=60) as client:
+    with client_of(impatient.address) as client:
         partial = studio.clips.new_partial()
         partial.write_bytes(small_clip.read_bytes())
         clip = Clip(name="dive", media_type="video/x-matroska", size=5, width=64, height=48)

@@ -10,7 +10,7 @@ from websockets.sync.client import connect
 
 from app.api.middleware.access import COOKIE, MOST_GUESSES
 from app.settings import Settings
-from tests.api.running import Running, assert_problem, running
+from tests.api.running import Running, assert_problem, client_of, running
 
 LANGUAGES = "/api/v1/languages"
 TOKEN = "correct-horse-battery"
@@ -37,7 +37,7 @@ def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
 
 @pytest.fixture
 def stranger(guarded: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=guarded.address, timeout=60) as client:
+    with client_of(guarded.address) as client:
         yield client
 
 
@@ -115,7 +115,7 @@ def test_our_own_page_may_change_things(client: httpx.Client, server: Running) -
 
 def test_more_host_names_can_be_allowed(settings: Settings) -> None:
     named = settings.model_copy(update={"allowed_hosts": ("dive-box.local",)})
-    with running(named) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(named) as server, client_of(server.address) as client:
         assert client.get(LANGUAGES, headers={"Host": "dive-box.local:80"}).status_code == 200
         answer = client.get(LANGUAGES, headers={"Host": "dive-box.example"})
         assert_problem(answer, 403, "foreign_origin")
@@ -167,8 +167,8 @@ def test_guesses_are_slowed_and_who_is_let_in_stays_so(settings: Settings) -> No
     bearer = {"Authorization": f"Bearer {TOKEN}"}
     with (
         running(secret) as server,
-        httpx.Client(base_url=server.address, timeout=60) as guest,
-        httpx.Client(base_url=server.address, timeout=60) as guesser,
+        client_of(server.address) as guest,
+        client_of(server.address) as guesser,
     ):
         assert guest.get("/", params={"token": TOKEN}).status_code == 303
         for number in range(MOST_GUESSES):

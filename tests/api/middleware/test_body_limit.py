@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from app.settings import Settings
-from tests.api.running import assert_problem, running
+from tests.api.running import assert_problem, client_of, running
 
 BODY = b'{"name": "' + b"x" * 5000 + b'"}'
 
@@ -17,7 +17,7 @@ def narrow(settings: Settings) -> Iterator[httpx.Client]:
     limits = {"max_body_bytes": 1000, "max_language_bytes": 3000}
     with (
         running(settings.model_copy(update=limits)) as server,
-        httpx.Client(base_url=server.address, timeout=60) as client,
+        client_of(server.address) as client,
     ):
         yield client
 

@@ -13,7 +13,7 @@ import httpx
 import pytest
 
 from app.settings import Settings
-from tests.api.running import Running, running, until
+from tests.api.running import Running, client_of, running, until
 
 HEAD = "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000\r\n"
 
@@ -93,7 +93,7 @@ def test_a_body_that_stalls_is_ended_wherever_it_goes(
     impatient: Running, small_clip: Path, path: str, more: str
 ) -> None:
     if "Idempotency" in more:
-        with httpx.Client(base_url=impatient.address, timeout=60) as client:
+        with client_of(impatient.address) as client:
             files = {"file": ("dive.mkv", small_clip.read_bytes())}
             answer = client.post(path, files=files, headers={"Idempotency-Key": "a"})
             assert answer.status_code == 202
@@ -105,7 +105,7 @@ def test_a_body_that_stalls_is_ended_wherever_it_goes(
 
 def test_a_request_that_takes_long_and_a_stream_are_not_idle(impatient: Running) -> None:
     with (
-        httpx.Client(base_url=impatient.address, timeout=60) as client,
+        client_of(impatient.address) as client,
         client.stream("GET", "/api/v1/events") as stream,
     ):
         lines = stream.iter_lines()
@@ -123,7 +123,7 @@ def test_at_the_limit_idle_connections_give_way(settings: Settings) -> None:
     with running(narrow) as server, ExitStack() as idle:
         for _ in range(60):
             idle.enter_context(connected(server, ""))
-        with httpx.Client(base_url=server.address, timeout=10) as client:
+        with client_of(server.address, timeout=10) as client:
             assert client.get("/healthz").status_code == 200
 
 
@@ -148,7 +148,7 @@ def test_few_files_are_enough_for_many_idle_connections(tmp_path: Path) -> None:
         line = process.stdout.readline()
         address = next(word for word in line.split() if word.startswith("http://"))
         port = int(address.rstrip("/").rsplit(":", 1)[1])
-        with ExitStack() as idle, httpx.Client(base_url=address, timeout=10) as client:
+        with ExitStack() as idle, client_of(address, timeout=10) as client:
             for _ in range(300):
                 idle.enter_context(socket.create_connection(("127.0.0.1", port)))
             assert client.get("/healthz").status_code == 200

@@ -14,7 +14,7 @@ import httpx
 import pytest
 
 from app.api.observation.logs import FIELDS, JsonFormatter, TextFormatter, job_id, request_id
-from tests.api.running import until
+from tests.api.running import client_of, until
 
 
 def record(message: str, **fields: object) -> logging.LogRecord:
@@ -92,7 +92,7 @@ def test_a_server_logs_requests_and_jobs_as_json(tmp_path: Path, small_clip: Pat
             address = next(
                 word for word in process.stdout.readline().split() if word.startswith("http")
             )
-            with httpx.Client(base_url=address, timeout=60) as client:
+            with client_of(address) as client:
                 added = client.post(
                     "/api/v1/clips",
                     files={"file": ("a.mp4", small_clip.read_bytes())},

@@ -8,7 +8,7 @@ import pytest
 from app.recognition import Gesture, Language
 from app.settings import Settings
 from tests.api.recordings import recording_of
-from tests.api.running import assert_problem, running
+from tests.api.running import assert_problem, client_of, running
 from tests.recognition.damaged_clips import write_clip
 
 LANGUAGES = "/api/v1/languages"
@@ -28,7 +28,7 @@ def samples(settings: Settings) -> Path:
 
 @pytest.mark.usefixtures("samples")
 def test_a_new_user_finds_the_sample_languages(settings: Settings) -> None:
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         (language,) = client.get(LANGUAGES).json()
         assert (language["name"], language["sample"]) == ("Table 1", True)
 
@@ -36,18 +36,18 @@ def test_a_new_user_finds_the_sample_languages(settings: Settings) -> None:
 def test_samples_are_brought_once_and_later_ones_are_added(
     settings: Settings, samples: Path
 ) -> None:
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         (language,) = client.get(LANGUAGES).json()
         client.delete(f"{LANGUAGES}/{language['id']}")
     Language("Table 2").save(samples / "table-2.json")
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         assert [language["name"] for language in client.get(LANGUAGES).json()] == ["Table 2"]
 
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("samples")
 def test_a_sample_clip_is_added_like_an_upload(settings: Settings) -> None:
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         (sample,) = client.get("/api/v1/samples").json()
         assert sample["name"] == "circle_a.mp4"
         accepted = client.post("/api/v1/samples", json={"name": sample["name"]})
@@ -65,7 +65,7 @@ def test_without_samples_the_app_starts(client: httpx.Client) -> None:
 
 @pytest.mark.usefixtures("samples")
 def test_a_deleted_sample_language_can_be_added_again(settings: Settings) -> None:
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         (language,) = client.get(LANGUAGES).json()
         client.delete(f"{LANGUAGES}/{language['id']}")
         (sample,) = client.get("/api/v1/samples/languages").json()

@@ -8,7 +8,7 @@ import pytest
 from app.api.services.studio import Studio
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import assert_problem, running
+from tests.api.running import assert_problem, client_of, running
 
 WORKSPACES = "/api/v1/workspaces"
 
@@ -80,7 +80,7 @@ def test_a_server_that_ends_closes_its_workspaces(tmp_path: Path) -> None:
     with running(Settings(data_dir=tmp_path / "data", samples_dir=tmp_path)) as server:
         studio: Studio = server.studio
         clip = add_recorded_clip(studio, recording_of("circle"))
-        with httpx.Client(base_url=server.address, timeout=60) as client:
+        with client_of(server.address) as client:
             name = client.post(WORKSPACES).json()["id"]
             client.put(f"{WORKSPACES}/{name}/view", json={"clip_id": clip})
     with pytest.raises(httpx.ConnectError):

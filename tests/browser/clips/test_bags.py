@@ -13,7 +13,7 @@ from playwright.sync_api import Page, expect
 
 from app.recognition.recording.video import read_frames
 from tests.api.recordings import recording_of
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.bags.bag_files import (
     DELAY,
     START,
@@ -36,7 +36,7 @@ EXTRACTION_MS = 300_000
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield client
 
 

@@ -12,7 +12,7 @@ from playwright.sync_api import expect
 
 from app.recognition.poses.skeletons import BODY_25
 from tests.api.ingest.test_keypoint_clips import packed
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -25,7 +25,7 @@ ARMS = tuple(BODY)
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield client
 
 

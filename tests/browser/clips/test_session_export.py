@@ -6,12 +6,11 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Page, expect
 
 from app.settings import Settings
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.bags.exports import checked
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
@@ -22,7 +21,7 @@ SESSION = "**/session.mcap"
 
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, "exported")
 
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
@@ -19,7 +18,7 @@ from tests.browser.library import Library, add_clip, library_of
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
     # The documentation's picture shows the name.
     name = "Reef" if "compared" in request.node.name else "Wreck"
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, name)
 
 

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from app.recognition.language.short_code import short_code
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip, library_of
@@ -29,7 +29,7 @@ NAMES = ("up", "down", "stop", "follow me", "bring light", "take picture", "retu
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield client
 
 

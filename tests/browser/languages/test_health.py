@@ -11,7 +11,7 @@ import httpx
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -20,7 +20,7 @@ from tests.browser.library import Library, add_clip, library_of
 
 @pytest.fixture(scope="module")
 def library(server: Running) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, "pool")
 
 
@@ -168,7 +168,7 @@ def test_labelled_clips_are_tested_corrected_and_opened(
 def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
     open_page: OpenPage, server: Running
 ) -> None:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         library = library_of(server, client, "test set")
         add_clip(server, "circle", name="circle-other.mp4")
         test_set = f"/api/v1/languages/{library.language}/test-set"
@@ -197,7 +197,7 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
 def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
     open_page: OpenPage, server: Running
 ) -> None:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         library = library_of(server, client, "changed")
         gesture = f"/api/v1/languages/{library.language}/gestures?label=circle"
         client.patch(gesture, json={"direction": "off"}).raise_for_status()

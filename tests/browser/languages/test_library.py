@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.api.running import Running, until
+from tests.api.running import Running, client_of, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, library_of
@@ -17,7 +16,7 @@ from tests.browser.library import Library, library_of
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, request.node.name.removeprefix("test_")[:40])
 
 
@@ -299,7 +298,7 @@ def test_pictures_of_the_library(
 
 
 def test_without_languages_the_samples_are_offered(open_page: OpenPage, server: Running) -> None:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         for language in client.get("/api/v1/languages").json():
             client.delete(f"/api/v1/languages/{language['id']}")
     page = open_page({"view": "languages"}, scene=False)

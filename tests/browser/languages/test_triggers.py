@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import httpx
 import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
@@ -17,7 +16,7 @@ from tests.posed import posed_clip, posed_recording
 
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         clips = [
             add_clip(server, name=f"{name}.mp4", video=posed_clip(name), recording=recording)
             for name in ("circle-by-belly-2", "circle-by-belly")
@@ -68,7 +67,7 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 def test_one_gesture_begins_takes_and_another_one_ends_them(
     open_page: OpenPage, server: Running
 ) -> None:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         library = library_of(server, client, "by gestures")
         page = open_page(library.address, scene=False)
         page.get_by_role("button", name="Trigger", exact=True).click()

@@ -6,11 +6,10 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_clips import write_clip
@@ -21,7 +20,7 @@ MOST_TABS = 120
 
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         add_clip(server, "circle backwards", name="other way.mp4")
         add_clip(server, "line", name="another line.mp4")
         yield library_of(server, client, "by keyboard")

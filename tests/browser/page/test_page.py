@@ -12,7 +12,7 @@ from playwright.sync_api import Page, Route, expect
 
 from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
 from app.recognition.recording.salute import ENTER_SCORE
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
@@ -23,7 +23,7 @@ MARKUP = '<img src=x onerror="window.broken=1">'
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield client
 
 

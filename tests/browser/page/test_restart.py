@@ -8,12 +8,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Page, Request, expect
 
 from app.settings import Settings
-from tests.api.running import running, until
+from tests.api.running import client_of, running, until
 from tests.api.serving import lasting_port, served
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -40,7 +39,7 @@ def server() -> Address:
 def query(tmp_path: Path) -> dict[str, str]:
     """Return what a link names: a clip, a language of two gestures and a misread take."""
     settings = Settings(data_dir=tmp_path, samples_dir=tmp_path / "none")
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         library = library_of(server, client, "kept")
         return {**library.address, "recognition": library.recognise("line")}
 

@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, Route, expect
 
 from app.settings import Settings
 from app.store import Role, TokenFile
-from tests.api.running import running
+from tests.api.running import client_of, running
 from tests.browser.files import drop
 from tests.browser.library import add_clip, library_of
 
@@ -108,7 +108,7 @@ def test_an_administrator_reads_who_changed_what_and_an_editor_what_is_left(
     admin, editor = tokens.add("Mia", Role.ADMIN), tokens.add("Eve", Role.EDIT, quota_clips=5)
     with running(settings) as server:
         headers = {"Authorization": f"Bearer {editor}"}
-        with httpx.Client(base_url=server.address, headers=headers, timeout=60) as client:
+        with client_of(server.address, headers=headers) as client:
             client.post("/api/v1/languages", json={"name": "pool"})
         page = browser.new_context(base_url=server.address).new_page()
         page.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")

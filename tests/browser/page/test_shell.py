@@ -6,19 +6,18 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.api.recordings import recording_of
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, library_of
 
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, request.node.name[:40])
 
 

@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import expect
 
 from app.recognition import Recording
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip
 from tests.conftest import RECORDINGS
@@ -23,7 +23,7 @@ MISREAD = "unfinished-triangle"
 
 @pytest.fixture
 def client(server: Running) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield client
 
 

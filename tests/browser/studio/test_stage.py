@@ -15,7 +15,7 @@ from playwright.sync_api import Locator, Page, expect
 from app.recognition.voters.registry import VOTERS
 from app.ui import workspace
 from tests.api.recordings import recording_of
-from tests.api.running import Running, until
+from tests.api.running import Running, client_of, until
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.browser.numbered_clips import corners_on, number_on, numbered_clip, painted_corners
@@ -30,7 +30,7 @@ HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         library = library_of(server, client, request.node.name[:40])
         video = tmp_path / "numbered.mp4"
         recording = recording_of("circle")

@@ -6,11 +6,10 @@ import csv
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from playwright.sync_api import expect
 
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
@@ -18,7 +17,7 @@ from tests.browser.library import Library, add_clip, library_of
 
 @pytest.fixture
 def library(server: Running) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, "dives")
 
 

@@ -6,13 +6,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from app.recognition import Recording
 from tests.api.recordings import recording_of
-from tests.api.running import Running
+from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_poses import with_sides_exchanged
@@ -22,7 +21,7 @@ WEIGHT = "with 2 times the weight on the voter aspect ratio"
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    with httpx.Client(base_url=server.address, timeout=60) as client:
+    with client_of(server.address) as client:
         yield library_of(server, client, request.node.name[:40])
 
 

@@ -18,7 +18,7 @@ from app.api.middleware.roles import READING, needed_role
 from app.server import create_app
 from app.settings import Settings
 from app.store import Role, TokenFile
-from tests.api.running import Running, assert_problem, running
+from tests.api.running import Running, assert_problem, client_of, running
 
 API = "/api/v1"
 LANGUAGES, CLIPS, UPLOADS = f"{API}/languages", f"{API}/clips", f"{API}/uploads"
@@ -41,7 +41,7 @@ def tokens(settings: Settings) -> TokenFile:
 
 def client_with(server: Running, token: str) -> httpx.Client:
     headers = {"Authorization": f"Bearer {token}"}
-    return httpx.Client(base_url=server.address, headers=headers, timeout=60)
+    return client_of(server.address, headers=headers)
 
 
 def test_a_token_of_the_settings_administers(guarded: Running) -> None:
@@ -98,7 +98,7 @@ def test_a_damaged_file_of_tokens_lets_nobody_in(guarded: Running, settings: Set
 
 def test_a_browser_signs_in_and_out(guarded: Running, tokens: TokenFile) -> None:
     secret = tokens.add("Eve", Role.EDIT)
-    with httpx.Client(base_url=guarded.address, timeout=60) as browser:
+    with client_of(guarded.address) as browser:
         assert browser.get("/", params={"token": secret}).status_code == 303
         session = browser.get(f"{API}/session").json()
         assert session == UNLIMITED | {"name": "Eve", "role": "edit", "signed_in": True}

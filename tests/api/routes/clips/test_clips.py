@@ -9,7 +9,7 @@ from app.api.services.studio import Studio
 from app.settings import Settings
 from app.store import Clip
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import assert_problem, running, until
+from tests.api.running import assert_problem, client_of, running, until
 from tests.recognition.damaged_clips import IMPOSTORS, flipped, sound_only, write_clip
 
 pytestmark = pytest.mark.slow
@@ -60,7 +60,7 @@ def test_without_models_the_app_works_and_the_job_says_what_is_missing(
     settings: Settings, small_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path / "no models"))
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         assert client.get("/healthz").json()["status"] == "models_missing"
         clip_id = upload(client, small_clip).json()["id"]
         until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "failed")
@@ -140,7 +140,7 @@ def test_a_clip_beyond_the_limit_is_413(settings: Settings, tmp_path: Path, form
     small = settings.model_copy(update={"max_clip_bytes": 50_000})
     path = tmp_path / "large.mp4"
     path.write_bytes(b"\0\0\0\x18ftypmp42" + bytes(400_000))
-    with running(small) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(small) as server, client_of(server.address) as client:
         if form == "chunked":
             head = b'--b\r\nContent-Disposition: form-data; name="file"; filename="x"\r\n\r\n'
             parts = [head, *[path.read_bytes()[:10_000]] * 20, b"\r\n--b--\r\n"]
@@ -156,7 +156,7 @@ def test_a_full_disk_is_507_and_says_when_to_come_back(
     settings: Settings, small_clip: Path
 ) -> None:
     full = settings.model_copy(update={"free_disk_bytes": 2**62})
-    with running(full) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(full) as server, client_of(server.address) as client:
         answer = upload(client, small_clip)
         assert_problem(answer, 507, "disk_full")
         assert answer.headers["retry-after"]
@@ -194,7 +194,7 @@ def test_a_path_with_a_nul_names_nothing(client: httpx.Client, path: str) -> Non
 @pytest.mark.withstands(row="H23")
 def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"max_jobs_per_client": 1})
-    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(narrow) as server, client_of(server.address) as client:
         # Stored behind the runner's back, so that it waits for as long as the test wants.
         partial = server.studio.clips.new_partial()
         partial.write_bytes(b"video")

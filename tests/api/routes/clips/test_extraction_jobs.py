@@ -13,7 +13,7 @@ import pytest
 
 from app.settings import Settings
 from tests.api.routes.clips.test_clips import CLIPS, upload
-from tests.api.running import assert_problem, running, until
+from tests.api.running import assert_problem, client_of, running, until
 from tests.api.running_workers import alive, linux, workers_of
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
@@ -134,7 +134,7 @@ def test_a_worker_that_crashes_fails_its_job_and_nothing_else(
 def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> None:
     # Long enough for the worker to begin, or it is ended before it is stopped in its tracks.
     impatient = settings.model_copy(update={"worker_silence_seconds": 5.0})
-    with running(impatient) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(impatient) as server, client_of(server.address) as client:
         job_id, worker = frozen_worker(client, long_clip)
         until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "failed")
         job = client.get(f"{JOBS}/{job_id}").json()
@@ -147,6 +147,6 @@ def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> No
 @pytest.mark.withstands(row="H10")
 def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"worker_memory_bytes": 100 * 1024 * 1024})
-    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(narrow) as server, client_of(server.address) as client:
         assert_problem(upload(client, small_clip), 422, "decoder")
         assert client.get("/healthz").status_code == 200

@@ -9,14 +9,13 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-import httpx
 import pytest
 from sqlalchemy import Connection
 
 from app.settings import Settings
 from app.store import database
 from tests.api.routes.clips.test_resumable_uploads import UPLOADS, begun, offset_of, sent
-from tests.api.running import assert_problem, running
+from tests.api.running import assert_problem, client_of, running
 
 CLIPS = "/api/v1/clips"
 DISK_BYTES = 4 * 1024 * 1024
@@ -55,7 +54,7 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
         data_dir=small_disk / "data", samples_dir=small_disk / "none", free_disk_bytes=0
     )
     content = small_clip.read_bytes()
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content))
         assert sent(client, place, 0, content[:-10]).status_code == 204
         ballast = fill(small_disk, left)
@@ -98,7 +97,7 @@ def test_a_full_database_costs_no_byte_of_an_upload(
 
     monkeypatch.setattr(database, "_begin", begin_limited)
     content = small_clip.read_bytes()
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content))
         most_pages = 1
         note = "x" * 60

@@ -19,7 +19,7 @@ from app.store import UploadStore
 from app.store.models import now
 from tests.api.ingest.test_bag_clips import two_divers
 from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept
-from tests.api.running import Running, assert_problem, running, until
+from tests.api.running import Running, assert_problem, client_of, running, until
 from tests.bags.bag_files import file_of, write_bag
 
 pytestmark = pytest.mark.slow
@@ -64,7 +64,7 @@ def broken_off(server: Running, place: str, content: bytes, length: int) -> None
             f"Content-Type: {PART['Content-Type']}\r\nContent-Length: {length}\r\n\r\n"
         )
         connection.sendall(head.encode() + content)
-        with httpx.Client(base_url=server.address, timeout=60) as client:
+        with client_of(server.address) as client:
             until(lambda: offset_of(client, place) > 0)
 
 
@@ -90,11 +90,11 @@ def test_a_lost_connection_and_a_restart_lose_nothing_that_came(
     settings: Settings, small_clip: Path
 ) -> None:
     content = small_clip.read_bytes() + FREE_BOX
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content))
         half = len(content) // 2
         broken_off(server, place, content[:half], len(content))
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         came = offset_of(client, place)
         assert 0 < came <= half
         clip = sent(client, place, came, content[came:]).headers["content-location"]
@@ -107,7 +107,7 @@ def test_a_locked_database_costs_no_byte_of_a_whole_upload(
 ) -> None:
     monkeypatch.setattr("app.store.database.BUSY_TIMEOUT_SECONDS", 0.2)
     content = small_clip.read_bytes()
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content))
         with closing(sqlite3.connect(settings.data_dir / "studio.db")) as other:
             other.execute("BEGIN IMMEDIATE")
@@ -135,7 +135,7 @@ def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> N
     tight = settings.model_copy(
         update={"free_disk_bytes": free // 2, "max_clip_bytes": free, "max_jobs_per_client": 3}
     )
-    with running(tight) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(tight) as server, client_of(server.address) as client:
         place = begun(client, free // 3)
         headers = TUS | {"Upload-Length": str(free // 3)}
         refused = assert_problem(client.post(UPLOADS, headers=headers), 507, "disk_full")
@@ -147,7 +147,7 @@ def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> N
 
 def test_an_upload_counts_as_a_waiting_job_from_its_beginning(settings: Settings) -> None:
     narrow = settings.model_copy(update={"max_jobs_per_client": 2})
-    with running(narrow) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(narrow) as server, client_of(server.address) as client:
         for _ in range(2):
             place = begun(client, 100)
         answer = client.post(UPLOADS, headers=TUS | {"Upload-Length": "100"})
@@ -162,11 +162,11 @@ def test_the_topic_of_a_dive_recording_comes_with_the_metadata(
     bag = file_of(write_bag(tmp_path / "dive", two_divers()))
     content, half = bag.read_bytes(), bag.stat().st_size // 2
     topic = "/leader/pose_keypoints"
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content), "dive.mcap", topic=topic)
         assert sent(client, place, 0, content[:half]).status_code == 204
     # It is remembered over a restart, as the bytes are.
-    with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
+    with running(settings) as server, client_of(server.address) as client:
         clip = sent(client, place, half, content[half:]).headers["content-location"]
         assert client.get(clip).json()["topic"] == topic
         other = begun(client, len(content), "dive.mcap", topic="/nobody")
