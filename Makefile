@@ -63,17 +63,18 @@ coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches t
 	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
 
 # By file: the tests of one file share a server, a database or a recording. In the order of
-# tests/conftest.py: the long ones first. Four at a time also on two cores: those in the browser and
-# with other processes wait a lot. Examples of properties are the same ones everywhere, so that nobody's
-# change fails for what it has not touched; plain `pytest` goes on looking for others.
+# tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
+# with other processes wait a lot, but four browsers at once take half as much processor's time again
+# as two. Examples of properties are the same ones everywhere, so that nobody's change fails for what
+# it has not touched; plain `pytest` goes on looking for others.
 pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --hypothesis-profile ci \
+	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --hypothesis-profile ci \
 	  --durations 25
 
-# Compiles the tests once: of a fresh checkout, each of the four that run them would compile all.
+# Compiles the tests once: of a fresh checkout, each of those that run them would compile all.
 collection: $(VENV)/.development
 	@$(BIN)/python -m pytest --collect-only -qq > /dev/null
 

@@ -10,7 +10,6 @@ from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 import httpx
 import uvicorn
@@ -101,11 +100,13 @@ def _certificates() -> ssl.SSLContext:
     return ssl.create_default_context()
 
 
-def client_of(address: str, **options: Any) -> httpx.Client:
-    """Return a client of the server at `address`, as patient as the tests; see `httpx.Client`."""
-    return httpx.Client(
-        base_url=address, **{"timeout": PATIENCE_SECONDS, "verify": _certificates()} | options
-    )
+def client_of(
+    address: httpx.URL | str,
+    headers: dict[str, str] | None = None,
+    timeout: float = PATIENCE_SECONDS,
+) -> httpx.Client:
+    """Return a client of the server at `address`, as patient as the tests."""
+    return httpx.Client(base_url=address, headers=headers, timeout=timeout, verify=_certificates())
 
 
 def until(condition: Callable[[], object]) -> None:
