@@ -73,7 +73,8 @@ def test_threads_share_arenas() -> None:
         how: int(subprocess.check_output([sys.executable, "-c", ALLOCATE, how]))
         for how in ("own", "shared")
     }
-    assert found["shared"] < heap.ARENAS < found["own"]
+    # One fewer than there are, but another mapping may begin at such a place by chance.
+    assert found["shared"] <= heap.ARENAS < found["own"]
 
 
 def test_another_c_library_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
