@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import httpx
 from playwright.sync_api import Browser, Route, expect
 
 from app.settings import Settings
@@ -29,9 +28,7 @@ def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
     token, editor = tokens.add("Ada", Role.READ), tokens.add("Eve", Role.EDIT)
     with (
         running(settings) as server,
-        httpx.Client(
-            base_url=server.address, headers={"Authorization": f"Bearer {editor}"}, timeout=60
-        ) as client,
+        client_of(server.address, headers={"Authorization": f"Bearer {editor}"}) as client,
     ):
         library_of(server, client, "circle")
         page = browser.new_context(base_url=server.address).new_page()

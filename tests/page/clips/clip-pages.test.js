@@ -18,6 +18,24 @@ const clip = (number, status = "done") => ({
 });
 const ids = (clips) => clips.map(({ id }) => id);
 
+/** A gate at which answers wait while it is shut. */
+function gate() {
+  let shut = false;
+  const waiting = [];
+  return {
+    shut() {
+      shut = true;
+    },
+    async pass() {
+      if (shut) await new Promise((go) => waiting.push(go));
+    },
+    open() {
+      shut = false;
+      waiting.splice(0).forEach((go) => go());
+    },
+  };
+}
+
 test("clips are kept once, newest first, as they were loaded last", () => {
   const known = merged([clip(1), clip(3, "queued")], [clip(2), clip(3, "done")]);
   assert.deepEqual(ids(known), ["c3", "c2", "c1"]);
@@ -33,38 +51,32 @@ test("a clip beyond those that are known without gaps is not listed, and counted
 });
 
 test("older clips that are asked for while the list loads anew are not undone by it", async (t) => {
-  /** Whether the list's answers are held until `release`. */
-  let held = false;
-  const waiting = [];
-  const release = () => waiting.splice(0).forEach((go) => go());
+  const lists = gate();
   t.mock.method(globalThis, "fetch", async (address) => {
     const { searchParams } = new URL(address, "http://studio");
     const page = searchParams.get("after") ? [clip(1)] : searchParams.get("status") ? [] : [3, 2];
     const clips = page.map((each) => (typeof each === "number" ? clip(each) : each));
     const older = clips.length === 2 ? { Link: "<older>" } : {};
-    if (held && clips.length === 2) await new Promise((go) => waiting.push(go));
+    if (clips.length === 2) await lists.pass();
     return Response.json(clips, { headers: { "X-Total-Count": "3", ...older } });
   });
   await reloadClips();
   assert.deepEqual(ids(state.clips), ["c3", "c2"]);
-  held = true;
+  lists.shut();
   const both = Promise.all([reloadClips(), loadOlder()]);
   await new Promise(setImmediate);
-  release();
+  lists.open();
   await both;
   assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
   assert.deepEqual(state.library, { last: null, older: 0 });
 });
 
 test("clips that are found while the list loads anew stay known, and at the next time too", async (t) => {
-  /** Whether the list's answers are held until `release`. */
-  let held = false;
-  const waiting = [];
-  const release = () => waiting.splice(0).forEach((go) => go());
+  const lists = gate();
   t.mock.method(globalThis, "fetch", async (address) => {
     const { searchParams } = new URL(address, "http://studio");
     const list = !["q", "id", "status"].some((name) => searchParams.has(name));
-    if (held && list) await new Promise((go) => waiting.push(go));
+    if (list) await lists.pass();
     const clips = list
       ? [clip(3), clip(2)]
       : searchParams.get("q") === "one" || searchParams.getAll("id").includes("c1")
@@ -75,13 +87,12 @@ test("clips that are found while the list loads anew stay known, and at the next
   });
   update({ clips: [], library: { last: null, older: 0 } });
   await reloadClips();
-  held = true;
+  lists.shut();
   const both = Promise.all([reloadClips(), searchClips("one")]);
   await new Promise(setImmediate);
-  release();
+  lists.open();
   await both;
   assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
-  held = false;
   await reloadClips();
   assert.deepEqual(ids(state.clips), ["c3", "c2", "c1"]);
   await searchClips("none");
