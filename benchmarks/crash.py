@@ -178,13 +178,13 @@ def serving(folder: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
 
 
 def workers_of(pid: int) -> list[int]:
-    """Return the processes that a server has started."""
-    found = []
+    """Return the processes that a server has started, and those that they have."""
+    parents = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
-            if int(stat.read_text().rpartition(")")[2].split()[1]) == pid:
-                found.append(int(stat.parent.name))
-    return found
+            parent = stat.read_text().rpartition(")")[2].split()[1]
+            parents[int(stat.parent.name)] = int(parent)
+    return [each for each, parent in parents.items() if pid in (parent, parents.get(parent))]
 
 
 def work(address: str, written: Written, client: Client, seed: int, stop: threading.Event) -> None:

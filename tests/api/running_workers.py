@@ -11,19 +11,32 @@ linux = pytest.mark.skipif(not Path("/proc/self").exists(), reason="finds proces
 
 
 def workers_of(parent: int, command: str = "record") -> list[int]:
-    """Return the process ids of the workers of server `parent` that do `command`."""
-    found = []
-    for entry in Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
+    """Return the process ids of the workers of `parent` that do `command`.
+
+    They are its children, or those of its fork server.
+    """
+    parents = processes(f"osg {command}")
+    starting = {parent, *fork_servers_of(parent)}
+    return [worker for worker in parents if parents[worker] in starting]
+
+
+def fork_servers_of(parent: int) -> list[int]:
+    """Return the process ids of the fork servers of `parent`."""
+    servers = processes("osg fork server")
+    return [server for server in servers if servers[server] == parent]
+
+
+def processes(name: str) -> dict[int, int]:
+    """Return the process ids of those that run and have this name, each with its parent's."""
+    found = {}
+    for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
-            words = (entry / "cmdline").read_bytes().split(b"\0")
-            status = (entry / "stat").read_text().rpartition(")")[2].split()
+            its_name, _, facts = stat.read_text().partition("(")[2].rpartition(") ")
         except OSError:
             continue
-        is_worker = b"app.api.workers.worker" in words and command.encode() in words
-        if is_worker and int(status[1]) == parent and status[0] != "Z":
-            found.append(int(entry.name))
+        state, parent = facts.split()[:2]
+        if its_name == name and state != "Z":
+            found[int(stat.parent.name)] = int(parent)
     return found
 
 
@@ -31,6 +44,7 @@ def alive(process_id: int) -> bool:
     """Tell whether a process runs."""
     try:
         os.kill(process_id, 0)
-        return (Path("/proc") / str(process_id) / "stat").read_text().split()[2] != "Z"
+        stat = Path(f"/proc/{process_id}/stat").read_text()
     except OSError:
         return False
+    return not stat.rpartition(") ")[2].startswith("Z")

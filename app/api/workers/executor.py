@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
-import sys
-from asyncio.subprocess import PIPE
-from collections.abc import AsyncIterator, Sequence
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from collections.abc import Sequence
+from contextlib import AbstractAsyncContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
@@ -79,31 +75,3 @@ class Executor(Protocol):
     async def close(self) -> None:
         """Release what was opened."""
         ...
-
-
-class LocalProcesses:
-    """Runs worker processes on this machine."""
-
-    @asynccontextmanager
-    async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
-        """Run a process; see `Executor`."""
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            *COMMAND,
-            *arguments,
-            stdin=PIPE,
-            stdout=PIPE,
-            cwd=PACKAGE_PARENT,
-            # Ctrl-C in the terminal is for the server, which then ends its workers in order.
-            start_new_session=True,
-        )
-        assert process.stdout is not None
-        try:
-            yield process.stdout
-        finally:
-            with contextlib.suppress(ProcessLookupError):
-                process.kill()
-            await process.wait()
-
-    async def close(self) -> None:
-        """Do nothing: every process ends with its context."""

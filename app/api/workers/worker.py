@@ -1,4 +1,4 @@
-"""Worker process: ``python -m app.api.workers.worker COMMAND ...``, see `_arguments`.
+"""Worker process: ``python -m app.api.workers.worker COMMAND ...``, see `_read`.
 
 It opens one clip or language file, writes one JSON object per line to stdout (see `messages`), and
 ends as soon as its stdin is closed, which happens when the server dies.
@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
@@ -220,15 +220,23 @@ def end_with_server() -> None:
     threading.Thread(target=wait, daemon=True).start()
 
 
-def main() -> None:
-    """Run one command and report how it went."""
-    chosen = _arguments()
+def show_command(command: str) -> None:
+    """Give this process the name ``osg COMMAND`` in lists of processes, where that is possible."""
+    with contextlib.suppress(OSError):
+        Path("/proc/self/comm").write_text(f"osg {command}")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run one command, by default that of the command line, and report how it went."""
+    chosen = _read(arguments)
+    show_command(chosen.command)
     # Libraries that print must not write into the messages.
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1, encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     tempfile.tempdir = chosen.scratch
-    limit_resources(chosen.memory_bytes, chosen.cpu_seconds, chosen.file_bytes)
+    # First: where memory is short already, a thread may wait for ever for its start.
     end_with_server()
+    limit_resources(chosen.memory_bytes, chosen.cpu_seconds, chosen.file_bytes)
 
     def report(message: Message) -> None:
         channel.write(dump(message) + "\n")
@@ -251,7 +259,7 @@ def main() -> None:
         report(Failed(code="storage_unavailable", detail=detail))
 
 
-def _arguments() -> argparse.Namespace:
+def _read(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="osg-studio worker")
     for name in ("memory-bytes", "cpu-seconds", "file-bytes"):
         parser.add_argument(f"--{name}", type=int, default=0)
@@ -281,7 +289,7 @@ def _arguments() -> argparse.Namespace:
     for command in (recording, exporting):
         for name in ("video", "recording", "poster", "filmstrip"):
             command.add_argument(name, type=Path)
-    return parser.parse_args()
+    return parser.parse_args(arguments)
 
 
 def _run(chosen: argparse.Namespace, report: Report) -> None:

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from app.api.observation.metrics import Metrics
 from app.api.workers.clip_files import ClipFiles
-from app.api.workers.executor import Executor, ExecutorLost, Lines, LocalProcesses, TaskFiles
+from app.api.workers.executor import Executor, ExecutorLost, Lines, TaskFiles
+from app.api.workers.local_processes import LocalProcesses
 from app.api.workers.test_takes import RecognizedTake, TestRunRequest, answer_file
 from app.api.workers.worker_messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal

@@ -337,6 +337,11 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
             options={"max_pixels": str(limits.pixels)},
             metadata_errors="replace",
         )
+    except MemoryError as error:
+        raise VideoError(
+            f"{path.name} cannot be opened: it needs more memory than is free or allowed; free "
+            "memory, or record or export it again"
+        ) from error
     except (av.error.FFmpegError, OSError) as error:
         raise VideoError(
             f"{path.name} is not a readable video: it is no MP4, MOV, MKV, WebM, AVI or MPEG-TS "

@@ -1,4 +1,8 @@
-"""ONNX session: loads a model once, checks its shapes, and runs it per frame."""
+"""ONNX session: loads a model once, checks its shapes, and runs it per frame.
+
+ONNX Runtime is imported with the first model: it starts a thread, and a process with threads must
+not fork (`app.api.workers.fork_server`).
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,6 @@ from typing import Any, Final, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
-import onnxruntime  # type: ignore[import-untyped]
 
 from app.recognition.errors import EstimatorError, ModelError
 
@@ -129,6 +132,8 @@ def check_provider(provider: str) -> None:
 
 def available_providers() -> tuple[Provider, ...]:
     """Return the providers that this installation of ONNX Runtime was built with."""
+    import onnxruntime  # type: ignore[import-untyped]
+
     built_in = set(onnxruntime.get_available_providers())
     return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
 
@@ -151,6 +156,8 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
         When the provider does not start.
 
     """
+    import onnxruntime
+
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1

@@ -1,0 +1,84 @@
+"""Fork server: ``python -m app.api.workers.fork_server``, a process that forks worker processes.
+
+It has imported what workers use, for which each would take half a second of a laptop's processor: a
+process that is forked begins its command in some milliseconds. Its stdin is a socket by which
+`app.api.workers.forked_worker` asks for one.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import signal
+import socket
+import sys
+
+from app.api.workers import worker
+
+
+def serve(requests: socket.socket) -> socket.socket:
+    """Fork a process for each connection that `requests` brings; return in that process.
+
+    Raises
+    ------
+    SystemExit
+        When nobody is left who could bring one.
+
+    """
+    while True:
+        _, descriptors, _, _ = socket.recv_fds(requests, 1, 1)
+        if not descriptors:
+            sys.exit()
+        connection = socket.socket(fileno=descriptors[0])
+        try:
+            if os.fork() == 0:
+                return connection
+        except OSError as error:
+            # No process or memory is left. The connection ends without a word.
+            print(f"osg-studio: a job cannot be started: {error.strerror}", file=sys.stderr)
+        connection.close()
+
+
+def become_worker(connection: socket.socket) -> list[str]:
+    """Take a forked process's command from its connection, which becomes its stdin and stdout.
+
+    It says its process id first, and ends when no command follows.
+
+    Returns
+    -------
+    list of str
+        The arguments of `worker.main`.
+
+    """
+    os.setsid()
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    connection.sendall(b"%d\n" % os.getpid())
+    with connection.makefile("rb") as lines:
+        line = lines.readline()
+    if not line:
+        sys.exit()
+    command = json.loads(line)
+    os.environ.clear()
+    os.environ.update(command["environment"])
+    for standard in (sys.stdin.fileno(), sys.stdout.fileno()):
+        os.dup2(connection.fileno(), standard)
+    connection.close()
+    arguments: list[str] = command["arguments"]
+    return arguments
+
+
+def main() -> None:
+    """Fork workers until the server is gone."""
+    worker.show_command("fork server")
+    # The system takes leave of those that end: nobody waits for them here.
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    # What is imported stays in memory that all workers share.
+    gc.freeze()
+    with socket.socket(fileno=os.dup(sys.stdin.fileno())) as requests:
+        connection = serve(requests)
+    worker.main(become_worker(connection))
+
+
+if __name__ == "__main__":
+    main()

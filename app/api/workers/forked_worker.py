@@ -1,0 +1,155 @@
+"""Forked worker: a worker process that the fork server of this process has started."""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+import contextlib
+import functools
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from typing import Final, Self
+
+from app.api.workers.executor import PACKAGE_PARENT
+
+FORK_SERVER: Final = ("-m", "app.api.workers.fork_server")
+"""Arguments of Python that start a fork server."""
+
+
+@functools.cache
+def can_fork() -> bool:
+    """Tell whether this system has file descriptors of processes, as Linux since 5.3."""
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except (AttributeError, OSError):
+        return False
+    return True
+
+
+class ForkedWorker:
+    """A running worker process.
+
+    Parameters
+    ----------
+    process
+        Its file descriptor (pidfd): unlike its id, it is never that of another process.
+    lines, connection
+        What it writes, and what it ends without.
+
+    """
+
+    def __init__(
+        self, process: int, lines: asyncio.StreamReader, connection: asyncio.StreamWriter
+    ) -> None:
+        self._process = process
+        self._lines = lines
+        self._connection = connection
+
+    @classmethod
+    async def begin(cls, arguments: Sequence[str]) -> Self | None:
+        """Begin a worker; return None when none can be forked now, which stderr tells."""
+        lines, connection = await asyncio.open_unix_connection(sock=_fork_server.connect())
+        process = None
+        try:
+            process = await _open_process(lines)
+        finally:
+            if process is None:
+                connection.close()
+        if process is None:
+            return None
+        command = {"arguments": list(arguments), "environment": dict(os.environ)}
+        connection.write(json.dumps(command).encode() + b"\n")
+        return cls(process, lines, connection)
+
+    async def readline(self) -> bytes:
+        """Return the next line; empty at the end of the process."""
+        try:
+            return await self._lines.readline()
+        except ConnectionResetError:  # It has ended before it had read its command.
+            return b""
+
+    async def end(self) -> None:
+        """End the process, and wait until it has ended."""
+        loop = asyncio.get_running_loop()
+        ended = asyncio.Event()
+        loop.add_reader(self._process, ended.set)
+        try:
+            with contextlib.suppress(ProcessLookupError):
+                signal.pidfd_send_signal(self._process, signal.SIGKILL)
+            await ended.wait()
+        finally:
+            loop.remove_reader(self._process)
+            os.close(self._process)
+            self._connection.close()
+
+
+async def _open_process(lines: asyncio.StreamReader) -> int | None:
+    """Return the file descriptor of the process that says its id; None when it is gone."""
+    try:
+        # Having said its id it waits for its command, so the id is still its own.
+        said = await lines.readline()
+        return os.pidfd_open(int(said)) if said else None
+    except (ConnectionResetError, ProcessLookupError):
+        return None
+
+
+class _ForkServer:
+    """The fork server of this process, which is started when the first worker is."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._requests: socket.socket | None = None
+
+    def connect(self) -> socket.socket:
+        """Return a connection to a process that is about to be forked."""
+        ours, its = socket.socketpair()
+        with its, self._lock:
+            if self._requests is None or not _give(self._requests, its):
+                self._requests = self._restart()
+                _give(self._requests, its)
+        return ours
+
+    def end(self) -> None:
+        """End it, where it runs; a later connection starts another one."""
+        with self._lock:
+            if self._process is not None and self._requests is not None:
+                self._requests.close()
+                self._requests = None
+                self._process.wait()
+
+    def _restart(self) -> socket.socket:
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        ours, its = socket.socketpair(type=socket.SOCK_SEQPACKET)
+        with its:
+            self._process = subprocess.Popen(
+                [sys.executable, *FORK_SERVER],
+                stdin=its.fileno(),
+                stdout=subprocess.DEVNULL,
+                cwd=PACKAGE_PARENT,
+                # Ctrl-C in the terminal is for the server, which then ends its workers in order.
+                start_new_session=True,
+            )
+        return ours
+
+
+def _give(requests: socket.socket, connection: socket.socket) -> bool:
+    """Give the fork server a connection; return False when it is gone."""
+    try:
+        socket.send_fds(requests, [b"+"], [connection.fileno()])
+    except OSError:
+        requests.close()
+        return False
+    return True
+
+
+_fork_server: Final = _ForkServer()
+atexit.register(_fork_server.end)
