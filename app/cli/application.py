@@ -11,12 +11,14 @@ import json
 import sys
 import traceback
 from collections.abc import Sequence
+from functools import cache
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
 from pydantic import ValidationError
+from typer.main import get_command
 
 from app import __version__
 from app.cli.administration.audit import audit
@@ -73,6 +75,9 @@ from app.recognition.triggers.trigger import SALUTE
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
 CRASHED = 3
+
+_build_command = cache(get_command)
+"""What the tests run a thousand times is built once."""
 
 command_line = typer.Typer(
     name="osg-studio",
@@ -405,7 +410,7 @@ def main(arguments: Sequence[str] | None = None) -> NoReturn:
         given = sys.argv[1:] if arguments is None else arguments
         # The other commands refuse ROS arguments like any unknown option.
         own, ros = split_ros_arguments(given) if given[:1] == ["robot"] else (given, [])
-        command_line(args=own, prog_name="osg-studio", obj=ros)
+        _build_command(command_line)(args=own, prog_name="osg-studio", obj=ros)
     except (OsgError, OSError) as error:
         sys.stderr.write(f"osg-studio: {describe_error(error)}\n")
         sys.exit(BAD_INPUT)

@@ -19,6 +19,7 @@ from app.api.middleware.shutdown import StudioServer
 from app.api.services.studio import Studio
 from app.server import create_app
 from app.settings import Settings
+from tests.store.new_database import put_database
 
 PATIENCE_SECONDS = 60.0
 """How long a test waits for what must happen; a loaded machine is slow, a broken one never."""
@@ -51,6 +52,8 @@ def running(
     settings: Settings, wrap: Callable[[ASGIApp], ASGIApp] | None = None
 ) -> Iterator[Running]:
     """Serve on a free port of loopback until the context ends, behind what `wrap` adds."""
+    if settings.database_url is None:
+        put_database(settings.data_dir / "studio.db")
     app = create_app(settings)
     if wrap:
         # Inside the app: the server asks the app itself for the guard of its connections.

@@ -7,6 +7,7 @@ import pytest
 
 from app.store import Clip, ClipStore, ClipWithJob, Database, JobStore, LanguageStore
 from tests.postgres import Cluster
+from tests.store.new_database import put_database
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -19,7 +20,9 @@ def database_url(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 
 
 @pytest.fixture
-def database(database_url: str) -> Iterator[Database]:
+def database(database_url: str, tmp_path: Path) -> Iterator[Database]:
+    if database_url.startswith("sqlite"):
+        put_database(tmp_path / "studio.db")
     database = Database(database_url)
     database.migrate()
     yield database
@@ -29,6 +32,7 @@ def database(database_url: str) -> Iterator[Database]:
 @pytest.fixture
 def sqlite(tmp_path: Path) -> Iterator[Database]:
     """Return a database in a file, where it is the file that is looked at."""
+    put_database(tmp_path / "studio.db")
     database = Database(f"sqlite:///{tmp_path / 'studio.db'}")
     database.migrate()
     yield database

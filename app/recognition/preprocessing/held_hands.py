@@ -85,7 +85,7 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
     At most two, left then right; none where a hand or the head moves clearly.
 
     """
-    if poses.hands is None or not len(poses) or _moves_clearly(trajectory):
+    if poses.hands is None or not len(poses) or moves_clearly(trajectory):
         return ()
     held = []
     for index, side in enumerate(SIDES):
@@ -120,7 +120,7 @@ def rests_between_ends(trajectory: Trajectory) -> bool:
     )
 
 
-def _moves_clearly(trajectory: Trajectory) -> bool:
+def moves_clearly(trajectory: Trajectory) -> bool:
     """Return whether a hand or the head moves as in a gesture; unknown without a torso."""
     return trajectory.unit == "torso_length" and measure_movement(trajectory) >= MIN_DISPLACEMENT
 

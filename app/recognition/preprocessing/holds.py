@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, cached_property, partial
 from itertools import combinations_with_replacement, pairwise
 from math import ceil
 from typing import Final
@@ -18,6 +19,7 @@ from app.recognition.preprocessing.held_hands import (
     LEAST_SEEN,
     find_held_hands,
     measure_distances,
+    moves_clearly,
 )
 
 MOST_HOLDS: Final = 2
@@ -92,6 +94,8 @@ def find_holds(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
     holds a shape (`find_held_hands`).
 
     """
+    if moves_clearly(trajectory):
+        return ()
     several = [_find_holds_of(side, poses, trajectory) for side in SIDES]
     return max(several, key=len) or find_single_hold(poses, trajectory)
 
@@ -180,12 +184,13 @@ def _divide(shown: FloatArray) -> tuple[int, ...]:
     The most shapes into which they can be divided. Of all ways to do so, the one with most frames
     that show their own shape, and of those the one with the shapes farthest apart.
     """
-    medians: dict[tuple[int, int], FloatArray] = {}
+    # Many divisions have parts in common.
+    part = cache(partial(_Part, shown))
     for count in range(MOST_TOLD, 1, -1):
         found = [
             (*quality, starts)
             for starts in _list_divisions(len(shown), count)
-            if (quality := _judge(shown, starts, medians)) is not None
+            if (quality := _judge([*map(part, starts, (*starts[1:], len(shown)))])) is not None
         ]
         if found:
             return max(found)[-1]
@@ -199,46 +204,61 @@ def _list_divisions(frames: int, count: int) -> Iterator[tuple[int, ...]]:
         yield (0, *(number * least + each for number, each in enumerate(more, start=1)))
 
 
-def _judge(
-    shown: FloatArray, starts: tuple[int, ...], medians: dict[tuple[int, int], FloatArray]
-) -> tuple[int, float] | None:
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """The frames ``shown[start:end]`` of ``(T, 21, 2)``, measured when it is asked for."""
+
+    shown: FloatArray
+    start: int
+    end: int
+
+    @cached_property
+    def shape(self) -> FloatArray:
+        """The median shape, ``(21, 2)``."""
+        return _take_median(self.shown[self.start : self.end])
+
+    @cached_property
+    def distances(self) -> FloatArray:
+        """The distances ``(T,)`` of all frames from the shape."""
+        return measure_distances(self.shown, self.shape)
+
+    @cached_property
+    def spread(self) -> float:
+        """The median distance of the own frames."""
+        return float(np.median(self.distances[self.start : self.end]))
+
+    @cached_property
+    def drift(self) -> float:
+        """How far the first and the last third are apart."""
+        frames = self.shown[self.start : self.end]
+        third = max(1, len(frames) // 3)
+        first, last = (_take_median(part) for part in (frames[:third], frames[-third:]))
+        return float(measure_distances(first[None], last)[0])
+
+
+def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
     """Return how many frames of a division show their own shape, and how far these are apart.
 
     None where two shapes that follow each other are alike, too few frames agree with theirs, or a
     shape between two others is the hand on its way.
-
-    Parameters
-    ----------
-    shown, starts
-        The frames, and where parts begin.
-    medians
-        By start and end the median shapes that are known; more are added.
-
     """
-    parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
-    for start, end in parts:
-        if (start, end) not in medians:
-            medians[start, end] = _take_median(shown[start:end])
-    if any(_measure_drift(shown[slice(*part)]) > MOST_DRIFT for part in parts[1:-1]):
-        return None
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
-        apart = float(measure_distances(medians[one][None], medians[other])[0])
-        spread = max(
-            float(np.median(measure_distances(shown[slice(*part)], medians[part])))
-            for part in (one, other)
-        )
-        if apart < (TWO_STILL_SHAPES if spread <= STILL * apart else TWO_SHAPES):
+        apart = float(measure_distances(one.shape[None], other.shape)[0])
+        if apart < TWO_STILL_SHAPES:
+            return None
+        if apart < TWO_SHAPES and max(one.spread, other.spread) > STILL * apart:
             return None
         nearest = min(nearest, apart)
         for own, foreign in ((one, other), (other, one)):
-            part = shown[slice(*own)]
-            own_side = measure_distances(part, medians[own]) < measure_distances(
-                part, medians[foreign]
-            )
+            frames = slice(own.start, own.end)
+            own_side = own.distances[frames] < foreign.distances[frames]
             if own_side.mean() < AGREEING:
                 return None
             agreeing += int(own_side.sum())
+    # What takes longest comes last.
+    if any(part.drift > MOST_DRIFT for part in parts[1:-1]):
+        return None
     return agreeing, nearest
 
 
@@ -246,12 +266,3 @@ def _take_median(shown: FloatArray) -> FloatArray:
     """Return the median shape ``(21, 2)`` of ``(T, 21, 2)``."""
     median: FloatArray = normalize_hands(np.median(shown, axis=0)[None])[0]
     return median
-
-
-def _measure_drift(shown: FloatArray) -> float:
-    """Return how far the first and the last third of ``(T, 21, 2)`` are apart."""
-    third = max(1, len(shown) // 3)
-    ends = normalize_hands(
-        np.stack([np.median(part, axis=0) for part in (shown[:third], shown[-third:])])
-    )
-    return float(measure_distances(ends[:1], ends[1])[0])

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.errors import GestureError
 from app.recognition.poses.landmarks import LANDMARK_GROUPS, POSE_LANDMARKS, SHOULDERS, TORSO
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 
 MIN_DISPLACEMENT = 0.3
@@ -65,15 +67,22 @@ def measure_displacements(trajectory: Trajectory) -> dict[str, float]:
     in the trajectory's unit; 0 for a landmark that is never seen.
 
     """
-    measured = {}
-    for index, name in enumerate(trajectory.landmarks):
-        path = trajectory.xy[:, index]
-        path = path[np.isfinite(path).all(axis=1)]
-        measured[name] = 0.0
-        if len(path):
-            low, high = np.percentile(path, OUTLIER_PERCENTILES, axis=0)
-            measured[name] = float(np.hypot(*(high - low)))
-    return measured
+    seen: npt.NDArray[np.bool_] = np.asarray(np.isfinite(trajectory.xy).all(axis=2))
+    extents = np.zeros(len(trajectory.landmarks))
+    # Most landmarks are seen all the time, and measured at once in the time of one.
+    always = seen.all(axis=0)
+    if always.any() and len(seen):
+        extents[always] = _measure_extents(trajectory.xy[:, always])
+    for index in np.flatnonzero(seen.any(axis=0) & ~always):
+        extents[index] = _measure_extents(trajectory.xy[seen[:, index], index])
+    return dict(zip(trajectory.landmarks, extents.tolist(), strict=True))
+
+
+def _measure_extents(paths: FloatArray) -> FloatArray:
+    """Return the diagonals of the boxes around paths ``(T, ..., 2)``, ``(...)``."""
+    low, high = np.percentile(paths, OUTLIER_PERCENTILES, axis=0)
+    size = high - low
+    return np.asarray(np.hypot(size[..., 0], size[..., 1]))
 
 
 def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
@@ -92,7 +101,7 @@ def find_salient_landmarks(trajectory: Trajectory) -> tuple[str, ...]:
 
     """
     moved = _eligible_displacements(trajectory)
-    bar = find_least_displacement(trajectory)
+    bar = _find_bar(moved)
     chosen = {name for name, displacement in moved.items() if displacement >= bar}
     if not chosen:
         chosen = _find_other_moving(trajectory, moved)
@@ -117,7 +126,10 @@ def _find_other_moving(trajectory: Trajectory, hands: Mapping[str, float]) -> se
 
 def find_least_displacement(trajectory: Trajectory) -> float:
     """Return the least displacement of a salient landmark, in the trajectory's unit."""
-    moved = _eligible_displacements(trajectory)
+    return _find_bar(_eligible_displacements(trajectory))
+
+
+def _find_bar(moved: Mapping[str, float]) -> float:
     return max(MIN_DISPLACEMENT, MIN_SHARE_OF_LARGEST * max(moved.values(), default=0.0))
 
 
