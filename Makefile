@@ -48,7 +48,7 @@ test: $(VENV)/.development models  ## Check and test everything
 
 # For every change: style, types, layers, the page, and the tests that take no video, browser or process
 # of their own.
-check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes and a half
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes
 	@$(MAKE) --jobs 2 lint quick
 
 # Those in the browser are all slow, and take long to collect.
