@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from playwright.sync_api import Page, expect
 
 from app.settings import Settings
 from tests.api.running import Running, client_of
+from tests.api.running_workers import linux, workers_of
 from tests.bags.exports import checked
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
@@ -54,6 +57,7 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     assert any(re.match(r"Writing the session, \d+ %", words) for words in said), said
 
 
+@linux
 def test_a_session_can_be_cancelled(
     open_page: OpenPage, server: Running, library: Library, settings: Settings
 ) -> None:
@@ -63,7 +67,10 @@ def test_a_session_can_be_cancelled(
     address = {"clip": long, "language": library.language, "recognition": answer.json()["id"]}
     page = open_page(address, scene=False)
     page.get_by_role("button", name="Session as MCAP").click()
-    expect(page.get_by_text("Writing the session")).to_be_visible()
+    page.get_by_text("Writing the session").wait_for()
+    # It takes as long as this test wants.
+    (worker,) = workers_of(os.getpid(), "session")
+    os.kill(worker, signal.SIGSTOP)
     assert faults(page) == []
     page.get_by_role("button", name="Cancel the session").click()
     expect(page.get_by_text("The session is cancelled")).to_be_visible()
