@@ -21,6 +21,9 @@ from app.api.workers.executor import PACKAGE_PARENT
 FORK_SERVER: Final = ("-m", "app.api.workers.fork_server")
 """Arguments of Python that start a fork server."""
 
+END_SECONDS: Final = 5.0
+"""What the fork server may take for its end; it takes some milliseconds."""
+
 
 @functools.cache
 def can_fork() -> bool:
@@ -122,7 +125,10 @@ class _ForkServer:
             if self._process is not None and self._requests is not None:
                 self._requests.close()
                 self._requests = None
-                self._process.wait()
+                try:
+                    self._process.wait(END_SECONDS)
+                except subprocess.TimeoutExpired:
+                    self._process.kill()
 
     def _restart(self) -> socket.socket:
         if self._process is not None:

@@ -1,7 +1,7 @@
 """ONNX session: loads a model once, checks its shapes, and runs it per frame.
 
 ONNX Runtime is imported with the first model: it starts a thread, and a process with threads must
-not fork (`app.api.workers.fork_server`).
+not fork, as the studio's does for its workers.
 """
 
 from __future__ import annotations
