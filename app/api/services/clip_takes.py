@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-from app.api.services.studio import Studio
-from app.recognition import Language, OsgError, Recognizer, Recording
+from app.api.services.studio import Studio, load_recording
+from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import LanguageState
 
 CACHED_CLIPS = 64
-"""Clips whose spotted gestures are kept: spotting takes a fifth of a clip's time."""
+"""Clips whose takes are kept: spotting gestures takes a fifth of a clip's time, and trimming takes
+some milliseconds each."""
 
 
 @dataclass(frozen=True)
@@ -58,16 +59,22 @@ def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tup
     Raises
     ------
     NotFound, ProblemError
-        As `Studio.recording`.
+        As `Studio.recording_file`.
 
     """
-    recording = studio.recording(clip_id)
+    recording = str(studio.recording_file(clip_id))
     trigger = SALUTE if state is None else studio.language(state).trigger
     if state is not None and trigger.spots:
-        return _spot(str(studio.clips.recording(clip_id)), state.revision.document)
+        return _spot(recording, state.revision.document)
+    return _segment(recording, trigger)
+
+
+@lru_cache(CACHED_CLIPS)
+def _segment(recording: str, trigger: Trigger) -> tuple[TakeRange, ...]:
+    """Find what lies between held triggers."""
     return tuple(
         TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
-        for take in takes_in(recording, trigger=trigger)
+        for take in takes_in(load_recording(recording), trigger=trigger)
     )
 
 
@@ -80,5 +87,5 @@ def _spot(recording: str, document: str) -> tuple[TakeRange, ...]:
         return ()
     return tuple(
         TakeRange(found.start, found.end, True, found.start, found.end)
-        for found in spotter.listen(Recording.load(recording).poses)
+        for found in spotter.listen(load_recording(recording).poses)
     )

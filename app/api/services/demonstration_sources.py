@@ -12,7 +12,7 @@ from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import Demonstration
-from app.recognition.recording.segmentation import takes_in
+from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
 from app.store import DemonstrationSource, LanguageState
 
@@ -35,7 +35,7 @@ def keep_source(
     if where.start is None and where.end is None:
         # Who names no range means the clip's only take, from salute to salute.
         trigger = studio.language(state).trigger
-        for take in takes_in(studio.recording(where.clip_id), trigger=trigger):
+        for take in find_brackets(studio.recording(where.clip_id), trigger):
             start, end = take.start, take.end
     source = DemonstrationSource(
         trajectory=key,

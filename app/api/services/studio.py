@@ -134,7 +134,7 @@ class Studio:
 
     def recording(self, clip_id: str) -> Recording:
         """Return what was found in a clip; errors as `recording_file`."""
-        return _recording(str(self.recording_file(clip_id)))
+        return load_recording(str(self.recording_file(clip_id)))
 
     def recording_file(self, clip_id: str) -> Path:
         """Return the file with what was found in a clip.
@@ -176,7 +176,8 @@ class Studio:
 
 
 @lru_cache(CACHED_RECORDINGS)
-def _recording(path: str) -> Recording:
+def load_recording(path: str) -> Recording:
+    """Load a recording's file, or return it as it was loaded not long ago."""
     return Recording.load(path)
 
 

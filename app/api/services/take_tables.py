@@ -6,12 +6,12 @@ from collections.abc import Callable
 from typing import Any
 
 from app.api.http.problems import ProblemError, problem_of
-from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_takes import find_takes
 from app.api.services.stored_recognitions import require_landmarks_of
 from app.api.services.studio import Studio
 from app.evaluation.take_table import row_of_fault, rows_of_clip
 from app.recognition import OsgError, Recognition, Take
+from app.recognition.recording.clip_range import SAME_MOMENT
 from app.store import Clip, LabelledTake, LanguageState, StoreError
 
 SAME_TAKE = 0.5
@@ -53,16 +53,18 @@ def recognize_clip_takes(
 
 def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
     """Return the takes that the studio shows for a clip, with their strokes."""
-    recording, trigger = studio.recording(clip.id), studio.language(state).trigger
+    poses = studio.recording(clip.id).poses
+    # What is spotted is a range that a person could have chosen.
+    margin = SAME_MOMENT if studio.language(state).trigger.spots else 0.0
     return [
         Take(
             start=found.start,
             end=found.end,
             closed=found.closed,
-            poses=demonstration_in(recording, found.start, found.end, trigger=trigger).poses,
+            poses=poses.between(found.stroke_start - margin, found.stroke_end + margin),
             stroke_start=found.stroke_start,
             stroke_end=found.stroke_end,
-            untrimmed=recording.poses.between(found.start, found.end),
+            untrimmed=poses.between(found.start, found.end),
         )
         for found in find_takes(studio, clip.id, state)
     ]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from app.recognition.errors import AmbiguousRangeError, RangeError
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.segmentation import Take, takes_in
+from app.recognition.recording.segmentation import Bracket, cut_take, find_brackets
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 SAME_MOMENT = 1e-3
@@ -57,7 +57,7 @@ def find_demonstration(
         When the range is empty or reversed.
 
     """
-    takes = takes_in(recording, trigger=trigger)
+    takes = find_brackets(recording, trigger)
     poses = recording.poses
     if start is None and end is None:
         if len(takes) > 1:
@@ -66,12 +66,12 @@ def find_demonstration(
                 f"the clip holds {len(takes)} takes ({spans}); say which by start and end"
             )
         if takes:
-            return _shown_in(takes[0], keep_transit)
+            return _shown_in(poses, takes[0], trigger, keep_transit)
     first = float(poses.time[0]) if start is None else start
     last = float(poses.time[-1]) if end is None else end
     for take in takes:
         if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
-            return _shown_in(take, keep_transit)
+            return _shown_in(poses, take, trigger, keep_transit)
     inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
     if last <= first or not len(inside):
         raise RangeError(
@@ -85,13 +85,14 @@ def find_surroundings(
     recording: Recording, start: float, end: float, trigger: Trigger = SALUTE
 ) -> PoseSequence:
     """Return what a range was cut out of: the take around it between its triggers, or the clip."""
-    for take in takes_in(recording, trigger=trigger):
+    for take in find_brackets(recording, trigger):
         if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
-            return take.untrimmed
+            return recording.poses.between(take.start, take.end)
     return recording.poses
 
 
-def _shown_in(take: Take, keep_transit: bool) -> Demonstration:
-    if keep_transit:
-        return Demonstration(take.start, take.end, take.untrimmed)
+def _shown_in(
+    poses: PoseSequence, bracket: Bracket, trigger: Trigger, keep_transit: bool
+) -> Demonstration:
+    take = cut_take(poses, bracket, trim=not keep_transit, trigger=trigger)
     return Demonstration(take.stroke_start, take.stroke_end, take.poses)

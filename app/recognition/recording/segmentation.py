@@ -328,6 +328,14 @@ def takes_in(
     forgotten for `LONGEST_TAKE` seconds, or another trigger stops than starts.
 
     """
+    return tuple(
+        cut_take(recording.poses, bracket, trim=trim, trigger=trigger)
+        for bracket in find_brackets(recording, trigger)
+    )
+
+
+def find_brackets(recording: Recording, trigger: Trigger = SALUTE) -> list[Bracket]:
+    """Find the salutes around each take of a recording; parameters and order as in `takes_in`."""
     machine = TakeMachine.of(trigger)
     times = recording.poses.time.tolist()
     begin, end = trigger.score(recording.poses, recording.salute)
@@ -337,11 +345,7 @@ def takes_in(
     ]
     if times:
         found.append(machine.finish(times[-1]))
-    return tuple(
-        cut_take(recording.poses, bracket, trim=trim, trigger=trigger)
-        for bracket in found
-        if bracket
-    )
+    return [bracket for bracket in found if bracket]
 
 
 def find_takes(

@@ -274,9 +274,10 @@ def split_pieces(motion: Motion) -> list[Piece]:
         return []
     resting = RESTING * float(speed.max())
     peaks, valleys = _turning_points(np.maximum(speed, resting))
+    limits = {valley: _find_limit(motion, valley) for valley in valleys}
     while valleys:
         excess = [
-            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / _find_limit(motion, valley)
+            speed[valley] / min(speed[peaks[i]], speed[peaks[i + 1]]) / limits[valley]
             for i, valley in enumerate(valleys)
         ]
         worst = int(np.argmax(excess))

@@ -40,6 +40,28 @@ def test_all_takes_of_clips_are_in_one_table(server: Running, client: httpx.Clie
     assert client.get(f"/api/v1/recognitions?clip_id={both}").json() == []
 
 
+@pytest.mark.parametrize("trigger", ["salute", "none"])
+def test_a_row_says_of_a_take_what_its_recognition_says(
+    server: Running, client: httpx.Client, trigger: str
+) -> None:
+    library = library_of(server, client, f"by {trigger}")
+    address = f"{LANGUAGES}/{library.language}"
+    client.put(f"{address}/trigger", json={"kind": trigger}).raise_for_status()
+    clip = add_clip(server, "line", "circle", name="both.mp4")
+    takes = client.get(f"/api/v1/clips/{clip}/takes?language_id={library.language}").json()
+    assert takes
+    body = {"id": f"by {trigger}", "clip_ids": [clip]}
+    rows = client.post(f"{address}/take-table", json=body).json()["rows"]
+    told = ("nearest", "confidence")
+    for row, take in zip(rows, takes, strict=True):
+        wanted = {"start": take["start"], "end": take["end"]}
+        body = {"clip_id": clip, "language_id": library.language} | wanted
+        recognition = client.post("/api/v1/recognitions", json=body).json()
+        assert [row[name] for name in told] == pytest.approx(
+            [recognition[name] for name in told], abs=1e-3
+        )
+
+
 def test_a_table_of_an_absent_clip_is_refused(server: Running, client: httpx.Client) -> None:
     library = library_of(server, client, "lone")
     body = {"id": "mine", "clip_ids": ["absent"]}
