@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import httpx
 
@@ -71,7 +73,7 @@ def add_clip(
     clips = server.studio.clips
     partial = clips.new_partial()
     if video is None:
-        write_clip(partial, frames=len(recording.poses), container_format="mp4")
+        partial.write_bytes(_small_video(len(recording.poses)))
     else:
         shutil.copyfile(video, partial)
     width, height = recording.poses.frame_size
@@ -88,6 +90,12 @@ def add_clip(
     recording.save(clips.recording(clip.id))
     server.studio.jobs.complete(added.job.id, len(recording.poses), recording.warnings)
     return clip.id
+
+
+@cache
+def _small_video(frames: int) -> bytes:
+    with TemporaryDirectory() as folder:
+        return write_clip(Path(folder, "small.mp4"), frames=frames).read_bytes()
 
 
 def library_of(server: Running, client: httpx.Client, name: str) -> Library:

@@ -75,9 +75,11 @@ def test_the_picture_of_a_chosen_clip_is_in_sight_on_a_phone(
     assert page.evaluate("scrollY") == 0
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     # The take, the heart of the clip's controls, is below it.
-    timeline = page.locator("#timeline").bounding_box()
-    assert timeline is not None
-    assert timeline["y"] >= box["y"] + box["height"]
+    timeline = page.locator("#timeline")
+    expect(timeline).to_be_visible()
+    place = timeline.bounding_box()
+    assert place is not None
+    assert place["y"] >= box["y"] + box["height"]
 
 
 def test_colours_follow_the_system_in_the_page_and_in_the_frame(
