@@ -47,15 +47,15 @@ models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 test: $(VENV)/.development models  ## Check and test everything
 	@$(MAKE) --jobs 2 lint pytest
 
-# For every change: style, types, layers, the page, and the tests that take no video, browser or process
-# of their own.
-check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes
+# For every change: style, types, layers, the page, and the tests that take no video, pose model, browser
+# or process of their own.
+check: $(VENV)/.development  ## Check the source and run the quick tests, in two minutes
 	@$(MAKE) --jobs 2 lint quick
 
 # Those in the browser are all slow, and take long to collect.
-quick: $(VENV)/.development $(PAGE_TOOLS) models
-	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci -m "not slow" -q \
-	  --ignore tests/browser
+quick: $(VENV)/.development $(PAGE_TOOLS)
+	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci \
+	  -m "not slow and not models" -q --ignore tests/browser
 
 # What the tests execute, by branch, in their processes too; takes longer than the tests alone. Of the
 # quick tests alone: make coverage TESTS='-m "not slow"'.

@@ -39,9 +39,12 @@ def pytest_collection_finish() -> None:
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Count what runs on PostgreSQL or S3, processes of their own, among the slow tests."""
-    if "postgresql" in item.name or "s3" in getattr(item, "fixturenames", ()):
+    """Mark what needs models, and as slow what runs on PostgreSQL or S3, other processes."""
+    fixtures = getattr(item, "fixturenames", ())
+    if "postgresql" in item.name or "s3" in fixtures:
         item.add_marker("slow")
+    if "installed_models" in fixtures:
+        item.add_marker("models")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
