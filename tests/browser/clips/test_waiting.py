@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
 from playwright.sync_api import expect
 
+from tests.api.running import until
+from tests.api.running_workers import linux, workers_of
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.short_clips import shortened
@@ -19,6 +23,7 @@ SECONDS = 2.5
 """Of the clip: enough frames for progress and an estimate of the time left."""
 
 
+@linux
 def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     open_page: OpenPage, thin_clip: Callable[[str], Path], tmp_path: Path
 ) -> None:
@@ -35,12 +40,17 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     )
     clip = shortened(thin_clip("line-test-2"), tmp_path / "short.mp4", SECONDS)
     drop(page, *[clip] * 3, names=names)
+    # The first one takes as long as this test looks at the queue.
+    until(lambda: workers_of(os.getpid()))
+    (worker,) = workers_of(os.getpid())
+    os.kill(worker, signal.SIGSTOP)
     card = page.locator("#batch")
     expect(card).to_contain_text("0 of 3 clips done")
     expect(card).to_be_in_viewport(ratio=1)
     queued = page.get_by_role("list", name="Clips").get_by_role("listitem")
     expect(queued.filter(has_text="Next in the queue")).to_have_count(1)
     expect(queued.filter(has_text="Number 2 of 2 in the queue")).to_have_count(1)
+    os.kill(worker, signal.SIGCONT)
     # Only the clip that runs has a bar, and its name stands in the card.
     expect(queued.get_by_role("progressbar")).to_have_count(1)
     expect(card).to_contain_text(re.compile(r"one\.mp4: \d+ of \d+ frames"), timeout=EXTRACTION_MS)

@@ -49,6 +49,7 @@ def test_targets_are_large_and_contrast_is_high(
     page.reload()
     expect(page.get_by_role("button", name="1 demonstration of circle")).to_be_visible()
     expect(page.locator("body")).to_have_css("background-color", "rgb(255, 255, 255)")
+    expect(page.locator("#timeline")).to_be_visible()
     assert page.evaluate(SMALL) == []
     assert page.evaluate(COVERED) == []
     assert faults(page) == []
