@@ -7,7 +7,6 @@ import httpx
 import pytest
 
 from app.api.services.studio import Studio
-from app.recognition.models import installed_models
 from app.settings import Settings
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, client_of, running
@@ -60,11 +59,3 @@ def language_id(client: httpx.Client) -> str:
 def small_clip(tmp_path: Path) -> Path:
     """Return a clip of twelve frames in which nobody is."""
     return write_clip(tmp_path / "small.mp4")
-
-
-@pytest.fixture
-def models() -> None:
-    """Skip where the pose models are not installed."""
-    missing = [model.name for model in installed_models() if model.state != "ok"]
-    if missing:
-        pytest.skip(f"needs the models {missing}: run `osg-studio models install`")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
+
+from tests.api.running import until
 
 linux = pytest.mark.skipif(not Path("/proc/self").exists(), reason="finds processes in /proc")
 
@@ -18,6 +21,14 @@ def workers_of(parent: int, command: str = "record") -> list[int]:
     parents = processes(f"osg {command}")
     starting = {parent, *fork_servers_of(parent)}
     return [worker for worker in parents if parents[worker] in starting]
+
+
+def hold_worker(parent: int, command: str = "record") -> int:
+    """Stop the one worker of `parent` that does `command`, once it runs, and return its id."""
+    until(lambda: workers_of(parent, command))
+    (worker,) = workers_of(parent, command)
+    os.kill(worker, signal.SIGSTOP)
+    return worker
 
 
 def fork_servers_of(parent: int) -> list[int]:

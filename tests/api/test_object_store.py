@@ -46,7 +46,7 @@ def test_a_clip_of_one_server_is_played_and_recognised_on_the_other(
 
 
 def test_what_a_job_finds_is_read_on_the_other_server(
-    servers: tuple[Running, Running], small_clip: Path, s3: S3Server, models: None
+    servers: tuple[Running, Running], small_clip: Path, s3: S3Server, installed_models: None
 ) -> None:
     one, two = servers
     with client_of(one.address) as client:
@@ -78,7 +78,7 @@ def test_while_the_object_store_is_away_requests_are_asked_to_come_again(
 
 @linux
 def test_a_job_keeps_what_it_found_until_the_object_store_is_back(
-    servers: tuple[Running, Running], small_clip: Path, s3: S3Server, models: None
+    servers: tuple[Running, Running], small_clip: Path, s3: S3Server, installed_models: None
 ) -> None:
     with client_of(servers[0].address) as client:
         clip = upload(client, small_clip).json()["id"]

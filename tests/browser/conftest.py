@@ -23,7 +23,6 @@ from playwright.sync_api import (
 from starlette.responses import HTMLResponse
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.recognition.models import installed_models
 from app.settings import Settings
 from tests.api.running import Running, running
 from tests.conftest import ROOT
@@ -148,11 +147,8 @@ class EmptyFrames:
 
 
 @pytest.fixture(scope="module")
-def clips(settings: Settings) -> Path:
+def clips(settings: Settings, installed_models: None) -> Path:
     """Return the folder of the sample clips; skip where no pose can be found for want of models."""
-    missing = [model.name for model in installed_models() if model.state != "ok"]
-    if missing:
-        pytest.skip(f"needs the models {missing}: run `osg-studio models install`")
     return settings.samples_dir / "clips"
 
 

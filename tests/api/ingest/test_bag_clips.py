@@ -191,7 +191,7 @@ def test_what_packs_to_nothing_does_not_fill_the_disk(tmp_path: Path) -> None:
         assert_nothing_kept(client, settings)
 
 
-@pytest.mark.usefixtures("models")
+@pytest.mark.usefixtures("installed_models")
 def test_a_topic_of_pictures_is_looked_at_like_a_video(
     client: httpx.Client, tmp_path: Path
 ) -> None:

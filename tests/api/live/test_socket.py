@@ -28,7 +28,7 @@ from app.settings import Settings
 from tests.api.running import Running, until
 from tests.conftest import ROOT
 
-pytestmark = pytest.mark.usefixtures("models")
+pytestmark = pytest.mark.usefixtures("installed_models")
 
 EVERY = 3
 """Frames of a 25 Hz clip of which one is sent: what a slow machine manages."""

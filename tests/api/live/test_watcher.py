@@ -16,7 +16,7 @@ from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 from tests.api.live.test_socket import frames_of
 from tests.posed import BY_BELLY, posed_clip, posed_language
 
-pytestmark = [pytest.mark.usefixtures("models"), pytest.mark.slow]
+pytestmark = [pytest.mark.usefixtures("installed_models"), pytest.mark.slow]
 
 
 def watch(recognizer: Recognizer, clip: Path) -> list[Seen | Recognized]:

@@ -17,7 +17,7 @@ import pytest
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.routes.clips.test_extraction_jobs import JOBS
 from tests.api.running import assert_problem, until
-from tests.api.running_workers import alive, linux, workers_of
+from tests.api.running_workers import alive, hold_worker, linux
 from tests.api.serving import SERVE, served
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
@@ -32,9 +32,7 @@ STOP_SECONDS = 90
 def working_on(clip: Path, process: subprocess.Popen[str], client: httpx.Client) -> tuple[str, int]:
     """Upload a clip and freeze its worker; return the job's id and the worker's."""
     job_id: str = upload(client, clip).json()["job_id"]
-    until(lambda: workers_of(process.pid))
-    (worker,) = workers_of(process.pid)
-    os.kill(worker, signal.SIGSTOP)
+    worker = hold_worker(process.pid)
     until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "running")
     return job_id, worker
 

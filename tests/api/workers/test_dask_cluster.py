@@ -22,7 +22,7 @@ from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
 
-pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("models")]
+pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("installed_models")]
 
 JOBS = "/api/v1/jobs"
 FRAMES = 60

@@ -15,7 +15,7 @@ from app.settings import Settings
 from tests.api.running import until
 from tests.recognition.damaged_clips import write_clip
 
-pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("models")]
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("installed_models")]
 
 
 def footage(folder: Path, seen: list[FootageProgress] | None = None) -> Footage:

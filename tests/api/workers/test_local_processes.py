@@ -91,7 +91,7 @@ def test_a_worker_is_ended_with_its_context(tmp_path: Path) -> None:
     assert not clip.with_suffix(".npz").exists()
 
 
-@pytest.mark.usefixtures("way", "models")
+@pytest.mark.usefixtures("way", "installed_models")
 def test_a_worker_has_the_environment_of_the_moment(
     clip: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

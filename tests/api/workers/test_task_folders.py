@@ -109,7 +109,7 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
 
 @linux
 @pytest.mark.slow
-@pytest.mark.usefixtures("models")
+@pytest.mark.usefixtures("installed_models")
 def test_every_kind_of_job_runs_without_a_folder_in_common(
     client: httpx.Client,
     server: Running,

@@ -40,7 +40,7 @@ def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
     assert "0123" not in answer["detail"]
 
 
-@pytest.mark.usefixtures("models")
+@pytest.mark.usefixtures("installed_models")
 def test_extracting_reports_progress_and_leaves_recording_and_pictures(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=5)
     recording, poster = tmp_path / "recording.npz", tmp_path / "poster.jpg"

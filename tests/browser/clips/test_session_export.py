@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import signal
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from playwright.sync_api import Page, expect
 
 from app.settings import Settings
 from tests.api.running import Running, client_of
-from tests.api.running_workers import linux, workers_of
+from tests.api.running_workers import hold_worker, linux
 from tests.bags.exports import checked
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
@@ -69,8 +68,7 @@ def test_a_session_can_be_cancelled(
     page.get_by_role("button", name="Session as MCAP").click()
     page.get_by_text("Writing the session").wait_for()
     # It takes as long as this test wants.
-    (worker,) = workers_of(os.getpid(), "session")
-    os.kill(worker, signal.SIGSTOP)
+    hold_worker(os.getpid(), "session")
     assert faults(page) == []
     page.get_by_role("button", name="Cancel the session").click()
     expect(page.get_by_text("The session is cancelled")).to_be_visible()

@@ -10,8 +10,7 @@ from pathlib import Path
 
 from playwright.sync_api import expect
 
-from tests.api.running import until
-from tests.api.running_workers import linux, workers_of
+from tests.api.running_workers import hold_worker, linux
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.short_clips import shortened
@@ -41,9 +40,7 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     clip = shortened(thin_clip("line-test-2"), tmp_path / "short.mp4", SECONDS)
     drop(page, *[clip] * 3, names=names)
     # The first one takes as long as this test looks at the queue.
-    until(lambda: workers_of(os.getpid()))
-    (worker,) = workers_of(os.getpid())
-    os.kill(worker, signal.SIGSTOP)
+    worker = hold_worker(os.getpid())
     card = page.locator("#batch")
     expect(card).to_contain_text("0 of 3 clips done")
     expect(card).to_be_in_viewport(ratio=1)

@@ -39,7 +39,7 @@ def test_a_clip_is_stored_and_its_job_waits(client: httpx.Client, small_clip: Pa
     assert client.get(CLIPS).json()[0]["id"] == clip["id"]
 
 
-@pytest.mark.usefixtures("models")
+@pytest.mark.usefixtures("installed_models")
 def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: Path) -> None:
     clip_id = upload(client, small_clip).json()["id"]
     until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "done")

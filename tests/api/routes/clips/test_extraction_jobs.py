@@ -14,7 +14,7 @@ import pytest
 from app.settings import Settings
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import assert_problem, client_of, running, until
-from tests.api.running_workers import alive, linux, workers_of
+from tests.api.running_workers import alive, hold_worker, linux, workers_of
 from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
 
@@ -41,13 +41,10 @@ def events_of(client: httpx.Client, job_id: str) -> Iterator[dict[str, Any]]:
 def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
     """Upload a clip, stop its worker in its tracks; return the job's id and the worker's."""
     job_id: str = upload(client, clip).json()["job_id"]
-    until(lambda: workers_of(os.getpid()))
-    (worker,) = workers_of(os.getpid())
-    os.kill(worker, signal.SIGSTOP)
-    return job_id, worker
+    return job_id, hold_worker(os.getpid())
 
 
-@pytest.mark.usefixtures("models")
+@pytest.mark.usefixtures("installed_models")
 def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None:
     accepted = upload(client, ROOT / "languages" / "clips" / "circle-demonstration.mp4").json()
     clip_id, job_id = accepted["id"], accepted["job_id"]
