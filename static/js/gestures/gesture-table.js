@@ -2,21 +2,21 @@
 
 import { BUSY } from "../clips/busy.js";
 import { olderClipsButton } from "../clips/older-clips.js";
-import { heldName, takesLanguage } from "../clips/salutes.js";
+import { heldName } from "../clips/salutes.js";
 import { statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
-import { attempt, complain } from "../core/toasts.js";
+import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
-import { triggerKey } from "../languages/language-trigger.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
+import { forgetFailures, loadTakes, takes } from "./clip-takes.js";
 import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
 
-/** @import { GestureRow, Language, State, Take } from "../core/types.d.ts" */
+/** @import { GestureRow, Language, State } from "../core/types.d.ts" */
 
 /**
  * The table on display; `edited` is what the user chose, `refused` what the server
@@ -43,32 +43,9 @@ let table = null;
 
 /** The table, for code that runs only while it is on display. */
 const onDisplay = () => /** @type {Table} */ (table);
+const isOpen = () => Boolean(table?.list.isConnected);
 let followed = false;
-
-/** @type {Map<string, Take[]>} */
-const takes = new Map(); // by clip; they change with the language's trigger alone
-/** @type {Set<string>} */
-const asked = new Set();
-let foundBy = ""; // the trigger by which they were found
-
-/** Load the takes of the clips that have poses by now. */
-function loadTakes() {
-  if (foundBy !== triggerKey(state)) {
-    foundBy = triggerKey(state);
-    takes.clear();
-    asked.clear();
-  }
-  for (const { id, status } of state.clips)
-    if (status === "done" && !asked.has(id)) {
-      asked.add(id);
-      const by = takesLanguage(state.gestures);
-      attempt("Loading the takes", () => api.clips.takes(id, by)).then((found) => {
-        if (found) takes.set(id, found);
-        else asked.delete(id);
-        draw();
-      });
-    }
-}
+let drawing = false;
 
 /** The language to save into; null for a new one. */
 const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.gestures : null);
@@ -125,6 +102,7 @@ function makeRow(row) {
       className: "poster",
       src: api.clips.poster(clip.id),
       alt: "",
+      loading: "lazy",
       width: 64,
       height: 48,
     }),
@@ -158,8 +136,18 @@ function drawRow(row, problem, element) {
   return drawn;
 }
 
+/** Draw once for all that comes before the next picture on the screen. */
+function drawSoon() {
+  if (drawing) return;
+  drawing = true;
+  requestAnimationFrame(() => {
+    drawing = false;
+    draw();
+  });
+}
+
 function draw() {
-  if (!table?.list.isConnected) return;
+  if (!table || !isOpen()) return;
   const { list, name, note: line, refused, save: button, saving, target } = table;
   const all = rows();
   const { problems, note } = problemsOf(all, targetLanguage()?.labels ?? []);
@@ -321,11 +309,13 @@ export function openGestureTable() {
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;
   dialog.showModal();
+  forgetFailures();
+  const load = () => loadTakes(isOpen, drawSoon);
   if (!followed) {
     followed = true;
-    follow(["clips", "gestures"], loadTakes);
+    follow(["clips", "gestures"], load);
     follow(["clips", "jobs", "gestures"], draw);
-  } else loadTakes();
+  } else load();
   draw();
   /** @type {HTMLElement | null} */ (list.querySelector(".row-label"))?.focus();
 }

@@ -60,6 +60,8 @@ def test_a_link_to_an_older_clip_opens_it_and_scrolling_loads_those_between(
     expect(page.locator("#clip-name")).to_have_text("dive 3.mp4")
     expect(page.locator("#clips > .chosen")).to_contain_text("dive 3.mp4")
     assert rows(page) == CLIPS_OF_A_PAGE + 1
+    asked: list[str] = []
+    page.on("request", lambda request: asked.append(request.url))
     page.get_by_role("button", name=re.compile("Make gestures of")).click()
     dialog = page.get_by_role("dialog")
     older = dialog.get_by_role("button", name=re.compile("older clips"))
@@ -68,3 +70,6 @@ def test_a_link_to_an_older_clip_opens_it_and_scrolling_loads_those_between(
     page.locator("#clips").evaluate("list => list.scrollTo(0, 0)")
     page.locator("#clips").evaluate("list => list.scrollTo(0, list.scrollHeight)")
     expect(page.locator("#clips > li")).to_have_count(CLIPS + 1)
+    # What the open table asked of a clip, it asked once; what is left when it closes, not at all.
+    takes = [url for url in asked if "/takes" in url]
+    assert 0 < len(takes) == len(set(takes)) < CLIPS_OF_A_PAGE
