@@ -1,5 +1,6 @@
 """Page files: kept by the browser for as long as they are the same."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,12 +11,20 @@ from app import resources
 from app.settings import Settings
 from tests.api.running import client_of, running
 
-PAGE = '<script type="module" src="/static/js/main.js"></script>'
+PAGE = """
+<link rel="icon" href="/static/icon.svg" />
+<link rel="stylesheet" href="/static/styles/base.css" />
+<link rel="stylesheet" href="/static/styles/after.css" />
+<script type="module" src="/static/js/main.js"></script>
+"""
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "js").mkdir()
+    for name in ("js", "styles"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "styles" / "base.css").write_text("a { color: red }")
+    (tmp_path / "styles" / "after.css").write_text("a { color: blue }")
     (tmp_path / "index.html").write_text(PAGE)
     (tmp_path / "js" / "main.js").write_text("one();")
     return tmp_path
@@ -60,6 +69,16 @@ def test_without_a_digest_the_browser_asks_first(client: httpx.Client) -> None:
     assert answer.headers["cache-control"] == "no-cache"
     again = client.get("/static/js/main.js", headers={"If-None-Match": answer.headers["etag"]})
     assert (again.status_code, again.headers["cache-control"]) == (304, "no-cache")
+
+
+def test_all_style_sheets_come_as_one_in_the_order_of_the_page(client: httpx.Client) -> None:
+    (link,) = re.findall('rel="stylesheet" href="([^"]+)"', client.get("/").text)
+    answer = client.get(link)
+    assert answer.text == "a { color: red }\na { color: blue }"
+    assert answer.headers["content-type"].startswith("text/css")
+    assert "immutable" in answer.headers["cache-control"]
+    assert client.head(link).status_code == 200
+    assert client.post(link).status_code == 405
 
 
 @pytest.mark.parametrize("path", ["", "js", "js/none.js", "0123456789abcdef", "../secret"])
