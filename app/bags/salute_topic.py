@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +22,7 @@ LONGEST_HOLD = 0.5
 """Seconds for which a message of the salute holds, without a newer one: the longest gap that a
 trajectory bridges too. A node that died with a salute in view must not salute for ever."""
 
-Stamps = npt.NDArray[np.int64]
+Stamps: TypeAlias = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -207,8 +207,7 @@ def _complexity(image: Image) -> float:
 
 def _hu_of_raw_moments(image: Image) -> FloatArray:
     """Hu's seven polynomials, of raw moments as published instead of normalised central ones."""
-    raw = moments(image)  # type: ignore[no-untyped-call]
-    return np.asarray(moments_hu(raw), dtype=np.float64)  # type: ignore[no-untyped-call]
+    return np.asarray(moments_hu(moments(image)), dtype=np.float64)
 
 
 def _standardise(values: FloatArray) -> FloatArray:

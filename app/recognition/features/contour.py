@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 import cv2
 import numpy as np
@@ -19,11 +20,11 @@ pixels, a tenth of the drawing; on air-drawn digits of other people closing gain
 """
 
 
-BinaryImage = npt.NDArray[np.uint8]
+BinaryImage: TypeAlias = npt.NDArray[np.uint8]
 """``(height, width)``, 255 on a stroke, 0 elsewhere; x to the right, y down."""
 
 
-Polygon = npt.NDArray[np.int32]
+Polygon: TypeAlias = npt.NDArray[np.int32]
 """``(N, 2)`` pixels, x right, y down."""
 
 

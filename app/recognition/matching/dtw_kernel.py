@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from math import prod
 from threading import local
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -19,11 +19,11 @@ import numpy.typing as npt
 from app.recognition.matching.step_distances import ROUNDING
 from app.recognition.poses.sequence import FloatArray
 
-StepCosts = npt.NDArray[np.float32]
+StepCosts: TypeAlias = npt.NDArray[np.float32]
 """Single precision: memory traffic takes most of the time. Descriptors have a mean square of about
 1, of which distances are exact to a millionth."""
 
-Totals = npt.NDArray[np.float32 | np.float64]
+Totals: TypeAlias = npt.NDArray[np.float32 | np.float64]
 
 ROUNDING_OF_STEP_COSTS = 4e-6
 """Distances below it are set to 0 in single precision: rounding errors are about a millionth of the

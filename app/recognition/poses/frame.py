@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses.sequence import FloatArray
 
-Image = npt.NDArray[np.uint8]
+Image: TypeAlias = npt.NDArray[np.uint8]
 """``(height, width, 3)`` RGB, upright, y down."""
 
 Side = Literal["left", "right"]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -44,7 +45,7 @@ arm span one to two."""
 
 UNFOLLOWED = frozenset(POSE_LANDMARKS) - UPPER_BODY
 
-Mask = npt.NDArray[np.bool_]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 
 def find_outliers(trajectory: Trajectory) -> Mask:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -59,8 +60,8 @@ BLEND_SECONDS = 0.25
 """Longest time from a blended frame to one that shows the arms apart: a pose model's smoothing
 has settled by then (from 0.2 to 0.4 s the result is the same)."""
 
-Mask = npt.NDArray[np.bool_]
-SingleArray = npt.NDArray[np.float32]
+Mask: TypeAlias = npt.NDArray[np.bool_]
+SingleArray: TypeAlias = npt.NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, Literal, get_args
+from typing import Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,7 @@ from app.recognition.errors import EstimatorError, ModelError
 Provider = Literal["cpu", "cuda", "tensorrt", "coreml"]
 """What runs the models: the processor, or an accelerator with the processor as its fallback."""
 
-Tensor = npt.NDArray[np.float32]
+Tensor: TypeAlias = npt.NDArray[np.float32]
 
 _RUNTIME_NAMES: Final[dict[Provider, tuple[str, ...]]] = {
     "cpu": ("CPUExecutionProvider",),

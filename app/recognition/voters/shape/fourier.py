@@ -1,6 +1,7 @@
 """Voter `fourier`: Fourier descriptors of the contour."""
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.shape.shape_voter import ShapeVoter
 
-ComplexArray = npt.NDArray[np.complex128]
+ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 
 HARMONICS = 10
 """Harmonics kept on either side of zero (paper: "low-frequency coefficients").
