@@ -184,14 +184,16 @@ def forget_visit(context: BrowserContext, address: str) -> None:
 def open_page(
     browser: Browser, shared_context: BrowserContext, server: Running
 ) -> Iterator[OpenPage]:
-    """Return a function that opens the app as a user who shares nothing with the others.
+    """Return a function that opens the app in a tab.
 
     It takes the query of the address as a mapping, the width and height of the window, the colour
-    scheme, whether viser's frame is loaded (drawing WebGL in software is what takes longest), and
-    whether this browser has never been here.
+    scheme, whether viser's frame is loaded (drawing WebGL in software is what takes longest),
+    whether this browser has never been here, and whether it is a browser of its own: six tabs of
+    one have no connection left. Those with and without a scene share none.
     No page may raise an error or break its content security policy.
     """
     contexts: list[BrowserContext] = []
+    shared: dict[bool, BrowserContext] = {}
     errors: list[str] = []
 
     def open_page(
@@ -201,12 +203,14 @@ def open_page(
         scheme: str = "dark",
         scene: bool = True,
         first_visit: bool = False,
+        alone: bool = False,
     ) -> Page:
         if not shared_context.pages:
             # Stays open, so that the process of the others goes on between two tests.
             shared_context.new_page().goto(f"{server.address}/api/v1/server")
-        context = new_context(browser) if contexts else shared_context
-        contexts.append(context)
+        if alone or scene not in shared:
+            contexts.append(new_context(browser) if contexts else shared_context)
+        context = contexts[-1] if alone else shared.setdefault(scene, contexts[-1])
         if not scene:
             context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
         page = context.new_page()

@@ -45,14 +45,14 @@ def query(tmp_path: Path) -> dict[str, str]:
 
 
 def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
-    """Open every view in a browser of its own, with something to lose."""
+    """Open every view, with something to lose."""
     pages = {
         "studio": open_page(query | {"frame": str(FRAME)}, scene=False),
         "languages": open_page(query | {"view": "languages"}, scene=False),
         "gesture": open_page(query | {"view": "gesture", "gesture": "circle"}, scene=False),
         "phrases": open_page(query | {"view": "phrases"}, scene=False),
-        "live": open_page(query | {"view": "live"}, scene=False),
-        "health": open_page(query | {"view": "health"}, scene=False),
+        "live": open_page(query | {"view": "live"}, scene=False, alone=True),
+        "health": open_page(query | {"view": "health"}, scene=False, alone=True),
     }
     for page in pages.values():
         expect(page.get_by_text("Connected", exact=True)).to_be_visible()
