@@ -96,9 +96,9 @@ def installed_models() -> None:
 def thin_clip(
     sample_clips: Path, installed_models: None, tmp_path_factory: pytest.TempPathFactory
 ) -> Callable[[str], Path]:
-    """Return what makes a copy of a sample clip, given its name, with every second frame.
+    """Return what makes a copy of a sample clip, given its name, with every third frame.
 
-    Its poses are found in half the time; takes and gestures are the same.
+    Its poses are found in a third of the time; takes and gestures are the same.
     """
     folder = tmp_path_factory.mktemp("thin")
 

@@ -24,16 +24,16 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
 
 
 def thinned(clip: Path, copy: Path) -> Path:
-    """Write every second frame of a clip at half its rate, and return the copy's path."""
+    """Write every third frame of a clip at a third of its rate, and return the copy's path."""
     with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
         stream = source.streams.video[0]
         assert stream.average_rate is not None
-        rate = Fraction(stream.average_rate) / 2
+        rate = Fraction(stream.average_rate) / 3
         written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
         written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
         for number, frame in enumerate(source.decode(stream)):
-            if number % 2 == 0:
-                frame.pts, frame.time_base = number // 2, 1 / rate
+            if number % 3 == 0:
+                frame.pts, frame.time_base = number // 3, 1 / rate
                 target.mux(written.encode(frame))
         target.mux(written.encode())
     return copy

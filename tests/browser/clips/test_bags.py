@@ -155,12 +155,13 @@ def test_a_broken_bag_says_why_at_its_upload(open_page: OpenPage, tmp_path: Path
 
 
 def test_pictures_in_a_bag_are_read_like_the_clip_they_come_from(
-    open_page: OpenPage, client: httpx.Client, clips: Path, tmp_path: Path
+    open_page: OpenPage, client: httpx.Client, thin_clip: Callable[[str], Path], tmp_path: Path
 ) -> None:
     languages = client.get("/api/v1/languages").json()
     language = next(each for each in languages if each["name"].startswith("Table 1"))
     rows: list[Row] = []
-    for frame in read_frames(clips / "circle-demonstration.mp4"):
+    frames = list(read_frames(thin_clip("circle-demonstration")))
+    for frame in frames:
         stamp = START + round(frame.time * 1e9)
         content = compressed(frame.image, ".jpg", stamp)
         rows.append(("/camera/image/compressed", content, stamp + DELAY))
@@ -173,7 +174,6 @@ def test_pictures_in_a_bag_are_read_like_the_clip_they_come_from(
     )
     clip_id = clip_shown(page)
     poses = client.get(f"/api/v1/clips/{clip_id}/poses").json()
-    times = [frame.time for frame in read_frames(clips / "circle-demonstration.mp4")]
-    assert poses["time"] == pytest.approx(times, abs=1e-6)
+    assert poses["time"] == pytest.approx([frame.time for frame in frames], abs=1e-6)
     library = Library(clip_id, language["id"], client)
     assert labels_of(library, clip_id) == ["circle"]

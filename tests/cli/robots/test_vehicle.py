@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -67,9 +68,11 @@ def test_without_its_library_it_is_said_what_to_install(
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("installed_models")
 def test_a_gesture_in_a_clip_commands_a_vehicle(
-    osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
+    osg_studio: OsgStudio,
+    tmp_path: Path,
+    sample_clips: Path,
+    thin_clip: Callable[[str], Path],
 ) -> None:
     pytest.importorskip("pymavlink", reason="needs the extra mavlink")
     from tests.robot.mavlink.vehicle import sailing
@@ -79,7 +82,7 @@ def test_a_gesture_in_a_clip_commands_a_vehicle(
         'format = "osg-studio/vehicle-table"\nversion = 1\n[emergency]\nline = "surface"\n'
     )
     language = sample_clips.parent / "osg-table-2.json"
-    dive = ("robot", "--language", language, "--source", sample_clips / "line-test-1.mp4")
+    dive = ("robot", "--language", language, "--source", thin_clip("line-test-1"))
     with sailing(loss=0.2) as vehicle:
         bridge = ("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table)
         ended = osg_studio(*dive, *bridge)

@@ -3,7 +3,7 @@
 import json
 import os
 import signal
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,6 @@ from app.settings import Settings
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import assert_problem, client_of, running, until
 from tests.api.running_workers import alive, hold_worker, linux, workers_of
-from tests.conftest import ROOT
 from tests.recognition.damaged_clips import write_clip
 
 pytestmark = pytest.mark.slow
@@ -44,9 +43,10 @@ def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
     return job_id, hold_worker(os.getpid())
 
 
-@pytest.mark.usefixtures("installed_models")
-def test_progress_and_poses_are_told_until_the_end(client: httpx.Client) -> None:
-    accepted = upload(client, ROOT / "languages" / "clips" / "circle-demonstration.mp4").json()
+def test_progress_and_poses_are_told_until_the_end(
+    client: httpx.Client, thin_clip: Callable[[str], Path]
+) -> None:
+    accepted = upload(client, thin_clip("circle-demonstration")).json()
     clip_id, job_id = accepted["id"], accepted["job_id"]
     events = list(events_of(client, job_id))
     assert events[-1]["status"] == "done"
