@@ -6,19 +6,47 @@ import { state, update } from "./state.js";
 
 /** @import { Job, State } from "./types.d.ts" */
 
+/** @typedef {{ opened: () => void, returned: () => void, seen: () => void, clips: (id: string) => void, languages: (id: string) => void, jobs: (job: Job) => void }} Handlers */
+
 const RETRY = 1000; // ms, as the server asks of the browser
+const UNSEEN = 30_000; // ms without being looked at after which a page gives its connection back
+
+/** @type {EventSource | null} */
+let current = null; // null while nobody looks at the page
 
 /**
  * Listen to every change on the server. `handlers` has a function per kind of event, `clips(id)`,
  * `languages(id)` and `jobs(job)`; `opened()`, which loads what was missed, is called whenever the
- * stream opens, and `returned()` when it opens after a break.
+ * stream opens, `returned()` when it opens after a break, and `seen()` when it opens because
+ * somebody looks at the page again: a browser has six connections to a server for all its tabs, so
+ * a tab in the background keeps none.
  *
- * @param {{ opened: () => void, returned: () => void, clips: (id: string) => void, languages: (id: string) => void, jobs: (job: Job) => void }} handlers
- * @param {boolean} [lost]
+ * @param {Handlers} handlers
  */
-export function followServer(handlers, lost = false) {
+export function followServer(handlers) {
+  let unseen = 0;
+  const look = () => {
+    clearTimeout(unseen);
+    if (document.hidden)
+      unseen = setTimeout(() => {
+        current?.close();
+        current = null;
+      }, UNSEEN);
+    else if (!current) listen(handlers, handlers.seen);
+  };
+  document.addEventListener("visibilitychange", look);
+  listen(handlers);
+  look();
+}
+
+/**
+ * @param {Handlers} handlers
+ * @param {() => void} [back]  what to do after a break, once the stream opens
+ */
+function listen(handlers, back) {
   const stream = api.changes();
-  let away = lost;
+  current = stream;
+  let after = back;
   /** @param {MessageEvent} event */
   const data = (event) => {
     try {
@@ -31,17 +59,20 @@ export function followServer(handlers, lost = false) {
     update({ connected: true });
     // The server sends no event twice: what changed since everything was loaded is loaded again.
     handlers.opened();
-    if (away) {
-      handlers.returned();
+    if (after) {
+      after();
       update({ returns: state.returns + 1 });
     }
-    away = false;
+    after = undefined;
   };
   stream.onerror = () => {
-    away = true;
+    after = handlers.returned;
     update({ connected: false });
     // The browser reconnects by itself, but not after an HTTP error, such as a proxy's 502.
-    if (stream.readyState === EventSource.CLOSED) setTimeout(followServer, RETRY, handlers, true);
+    if (stream.readyState === EventSource.CLOSED)
+      setTimeout(() => {
+        if (current === stream) listen(handlers, handlers.returned);
+      }, RETRY);
   };
   stream.addEventListener("clips", (event) => handlers.clips(data(event).id));
   stream.addEventListener("languages", (event) => handlers.languages(data(event).id));

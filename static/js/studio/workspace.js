@@ -148,6 +148,9 @@ export async function restart() {
   }
 }
 
+/** Show the view again, in a new workspace where the server has closed the former meanwhile. */
+export const showAgain = () => wanted && show(wanted);
+
 /**
  * Show a view; of several in a row only the newest is sent.
  *

@@ -78,7 +78,7 @@ def is_upload(request: Request) -> bool:
 def test_an_upload_goes_on_where_a_killed_server_left_it(
     open_page: OpenPage, server: Address, tmp_path: Path
 ) -> None:
-    clip = padded(tmp_path / "long dive.mp4", 10_000_000)
+    clip = padded(tmp_path / "long dive.mp4", 3_000_000)
     data, port = tmp_path / "data", lasting_port()
     with served(data, port=port) as (process, client):
         server.address = str(client.base_url).rstrip("/")
@@ -86,10 +86,10 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
         expect(page.get_by_text("Connected", exact=True)).to_be_visible()
         network = page.context.new_cdp_session(page)
         slow = {"offline": False, "latency": 0, "downloadThroughput": -1}
-        network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": 500_000})
+        network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": 200_000})
         drop(page, clip)
         uploads = page.get_by_role("list", name="Uploads")
-        until(lambda: sum(path.stat().st_size for path in data.glob("uploads/*")) > 500_000)
+        until(lambda: sum(path.stat().st_size for path in data.glob("uploads/*")) > 200_000)
         process.kill()
         lost = r"Connection lost at (?!0 B)\S+ \SB of .+ continues by itself"
         expect(uploads).to_contain_text(re.compile(lost))

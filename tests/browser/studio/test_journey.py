@@ -163,7 +163,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
 def test_poses_that_are_being_found_can_be_cancelled_and_found_after_all(
     open_page: OpenPage, clips: Path
 ) -> None:
-    page = open_page()
+    page = open_page(scene=False)
     drop(page, clips / "line-demonstration.mp4", names=("cancelled.mp4",))
     item = page.get_by_role("list", name="Clips").get_by_role("listitem").first
     item.get_by_role("button", name="Cancel cancelled.mp4").click()
