@@ -14,12 +14,15 @@ const AT_ONCE = 4; // A library has hundreds of clips, and what else is asked fo
 export const takes = new Map(); // by clip; they change with the language's trigger alone
 /** @type {Set<string>} */
 const asked = new Set();
+/** @type {Set<string>} */
+const failed = new Set();
 let foundBy = ""; // the trigger by which they were found
 let loading = 0;
 
 /** Ask again, at the next time, for the takes that could not be loaded. */
 export function forgetFailures() {
-  for (const id of asked) if (!takes.has(id)) asked.delete(id);
+  for (const id of failed) asked.delete(id);
+  failed.clear();
 }
 
 /**
@@ -43,7 +46,8 @@ export function loadTakes(wanted, found) {
     loading += 1;
     attempt("Loading the takes", () => api.clips.takes(id, by)).then((list) => {
       loading -= 1;
-      if (list && foundBy === key) takes.set(id, list);
+      if (!list) failed.add(id);
+      else if (foundBy === key) takes.set(id, list);
       found();
       loadTakes(wanted, found);
     });

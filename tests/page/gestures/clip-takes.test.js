@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { update } from "../../../static/js/core/state.js";
-import { loadTakes, takes } from "../../../static/js/gestures/clip-takes.js";
+import { forgetFailures, loadTakes, takes } from "../../../static/js/gestures/clip-takes.js";
 
 const clips = (prefix, count) =>
   Array.from({ length: count }, (_, number) => ({ id: `${prefix}${number}`, status: "done" }));
@@ -43,6 +43,22 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   assert.equal(drawn, 9);
   load();
   assert.equal(waiting.length, 0);
+});
+
+test("what is on its way is not asked for again when the table is opened again", async (t) => {
+  const { waiting, one } = answers(t);
+  update({ clips: clips("c", 2) });
+  const open = () => {
+    forgetFailures();
+    loadTakes(
+      () => true,
+      () => {},
+    );
+  };
+  open();
+  open();
+  assert.equal(waiting.length, 2);
+  while (waiting.length) await one();
 });
 
 test("no more are asked for once nobody wants them, and the rest at the next time", async (t) => {
