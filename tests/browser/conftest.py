@@ -192,8 +192,7 @@ def open_page(
     one have no connection left. Those with and without a scene share none.
     No page may raise an error or break its content security policy.
     """
-    contexts: list[BrowserContext] = []
-    shared: dict[bool, BrowserContext] = {}
+    contexts: dict[object, BrowserContext] = {}
     errors: list[str] = []
 
     def open_page(
@@ -208,9 +207,10 @@ def open_page(
         if not shared_context.pages:
             # Stays open, so that the process of the others goes on between two tests.
             shared_context.new_page().goto(f"{server.address}/api/v1/server")
-        if alone or scene not in shared:
-            contexts.append(new_context(browser) if contexts else shared_context)
-        context = contexts[-1] if alone else shared.setdefault(scene, contexts[-1])
+        kind = object() if alone else scene
+        if kind not in contexts:
+            contexts[kind] = new_context(browser) if contexts else shared_context
+        context = contexts[kind]
         if not scene:
             context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
         page = context.new_page()
@@ -226,8 +226,9 @@ def open_page(
     yield open_page
     if contexts:
         forget_visit(shared_context, server.address)
-    for context in contexts[1:]:
-        context.close()
+    for context in contexts.values():
+        if context is not shared_context:
+            context.close()
     assert errors == []
 
 

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import PoseError
+from app.recognition.poses.gaps import FloatArray as FloatArray
 from app.recognition.poses.gaps import fill_all_gaps
 from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, SHOULDERS
-
-FloatArray: TypeAlias = npt.NDArray[np.float64]
 
 SHOULDER_WIDTHS_PER_TORSO = 1.5
 """Torso length over shoulder width, for a diver whose hips are not in view.

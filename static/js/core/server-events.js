@@ -41,12 +41,11 @@ export function followServer(handlers) {
 
 /**
  * @param {Handlers} handlers
- * @param {() => void} [back]  what to do after a break, once the stream opens
+ * @param {() => void} [after]  what to do after a break, once the stream opens
  */
-function listen(handlers, back) {
+function listen(handlers, after) {
   const stream = api.changes();
   current = stream;
-  let after = back;
   /** @param {MessageEvent} event */
   const data = (event) => {
     try {
