@@ -1,4 +1,4 @@
-"""A bag as MCAP: what was seen and recognised in a clip, for tools that know nothing of us.
+"""Bag export: writes the keypoints and recognitions of a clip as MCAP, for general viewers.
 
 Time is the clip's: its first frame is at 0 s, which players show as the beginning of 1970.
 """

@@ -1,4 +1,4 @@
-"""Acceptance: from how many takes it follows that a diver's error rate is below a limit."""
+"""Error-rate bound: how many takes show that a diver's error rate is below a limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kept recordings: what was found in clips before, by the clips' content."""
+"""Recording cache: extracted keypoints of clips, found again by the hash of a clip's content."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""MediaPipe's landmarks as JSON, the ways people write them.
+"""MediaPipe landmarks as JSON, in the common layouts (MediaPipe itself writes no files).
 
 A list of frames, or an object with one under ``frames``. A frame is a list of landmarks, or an
 object with one under ``landmarks``, ``pose_landmarks`` or ``keypoints``. A landmark is an object

@@ -1,4 +1,4 @@
-"""MediaPipe's landmarks as CSV, the ways people write them: no program of its own writes any.
+"""MediaPipe landmarks as CSV, in the common layouts (MediaPipe itself writes no files).
 
 One frame a row, with numbered columns (``x0,y0,z0,v0,x1,...``) or named ones (``nose_x``,
 ``LEFT_WRIST.visibility``), or one landmark a row (``frame,landmark,x,y``).

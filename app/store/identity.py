@@ -1,4 +1,4 @@
-"""Identity of a server: the same after a restart, so that it knows the jobs that it ran before."""
+"""Server identity: the same after a restart, so that a server knows the jobs it ran before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Recognition store: answers kept as they were given."""
+"""Recognition store: results of recognitions, saved unchanged."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Server-sent events: publish/subscribe within the server process."""
+"""Server-sent events: publish and subscribe, within the server process and between servers."""

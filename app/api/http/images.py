@@ -1,4 +1,4 @@
-"""Responses with a JPEG that a job has written, or 404 before that."""
+"""JPEG responses: an image that a job has written, or 404 until then."""
 
 from __future__ import annotations
 

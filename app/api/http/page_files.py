@@ -1,4 +1,4 @@
-"""Page files: what the browser loads the page from, at addresses that carry the contents' digest.
+"""Page files: HTML, scripts and styles of the page, at addresses with a digest of their contents.
 
 A browser keeps them without asking again, and none from before an update stands beside newer ones.
 The style sheets come as one file: twenty requests over a slow link take longer than it.

@@ -1,4 +1,4 @@
-"""ASGI middleware: ends requests whose body comes too slowly."""
+"""ASGI middleware: ends requests whose body arrives too slowly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""ASGI middleware: answers 404 to paths that name nothing, or not what they seem to.
+"""ASGI middleware: answers 404 to paths with a NUL byte, and to ambiguous ones.
 
 The router redirects a path that ends in a slash to the one without it. A browser turns
 ``DELETE /languages/ID/gestures/..`` into ``DELETE /languages/ID/``, which must not delete the

@@ -1,4 +1,4 @@
-"""Heap of the server process: gives what was freed back to the system."""
+"""Heap of the server process: returns freed memory to the system."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ async def keep_trimmed() -> None:
     """Trim the heap from time to time until cancelled; return at once where that is not possible.
 
     glibc keeps freed memory between what is in use, in an arena for each thread that ever waited
-    for another: under steady use resident memory grows by some 50 MB an hour while what is in use
-    stays the same (`python -m benchmarks.soak`).
+    for another: under steady use resident memory grows while what is in use stays the same
+    (`python -m benchmarks.soak`, `docs/reliability.md`).
     """
     trim = _find("malloc_trim")
     while trim is not None:

@@ -1,4 +1,4 @@
-"""Range of a clip that a request means, or why it means none."""
+"""Clip ranges: the range of a clip that a request selects, or a problem that says what is wrong."""
 
 from __future__ import annotations
 

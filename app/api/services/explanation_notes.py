@@ -1,4 +1,4 @@
-"""Explanation notes: faults of the demonstrations and the range behind a recognition."""
+"""Explanation notes: faults of the demonstrations, and which range was recognised."""
 
 from __future__ import annotations
 

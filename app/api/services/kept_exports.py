@@ -1,4 +1,4 @@
-"""Exports that were written and wait to be fetched."""
+"""Finished exports: kept until they are fetched or expire."""
 
 from __future__ import annotations
 

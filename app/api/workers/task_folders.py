@@ -1,4 +1,4 @@
-"""Task folders: a folder on another machine that stands for the server's own, for one process.
+"""Task folders: copies of the server's files on another machine, for one process.
 
 Where the clips are in an object store, the machines of a cluster share no folder with the server.
 A task then makes a folder of its own, puts into it what its process reads, lets the process work

@@ -1,1 +1,1 @@
-"""Commands of whoever runs a server: tokens, audit log, backup, and where its data lies."""
+"""Commands for administrators of a server: tokens, audit log, backup, data folder."""

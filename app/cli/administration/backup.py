@@ -1,4 +1,4 @@
-"""Commands ``osg-studio backup`` and ``restore``: keep a data folder, and move it."""
+"""Commands ``osg-studio backup`` and ``restore``: save a data folder, and restore it anywhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rejection: novelty detection, which decides whether a query is a gesture of the language at all.
+"""Rejection: novelty detection, which decides whether a take is a gesture of the language.
 
 The fused score (`fusion`) ranks the gestures and is relative to their differences; it says little
 about out-of-vocabulary movements. Novelty (Pimentel et al. 2014) is absolute: each voter's distance

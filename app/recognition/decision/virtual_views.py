@@ -1,4 +1,4 @@
-"""Views: demonstrations turned virtually to how the diver of a query stands.
+"""Virtual views: demonstrations rotated to the facing of the diver in the query.
 
 A camera sees a gesture differently when the diver is turned. A demonstration with depth is turned
 by the angle between the two divers, and compared as the camera would see it then. Depth itself is

@@ -1,4 +1,4 @@
-"""Water choice: which correction of the water the models believe most.
+"""Water choice: selects the water correction with the highest scores of the models.
 
 Grey levels do not tell whether a model can see: a back-lit diver and one in green murk have the
 same range of brightness and need opposite corrections. So the models are asked. Where they are in

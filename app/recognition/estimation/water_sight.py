@@ -1,4 +1,4 @@
-"""Water sight: an estimator's view through water, of files and live streams alike."""
+"""Water sight: runs an estimator on corrected frames, of files and of live streams."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Gaps: what stands for landmarks between the moments at which they are seen."""
+"""Gaps: interpolates landmarks over the moments at which they are not seen."""
 
 from __future__ import annotations
 

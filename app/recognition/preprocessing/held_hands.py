@@ -1,4 +1,4 @@
-"""Held hands: finds the hands whose shape is the gesture, in poses in which nothing else moves."""
+"""Held hands: finds the hands whose shape is the gesture, in takes in which nothing else moves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Holds: the hand shapes that a take holds one after the other, in which nothing else moves."""
+"""Holds: divides a take without movement into the hand shapes that it holds in sequence."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limb length: limits how long an arm's bones can appear in simulated takes."""
+"""Limb length: limits the apparent length of an arm's bones in simulated takes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Outliers: moments at which a landmark is farther away than an arm can go and come back.
+"""Outliers: landmarks that jump farther than an arm can go and come back.
 
 Pose models misplace a landmark for a frame or a few. Between the moments before and after, an arm
 can leave the straight line only as far as its acceleration allows.

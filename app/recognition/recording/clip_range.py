@@ -1,4 +1,4 @@
-"""Range of a recording that a person means: a take, a range chosen by hand, or all of it."""
+"""Clip range: the part of a recording that is meant: a take, a chosen range, or all of it."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Triggers: what begins and ends a take: a salute, a held pose of the arms, or nothing."""
+"""Triggers begin and end a take: a salute, an arm pose, a gesture, or none."""

@@ -1,4 +1,4 @@
-"""Arm pose: where both elbows and wrists are held, and a score of how much a body is so.
+"""Arm pose: positions of elbows and wrists, and a score of how close a body is to them.
 
 Places are relative to the middle of the shoulders and the length of the torso in the same frame,
 so that a stream gives the scores that its recording gives.

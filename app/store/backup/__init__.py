@@ -1,4 +1,4 @@
-"""Backup: a library as one file, which moves it to another machine or database as well."""
+"""Backup: a whole library as one file, which any machine and database can restore."""
 
 from app.store.backup.archive import DATABASE, restore_backup, write_backup
 

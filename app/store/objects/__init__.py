@@ -1,4 +1,4 @@
-"""Object stores: where the clips' files are kept, beyond the folder that the programs read."""
+"""Object stores: where clip files are kept beside the local folder."""
 
 from app.store.objects.object_store import ObjectStore
 from app.store.objects.opening import open_object_store

@@ -1,4 +1,4 @@
-"""Copies of clips on this machine: bounded where an object store has them all."""
+"""Clip cache: local copies of clip files, limited in size when an object store holds all."""
 
 from __future__ import annotations
 

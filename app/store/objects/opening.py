@@ -1,4 +1,4 @@
-"""Opening of the object store that an address names."""
+"""Object store of an address: a shared folder, or S3."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""S3 as an object store: of Amazon, or of a server that speaks the same (MinIO, Ceph)."""
+"""S3 object store: Amazon S3, or a compatible server such as MinIO or Ceph."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Shared folder as an object store: the clips' folder itself, so that there is nothing to do."""
+"""Shared-folder object store: does nothing, because all servers see the same files."""
 
 from __future__ import annotations
 

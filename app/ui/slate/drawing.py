@@ -1,4 +1,4 @@
-"""Drawings: what a slate's page consists of, in millimetres, for any file format."""
+"""Slate drawing: lines, shapes and texts of the page in millimetres, for any file format."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Routers of a language's gestures: their demonstrations, and previews of a change."""
+"""Routers of administration: sign-in, audit log, metrics."""

@@ -1,4 +1,4 @@
-"""Route of a language's trigger: a salute, poses of the arms from clips, or nothing."""
+"""Route of a language's trigger: a salute, arm poses from clips, a gesture, or none."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Body search: finds a person whom the detector alone does not, a turned or a dim one.
+"""Body search: finds rotated or dim persons that the person detector misses.
 
 Divers swim on their sides and head down, and water takes the contrast that the person detector was
 trained on. So its weak candidates count too, in the image turned four ways, and the landmark model

@@ -1,1 +1,1 @@
-"""One module per change of the tables, in the order of their numbers."""
+"""Migrations: one module per change of the tables, linked by their revision numbers."""

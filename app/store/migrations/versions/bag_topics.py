@@ -1,4 +1,4 @@
-"""Clips made of a topic of a dive recording."""
+"""Migration: clips of a topic of a dive recording."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Kinds of clips by name: a further kind needs no column of its own."""
+"""Migration: kinds of clips by name, so that a further kind needs no column."""
 
 import sqlalchemy as sa
 from alembic import op

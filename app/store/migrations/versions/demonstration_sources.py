@@ -1,4 +1,4 @@
-"""The clips that demonstrations come from, so that a gesture can be edited with its clip."""
+"""Migration: the clip of each demonstration, so that a gesture is edited with its clip."""
 
 import sqlalchemy as sa
 from alembic import op

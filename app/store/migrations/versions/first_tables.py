@@ -1,4 +1,4 @@
-"""Clips, jobs, languages with their revisions, recognitions, and which samples were brought."""
+"""Migration: the first tables (clips, jobs, languages, revisions, recognitions, samples)."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Clips made of another program's keypoint file."""
+"""Migration: clips of another program's keypoint file."""
 
 import sqlalchemy as sa
 from alembic import op

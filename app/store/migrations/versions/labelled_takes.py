@@ -1,4 +1,4 @@
-"""Test sets: takes whose gesture is known, kept with their language, and their results."""
+"""Migration: test sets, which are labelled takes of a language and their results."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Who added each clip, for quotas; and the audit log of changes."""
+"""Migration: the owner of each clip, for quotas, and the audit log."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Practice: the gestures that divers were asked to show, and how each was recognised."""
+"""Migration: practice, which is the gestures asked of divers and their recognitions."""
 
 import sqlalchemy as sa
 from alembic import op

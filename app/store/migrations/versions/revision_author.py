@@ -1,4 +1,4 @@
-"""Who is named as a language's author in each of its revisions, for the history."""
+"""Migration: the author of each revision of a language, for the history."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Several servers on one database: which one runs a job, and how often anything changed."""
+"""Migration: several servers on one database, with the owner of a job and a change counter."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Uploads under way count by their owner's quota on every server."""
+"""Migration: uploads under way, which count towards their owner's quota on every server."""
 
 import sqlalchemy as sa
 from alembic import op
