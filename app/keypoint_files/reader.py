@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from app.keypoint_files.deeplabcut import is_deeplabcut, read_deeplabcut
 from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
-from app.keypoint_files.mediapipe_json import read_mediapipe_json
-from app.keypoint_files.mediapipe_table import read_mediapipe_table
-from app.keypoint_files.openpose import is_openpose, read_openpose
-from app.keypoint_files.sleap import read_sleap
+from app.keypoint_files.registry import find_reader
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray, PoseSequence
@@ -22,17 +18,6 @@ from app.recognition.poses.skeletons import find_missing_landmarks, translate_la
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.video_limits import VideoLimits
-
-Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
-
-READERS: Mapping[str, Reader] = {
-    ".csv": read_mediapipe_table,
-    ".json": read_mediapipe_json,
-    ".slp": read_sleap,
-    ".h5": read_sleap,
-    ".hdf5": read_sleap,
-}
-"""By the file's ending; DeepLabCut's CSV is known by its first word, OpenPose by being a folder."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,11 +35,6 @@ class ReadKeypoints:
 
     recording: Recording
     has_hands: bool
-
-
-def is_keypoint_file(path: Path) -> bool:
-    """Return whether a file or folder is to be read as keypoints and not as a video."""
-    return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
 
 
 def read_keypoints(
@@ -115,7 +95,7 @@ def read_keypoints(
 
 def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
     try:
-        table = _reader(path)(path, options, limits)
+        table = find_reader(path)(path, options, limits)
     except (UnicodeDecodeError, csv.Error) as error:
         raise KeypointFileError(f"{path} is no text table ({error}); export it again") from error
     if not np.isfinite(table.xy).all(axis=2).any():
@@ -130,22 +110,6 @@ def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> Keypoin
             f"--keypoint_scale 4"
         )
     return table
-
-
-def _reader(path: Path) -> Reader:
-    if path.is_dir():
-        return read_openpose
-    if not path.is_file():
-        raise KeypointFileError(f"{path} is not a file; give the path of a keypoint file")
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
-        raise KeypointFileError(
-            f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
-            f"folders of OpenPose"
-        )
-    if reader is read_mediapipe_table and is_deeplabcut(path):
-        return read_deeplabcut
-    return reader
 
 
 def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> FloatArray:

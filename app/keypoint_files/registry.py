@@ -1,0 +1,55 @@
+"""Registry of keypoint file formats; a further format is a module with a reader and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from app.keypoint_files.deeplabcut import is_deeplabcut, read_deeplabcut
+from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
+from app.keypoint_files.mediapipe_json import read_mediapipe_json
+from app.keypoint_files.mediapipe_table import read_mediapipe_table
+from app.keypoint_files.openpose import is_openpose, read_openpose
+from app.keypoint_files.sleap import read_sleap
+from app.recognition.errors import KeypointFileError
+from app.recognition.recording.video_limits import VideoLimits
+
+Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
+
+READERS: Mapping[str, Reader] = {
+    ".csv": read_mediapipe_table,
+    ".json": read_mediapipe_json,
+    ".slp": read_sleap,
+    ".h5": read_sleap,
+    ".hdf5": read_sleap,
+}
+"""By the file's ending; DeepLabCut's CSV is known by its first word, OpenPose by being a folder."""
+
+
+def is_keypoint_file(path: Path) -> bool:
+    """Return whether a file or folder is to be read as keypoints and not as a video."""
+    return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
+
+
+def find_reader(path: Path) -> Reader:
+    """Return the reader of a file's or folder's format.
+
+    Raises
+    ------
+    KeypointFileError
+        When there is no such file, or its ending is none of a keypoint file.
+
+    """
+    if path.is_dir():
+        return read_openpose
+    if not path.is_file():
+        raise KeypointFileError(f"{path} is not a file; give the path of a keypoint file")
+    reader = READERS.get(path.suffix.lower())
+    if reader is None:
+        raise KeypointFileError(
+            f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
+            f"folders of OpenPose"
+        )
+    if reader is read_mediapipe_table and is_deeplabcut(path):
+        return read_deeplabcut
+    return reader
