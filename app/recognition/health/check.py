@@ -48,7 +48,7 @@ from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 MOST_ALARMS = 0.1
-"""Share of background motion from which a warning is given. It is no error, because background
+"""Share of background motion from which a note is given. It is no error, because background
 motion is rare between two salutes."""
 
 DUPLICATE = 0.05

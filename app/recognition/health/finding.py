@@ -1,4 +1,4 @@
-"""Findings: errors, warnings and notes of a health report, with remedies."""
+"""Findings: errors and notes of a health report, with remedies."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Finding:
     message
         What is wrong and why that matters, in one sentence or two.
     below_bar
-        Whether it is an error (beyond a threshold) and not a warning.
+        Whether it is an error (beyond a threshold) and not a note.
     remedies
         Edits that reduce it in simulation, the most effective first.
 

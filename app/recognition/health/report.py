@@ -157,7 +157,7 @@ class HealthReport:
     pairs
         Those that were compared, the most confused first.
     findings
-        Errors first, then warnings.
+        Errors first, then notes.
     places
         ``(G, 2)``: the gestures on a map, see `embedding.embed_gestures`.
     neighbours

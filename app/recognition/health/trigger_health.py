@@ -33,7 +33,7 @@ MOST_MISSED = 0.1
 """Share of people whose pose is missed from which it is an error: each has to show it again."""
 
 MOST_AN_HOUR = 60.0
-"""Times an hour of arms that move all the time from which a warning is given: one a minute. Each
+"""Times an hour of arms that move all the time from which a note is given: one a minute. Each
 costs a take that is rejected, not a command, since the second pose is missing."""
 
 SECONDS_AN_HOUR = 3600.0

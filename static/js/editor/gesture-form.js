@@ -1,4 +1,4 @@
-// The form of a gesture: its texts, and the switches of its invariances.
+// The form of a gesture: its texts, and its switches.
 
 import { h } from "../core/dom.js";
 import { limit } from "../core/text-limit.js";
@@ -208,8 +208,8 @@ export function switches() {
   return {
     element: h(
       "section",
-      { className: "panel switches", "aria-label": "Invariances" },
-      h("h2", {}, "Invariances"),
+      { className: "panel switches", "aria-label": "Switches" },
+      h("h2", {}, "Switches"),
       choices.map((each) => each.element),
     ),
     /** @param {Outlook | null} found */

@@ -77,7 +77,7 @@ function remedy({ kind, gesture, text, before, after }, gestures) {
 }
 
 /** @param {Finding} finding */
-function warning({ code, gestures, message, below_bar: below, remedies }) {
+function finding({ code, gestures, message, below_bar: below, remedies }) {
   const mended = new Set(
     remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture),
   );
@@ -88,7 +88,7 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
     h(
       "div",
       { className: "finding-text" },
-      h("p", {}, h("b", {}, below ? "Warning: " : "Note: "), message),
+      h("p", {}, h("b", {}, below ? "Error: " : "Note: "), message),
       remedies.length
         ? h(
             "p",
@@ -125,26 +125,26 @@ function warning({ code, gestures, message, below_bar: below, remedies }) {
 /**
  * Draw the findings of a report; `only` keeps those about the same gestures.
  *
- * @param {Finding[]} warnings
+ * @param {Finding[]} findings
  * @param {string[] | null} [only]
  */
-export function warningsList(warnings, only = null) {
+export function findingsList(findings, only = null) {
   const shown = only
-    ? warnings.filter(
+    ? findings.filter(
         ({ gestures }) =>
           gestures.length === only.length && gestures.every((label) => only.includes(label)),
       )
-    : warnings;
+    : findings;
   if (!shown.length) return null;
   const list = h(
     "ul",
     { className: "findings", "aria-label": "Findings" },
-    shown.slice(0, AT_FIRST).map(warning),
+    shown.slice(0, AT_FIRST).map(finding),
   );
   if (shown.length <= AT_FIRST) return list;
   const rest = h("button", { type: "button" }, `Show all ${shown.length} findings`);
   rest.onclick = () => {
-    list.append(...shown.slice(AT_FIRST).map(warning));
+    list.append(...shown.slice(AT_FIRST).map(finding));
     /** @type {HTMLElement | null} */ (list.children[AT_FIRST].querySelector("button, a"))?.focus();
     rest.remove();
   };

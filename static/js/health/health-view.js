@@ -9,7 +9,7 @@ import { go } from "../core/views.js";
 import { batchSection } from "./clip-test-section.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { compare } from "./finding-links.js";
-import { warningsList } from "./findings-list.js";
+import { findingsList } from "./findings-list.js";
 import { estimateTable } from "./gesture-estimates.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
 import { languageMap, nearestOf } from "./language-map.js";
@@ -36,10 +36,10 @@ const imageOf = (label) =>
   );
 
 /** @param {HealthReport} report */
-function verdict({ ok, warnings }) {
-  const below = warnings.filter((warning) => warning.below_bar).length;
-  const notes = warnings.length - below;
-  const text = ok ? "No warnings" : plural(below, "warning");
+function verdict({ ok, warnings: findings }) {
+  const errors = findings.filter((finding) => finding.below_bar).length;
+  const notes = findings.length - errors;
+  const text = ok ? "No errors" : plural(errors, "error");
   return h(
     "p",
     { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
@@ -199,7 +199,7 @@ function drawReport(report) {
   );
   const threshold = percent(report.bar.confusion);
   return [
-    warningsList(report.warnings),
+    findingsList(report.warnings),
     alone
       ? h(
           "div",

@@ -6,7 +6,7 @@ import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { editLink, pairOf } from "./finding-links.js";
-import { warningsList } from "./findings-list.js";
+import { findingsList } from "./findings-list.js";
 import { boxOf, movingPaths } from "./movement-paths.js";
 import { stepsOf, timeCursor } from "./pair-cursor.js";
 import { rateText } from "./rates.js";
@@ -195,13 +195,13 @@ export async function showPair(box, imageOf) {
   );
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
   const rates = h("ul", { className: "pair-words" });
-  const warnings = h("div", { className: "pair-warnings" });
-  box.append(...[sentences(labels, found), rates, ...sideBySide(found, imageOf), warnings]);
+  const findings = h("div", { className: "pair-findings" });
+  box.append(...[sentences(labels, found), rates, ...sideBySide(found, imageOf), findings]);
   fill = () => {
     const report = state.health?.id === language.id ? state.health.report : null;
     rates.replaceChildren(...rateLines(report, ...labels));
-    warnings.replaceChildren(
-      ...[warningsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
+    findings.replaceChildren(
+      ...[findingsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
     );
   };
   return fill();

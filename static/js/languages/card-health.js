@@ -38,17 +38,17 @@ function promise(line) {
  */
 function write(line, report) {
   if (!report) return;
-  const { warnings } = report;
+  const { warnings: findings } = report;
   line.hidden = false;
   line.className = `health ${report.ok ? "well" : "unwell"}`;
-  const below = warnings.filter((warning) => warning.below_bar);
-  if (below.length)
-    line.textContent = `${plural(below.length, "health warning")}: ${below[0].message}`;
+  const errors = findings.filter((finding) => finding.below_bar);
+  if (errors.length)
+    line.textContent = `${plural(errors.length, "health error")}: ${errors[0].message}`;
   else
-    line.textContent = warnings.length
-      ? `Healthy, with ${plural(warnings.length, "note")}`
+    line.textContent = findings.length
+      ? `Healthy, with ${plural(findings.length, "note")}`
       : "Healthy";
-  line.title = warnings.map((warning) => warning.message).join("\n");
+  line.title = findings.map((finding) => finding.message).join("\n");
 }
 
 async function next() {

@@ -89,7 +89,7 @@ def test_a_switch_that_would_help_is_applied_and_taken_back(
     assert directions() == ["off", "off"]
 
 
-def test_a_rate_is_rounded_as_in_the_warnings(open_page: OpenPage) -> None:
+def test_a_rate_is_rounded_as_in_the_findings(open_page: OpenPage) -> None:
     page = open_page(scene=False)
     rates = [takes / 40 for takes in range(41)]
     rounded = page.evaluate(
