@@ -1,7 +1,7 @@
-/** The rooms of the page, from the bottom: a room imports from those before it and from itself. */
+/** Folders of the page, from the bottom: each imports from those before it and from itself. */
 const ROOMS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
 
-/** Views that build on the rooms; they do not import each other. */
+/** Views, which build on those folders; they do not import each other. */
 const VIEWS = ["administration", "editor", "health", "live", "phrases", "practice"];
 
 const inside = (names) => `^static/js/(${names.join("|")})/`;
