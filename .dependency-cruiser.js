@@ -1,16 +1,16 @@
 /** Folders of the page, from the bottom: each imports from those before it and from itself. */
-const ROOMS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
+const FOLDERS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
 
 /** Views, which build on those folders; they do not import each other. */
 const VIEWS = ["administration", "editor", "health", "live", "phrases", "practice"];
 
 const inside = (names) => `^static/js/(${names.join("|")})/`;
 
-const upwards = ROOMS.map((name, index) => ({
+const upwards = FOLDERS.map((name, index) => ({
   name: `${name}-imports-nothing-above-it`,
   severity: "error",
   from: { path: inside([name]) },
-  to: { path: inside([...ROOMS.slice(index + 1), ...VIEWS]) },
+  to: { path: inside([...FOLDERS.slice(index + 1), ...VIEWS]) },
 }));
 
 const sideways = VIEWS.map((name) => ({

@@ -66,7 +66,7 @@ from app.api.routes.languages import (
 )
 from app.api.routes.recognitions import recognition_pages, recognitions
 from app.api.routes.samples import sample_clips, sample_languages
-from app.api.services.studio import check_store, open_studio
+from app.api.services.running_studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces
 from app.settings import Settings

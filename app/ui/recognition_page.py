@@ -73,13 +73,13 @@ def analysis_page(
             charts.image_row(compared_images(view, recognition, shown.poses)),
         )
     )
-    folder = static_dir() / "analysis"
+    folder = static_dir() / "recognition-page"
     # A script element ends at the first "</", even inside a JSON string.
     embedded = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
     style = "\n".join(
-        (read_tokens(), alias_chart_colours(), (folder / "analysis.css").read_text("utf-8"))
+        (read_tokens(), alias_chart_colours(), (folder / "recognition-page.css").read_text("utf-8"))
     )
-    script = (folder / "analysis.js").read_text("utf-8")
+    script = (folder / "recognition-page.js").read_text("utf-8")
     title = f"{view.title}: {recognition.label or 'not recognised'}"
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'>"

@@ -20,7 +20,7 @@ from typing import Final
 
 import httpx
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.resources import samples_dir
 from app.settings import Settings
 from benchmarks.cost.endurance import allocated_bytes

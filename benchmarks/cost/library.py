@@ -17,7 +17,7 @@ from statistics import median
 import httpx
 
 from app.api.services.language_documents import draft_of
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition import Language
 from app.resources import samples_dir
 from app.server import create_app

@@ -26,7 +26,7 @@ from starlette.types import Message
 from app.api.http.schemas.clips import ClipView
 from app.api.routes.clips.clip_lists import read_page
 from app.api.routes.events import follow_changes
-from app.api.services.studio import open_studio
+from app.api.services.running_studio import open_studio
 from app.settings import Settings
 from app.store import Clip, ClipQuery, ClipStore, Database, Job, JobStatus, JobStore, QuotaStore
 from app.store.models import now

@@ -12,7 +12,7 @@ from app.recognition.poses.sequence import FloatArray
 
 if TYPE_CHECKING:
     # What robots run is tested with these recordings where there is no studio, as on Python 3.10.
-    from app.api.services.studio import Studio
+    from app.api.services.running_studio import Studio
 
 RATE = 20
 SALUTE_SECONDS = 0.6

@@ -16,7 +16,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from app.api.middleware.shutdown import StudioServer
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.server import create_app
 from app.settings import Settings
 from tests.store.new_database import put_database

@@ -13,10 +13,13 @@ async function filesIn(folder, suffix) {
 }
 
 const sheets = await filesIn("styles/", ".css");
-const analysis = [...(await filesIn("analysis/", ".css")), ...(await filesIn("analysis/", ".js"))];
+const recognitionPage = [
+  ...(await filesIn("recognition-page/", ".css")),
+  ...(await filesIn("recognition-page/", ".js")),
+];
 
 test("only tokens.css has colours", async () => {
-  const others = [...sheets, ...analysis, ...(await filesIn("js/", ".js"))];
+  const others = [...sheets, ...recognitionPage, ...(await filesIn("js/", ".js"))];
   for (const file of others.filter((each) => each !== "styles/tokens.css")) {
     assert.deepEqual((await read(file)).match(COLOUR), null, file);
   }
@@ -24,7 +27,7 @@ test("only tokens.css has colours", async () => {
 });
 
 test("every custom property that is used is defined, and the page loads every sheet", async () => {
-  const sources = [...sheets, ...analysis, ...(await filesIn("js/", ".js"))];
+  const sources = [...sheets, ...recognitionPage, ...(await filesIn("js/", ".js"))];
   const text = (await Promise.all(sources.map(read))).join("\n");
   const defined = new Set([...text.matchAll(/["\s{](--[\w-]+)"?:/g)].map(([, name]) => name));
   const used = new Set([...text.matchAll(/var\((--[\w-]+)/g)].map(([, name]) => name));
@@ -42,7 +45,7 @@ test("margins, paddings and gaps are steps of the one scale", async () => {
   // A negative pixel lets two borders lie on each other.
   const raw = (value) =>
     /(?<![\w.])\d*\.?\d+(?:px|r?em|ch|pt)\b/.test(value.replace(/-1px\b/g, ""));
-  for (const file of [...sheets, ...analysis.filter((each) => each.endsWith(".css"))]) {
+  for (const file of [...sheets, ...recognitionPage.filter((each) => each.endsWith(".css"))]) {
     const found = [...(await read(file)).matchAll(SPACING)].filter(([, , value]) => raw(value));
     assert.deepEqual(
       found.map(([declaration]) => declaration.trim()),

@@ -40,7 +40,7 @@ def test_the_panels_have_no_colour_of_their_own() -> None:
 
 
 def test_the_exported_page_defines_every_property_that_it_uses() -> None:
-    sheet = (static_dir() / "analysis" / "analysis.css").read_text("utf-8")
+    sheet = (static_dir() / "recognition-page" / "recognition-page.css").read_text("utf-8")
     text = read_tokens() + alias_chart_colours() + sheet
     used = set(re.findall(r"var\(--([\w-]+)", text))
     assert used <= {*load_palette().dark, *(f"osg-{name}" for name in CHART_COLOURS)}

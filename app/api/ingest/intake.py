@@ -14,7 +14,7 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.quotas import allowance_of, owner_of
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.clip_sources.video_types import HEAD_BYTES

@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError
 from app.api.middleware.identities import Identity, identity_of
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.store import Allowance, Usage
 
 CLOSE = {"Connection": "close"}

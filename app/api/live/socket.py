@@ -20,8 +20,8 @@ from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
-from app.api.live.watcher import Frame, Watcher
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.live.frame_pipeline import Frame, FramePipeline
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import OsgError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
@@ -127,7 +127,7 @@ class _View:
         self._browser = browser
         self._studio = studio
         self._wanted: Listen | None = None
-        self._watcher = Watcher(estimator, studio.settings.water, self._recognizer)
+        self._pipeline = FramePipeline(estimator, studio.settings.water, self._recognizer)
         self._thread = ThreadPoolExecutor(1, "live")
         self._newest: Frame | None = None
         self._arrived = asyncio.Event()
@@ -158,7 +158,7 @@ class _View:
     def close(self) -> None:
         """Wait for the look that goes on, and release the models."""
         self._thread.shutdown()
-        self._watcher.close()
+        self._pipeline.close()
 
     async def _receive(self) -> None:
         """Keep the newest frame, and do what else is asked."""
@@ -210,7 +210,7 @@ class _View:
             self._arrived.clear()
             assert frame is not None
             try:
-                answers = await loop.run_in_executor(self._thread, self._watcher.look, frame)
+                answers = await loop.run_in_executor(self._thread, self._pipeline.look, frame)
             except OsgError as error:
                 raise _End(UNSUPPORTED_DATA, str(error)) from error
             for answer in answers:

@@ -13,7 +13,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
 from app.api.middleware.connections import GuardedProtocol
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 
 ENDING_SECONDS = 2.0
 """Time for open requests once the server is to stop: all but checks and long explanations are done

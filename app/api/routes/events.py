@@ -12,7 +12,7 @@ from sse_starlette import EventSourceResponse, ServerSentEvent
 from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.routes.clips.extraction_jobs import EVENT_STREAM, current_view
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 
 router = APIRouter(prefix="/events", tags=["events"])
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 
-from app.api.services.studio import Studio, load_recording
+from app.api.services.running_studio import Studio, load_recording
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter

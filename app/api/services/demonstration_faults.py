@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from app.api.services.running_studio import Studio
 from app.api.services.salute_ranges import Outline, count_salutes, outline_of
-from app.api.services.studio import Studio
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 CUT_SHARE = 0.2

@@ -7,8 +7,8 @@ import json
 
 from app.api.http.schemas.gestures import NewDemonstration, SourceView
 from app.api.services.demonstration_faults import describe_fault
+from app.api.services.running_studio import Studio
 from app.api.services.salute_ranges import count_salutes_in_clip
-from app.api.services.studio import Studio
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import Demonstration

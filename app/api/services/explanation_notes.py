@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from app.api.services.demonstration_faults import describe_count
 from app.api.services.demonstration_sources import sources_in
+from app.api.services.running_studio import Studio
 from app.api.services.salute_ranges import count_salutes_in_clip
-from app.api.services.studio import Studio
 from app.recognition import Language
 from app.recognition.triggers.trigger import Trigger
 from app.store import RecognitionRecord

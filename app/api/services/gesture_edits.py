@@ -13,7 +13,7 @@ from app.api.http.schemas.gestures import (
     NewDemonstration,
 )
 from app.api.services.clip_ranges import demonstration_in
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
 from app.recognition.recording.clip_range import Demonstration

@@ -14,7 +14,7 @@ from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal
 from app.recognition.language.grammar_entry import grammar_to_entry

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition.poses.landmarks import WRISTS
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording

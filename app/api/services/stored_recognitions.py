@@ -10,7 +10,7 @@ from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.language.requirements import require_seen_landmarks

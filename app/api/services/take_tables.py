@@ -7,8 +7,8 @@ from typing import Any
 
 from app.api.http.problems import ProblemError, problem_of
 from app.api.services.clip_takes import find_takes
+from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import require_landmarks_of
-from app.api.services.studio import Studio
 from app.evaluation.take_table import row_of_fault, rows_of_clip
 from app.recognition import OsgError, Recognition, Take
 from app.recognition.recording.clip_range import SAME_MOMENT

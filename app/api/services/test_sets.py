@@ -20,7 +20,7 @@ from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import find_sources
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.api.workers.test_takes import RecognizedTake, TakeToRecognize, TestRunRequest
 from app.evaluation.proportion import Share
 from app.store import (

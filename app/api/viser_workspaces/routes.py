@@ -9,7 +9,7 @@ from fastapi import APIRouter, Path, Response
 from pydantic import BaseModel, ConfigDict
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.api.viser_workspaces.open_workspaces import CurrentWorkspaces, find
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.recognition.errors import OsgError

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import load_language, load_recognition
-from app.api.services.studio import Studio
 from app.recognition import Language
 from app.store import RecognitionRecord
 from app.ui.workspace import WorkspaceView

@@ -9,7 +9,7 @@ import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { frameShown } from "./playback.js";
-import { supportOf } from "./support.js";
+import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";

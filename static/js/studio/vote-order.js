@@ -1,6 +1,6 @@
 // The order and the numbers of the vote table: pure functions of a recognition.
 
-import { supportOf } from "./support.js";
+import { supportOf } from "./vote-support.js";
 
 /** @import { Recognition } from "../core/types.d.ts" */
 

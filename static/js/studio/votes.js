@@ -7,7 +7,7 @@ import { percent, plural, readable } from "../core/format.js";
 import { selectedClip, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { tryOut } from "./intervention-trial.js";
-import { supportOf } from "./support.js";
+import { supportOf } from "./vote-support.js";
 import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from "./vote-order.js";
 
 /** @import { Recognition, State } from "../core/types.d.ts" */

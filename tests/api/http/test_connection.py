@@ -12,7 +12,7 @@ import pytest
 
 from app.api.routes.gestures import previews
 from app.api.routes.languages import pair_differences
-from app.api.services.studio import MOST_COMPUTATIONS
+from app.api.services.running_studio import MOST_COMPUTATIONS
 from app.recognition.explanation.pair_difference import compare_pair
 from app.recognition.health.gesture_estimate import GestureEstimate
 from app.recognition.recognizer import Recognizer

@@ -20,8 +20,8 @@ from websockets.sync.connection import Connection
 from websockets.typing import Origin
 
 from app.api.http.websockets import UNSUPPORTED_DATA
+from app.api.live.frame_pipeline import decode_frame
 from app.api.live.socket import MESSAGE_TOO_BIG, MOST_VIEWS, TRY_AGAIN_LATER
-from app.api.live.watcher import decode_frame
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.settings import Settings

@@ -5,7 +5,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.store import Clip, NotFound
 from tests.api.languages import LANGUAGES, add_gesture

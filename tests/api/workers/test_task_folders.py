@@ -11,7 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.api.workers.executor import TaskFiles
 from app.api.workers.task_folders import OwnFolders, Written
 from app.recognition import Recording

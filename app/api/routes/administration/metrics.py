@@ -7,7 +7,7 @@ import shutil
 from fastapi import APIRouter, Request, Response
 
 from app.api.observation.metrics import MEDIA_TYPE
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 
 router = APIRouter()
 

@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 from app.api.http.problems import problem_responses
 from app.api.middleware.access import COOKIE
 from app.api.middleware.identities import identity_of
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.store import Role
 
 router = APIRouter(prefix="/session", tags=["administration"])

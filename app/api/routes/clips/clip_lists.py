@@ -12,7 +12,7 @@ from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.clips import ClipView
 from app.api.services.clip_responses import view_clip
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.store import ClipQuery, ClipStore, JobStatus
 
 MOST_LISTED: Final = 1000

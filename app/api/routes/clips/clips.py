@@ -22,7 +22,7 @@ from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import require_quota
 from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition.poses.sequence import PoseSequence
 from app.store import ClipWithJob, JobStatus
 

@@ -14,7 +14,7 @@ from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.jobs import JobView
 from app.api.jobs.job import Progress
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.store import Job, JobStatus, NotFound
 
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {

@@ -20,7 +20,7 @@ from app.api.jobs.bag_export import BagExportJob
 from app.api.jobs.extraction import files_of
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.bag_export_request import BagExportRequest, ExportedRecognition
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.trigger_entry import trigger_to_entry

@@ -29,7 +29,7 @@ from app.api.ingest.intake import (
 from app.api.ingest.multipart import display_name, require_space
 from app.api.ingest.quotas import allowance_of, owner_of
 from app.api.middleware.body_limit import too_large
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
 
 VERSION: Final = "1.0.0"

@@ -13,7 +13,7 @@ from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import TriggerLanguage
 from app.api.services.clip_takes import trigger_of
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.api.workers.pictures import thumbnails_in
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray

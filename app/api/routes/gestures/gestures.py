@@ -27,7 +27,7 @@ from app.api.services.gesture_edits import (
 )
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
 

@@ -23,7 +23,7 @@ from app.api.services.gesture_edits import (
     gesture_in,
     set_switches,
 )
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png

@@ -14,7 +14,7 @@ from app.api.http.revisions import Revision
 from app.api.jobs.check import CheckJob
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.worker_messages import Failed
 from app.store import LanguageState
 

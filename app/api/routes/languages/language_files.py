@@ -18,7 +18,7 @@ from app.api.http.schemas.values import Name
 from app.api.ingest.multipart import receive_body
 from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_responses import announce
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.language_files import ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat

@@ -7,7 +7,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
 from app.recognition.gestures.tuning import MAX_SIMPLIFICATION

@@ -20,7 +20,7 @@ from app.api.http.schemas.languages import (
 )
 from app.api.services.language_documents import draft_of, edit_document, name_of_copy
 from app.api.services.language_responses import announce, answer, view_summary
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.recognition import Language
 from app.recognition.language.grammar_entry import entry_to_grammar
 from app.recognition.language.tuning_entry import entry_to_tuning

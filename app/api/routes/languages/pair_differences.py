@@ -13,7 +13,7 @@ from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.recognition import Recognizer
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities

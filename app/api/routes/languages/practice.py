@@ -11,9 +11,9 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.stored_recognitions import load_situation, recognize_range
-from app.api.services.studio import CurrentStudio, Studio
-from app.evaluation.acceptance import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
+from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.store import LanguageState, PracticeTake

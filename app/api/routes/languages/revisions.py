@@ -19,7 +19,7 @@ from app.api.http.schemas.languages import (
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, view_gesture
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 

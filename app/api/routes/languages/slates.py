@@ -8,7 +8,7 @@ from fastapi import APIRouter, Response
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 from app.ui.slate.layout import lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg

@@ -13,7 +13,7 @@ from app.api.http.schemas.take_tables import TakeRowView, TakeTableRequest, Take
 from app.api.jobs.job import JobCancelled
 from app.api.jobs.take_table import TakeTableJob
 from app.api.middleware.shutdown import stopping
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.take_tables import recognize_clip_takes
 from app.evaluation.take_table import write_csv
 from app.store import Clip, LanguageState

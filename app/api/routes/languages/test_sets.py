@@ -11,7 +11,7 @@ from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraf
 from app.api.jobs.job import JobCancelled
 from app.api.jobs.test_run import test_run_key
 from app.api.middleware.shutdown import stopping
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.test_sets import (
     add_labelled,
     test_run_of,

@@ -12,7 +12,7 @@ from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.triggers import HeldPose, TriggerDraft
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce
-from app.api.services.studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.errors import TriggerError
 from app.recognition.triggers.arm_pose import ArmPose

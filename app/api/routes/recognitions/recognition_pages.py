@@ -8,8 +8,8 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
+from app.api.services.running_studio import CurrentStudio
 from app.api.services.stored_recognitions import load_recognition, load_situation
-from app.api.services.studio import CurrentStudio
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.charts import data_url

@@ -10,12 +10,12 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label
 from app.api.services.explanation_notes import write_notes
+from app.api.services.running_studio import CurrentStudio
 from app.api.services.stored_recognitions import (
     load_situation,
     recognize_range,
     view_recognition,
 )
-from app.api.services.studio import CurrentStudio
 from app.recognition.explanation.explanation import explain
 
 MOST_LISTED = 500

@@ -13,7 +13,7 @@ from app.api.http.schemas.samples import SampleChoice, SampleView
 from app.api.ingest.intake import inspect, require_place_in_queue, store
 from app.api.ingest.multipart import display_name
 from app.api.ingest.quotas import require_quota
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 
 router = APIRouter(prefix="/samples", tags=["samples"])
 

@@ -8,7 +8,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.samples import SampleChoice, SampleLanguageView
 from app.api.services.language_responses import announce
-from app.api.services.studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio
 
 router = APIRouter(prefix="/samples/languages", tags=["samples"])
 

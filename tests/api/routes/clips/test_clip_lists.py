@@ -7,7 +7,7 @@ import re
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.store import ClipWithJob, JobStatus
 from tests.store.conftest import add_clip
 

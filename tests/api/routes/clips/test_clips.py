@@ -5,7 +5,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.settings import Settings
 from app.store import Clip
 from tests.api.recordings import add_recorded_clip, recording_of

@@ -7,7 +7,7 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition import Language
 from app.recognition.features.png import decode_png
 from tests.api.languages import LANGUAGES, add_gesture

@@ -8,7 +8,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition import Recording
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS

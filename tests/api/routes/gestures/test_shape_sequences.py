@@ -5,7 +5,7 @@ from __future__ import annotations
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition.features.png import decode_png
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip

@@ -11,7 +11,7 @@ import httpx
 import pytest
 
 from app.api.jobs.test_run import test_run_key as key_of_run
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.store import JobStatus
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of

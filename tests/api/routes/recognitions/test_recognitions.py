@@ -3,7 +3,7 @@
 import httpx
 import pytest
 
-from app.api.services.studio import Studio
+from app.api.services.running_studio import Studio
 from app.recognition.gestures.profile import PROFILES
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of

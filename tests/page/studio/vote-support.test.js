@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { supportOf } from "../../../static/js/studio/support.js";
+import { supportOf } from "../../../static/js/studio/vote-support.js";
 
 test("the support of a gesture is the weight of its voters, not their number", () => {
   const support = supportOf({

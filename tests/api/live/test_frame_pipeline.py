@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.api.live.watcher import Frame, Recognized, Seen, Watcher
+from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized, Seen
 from app.recognition import OsgError, Recognizer
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.factory import NO_HANDS
@@ -20,11 +20,13 @@ pytestmark = [pytest.mark.usefixtures("installed_models"), pytest.mark.slow]
 
 
 def watch(recognizer: Recognizer, clip: Path) -> list[Seen | Recognized]:
-    with closing(Watcher(create_estimator(hands=NO_HANDS), "auto", lambda: recognizer)) as watcher:
+    with closing(
+        FramePipeline(create_estimator(hands=NO_HANDS), "auto", lambda: recognizer)
+    ) as pipeline:
         return [
             answer
             for time, jpeg in frames_of(clip)
-            for answer in watcher.look(Frame(time, jpeg, arrived=0.0))
+            for answer in pipeline.look(Frame(time, jpeg, arrived=0.0))
         ]
 
 
@@ -46,7 +48,7 @@ def test_a_language_that_is_gone_leaves_the_salute() -> None:
         raise OsgError("there is no such language")
 
     frame = next(frames_of(posed_clip("circle-by-belly")))
-    with closing(Watcher(create_estimator(hands=NO_HANDS), "auto", refuse)) as watcher:
-        (seen,) = watcher.look(Frame(*frame, arrived=0.0))
+    with closing(FramePipeline(create_estimator(hands=NO_HANDS), "auto", refuse)) as pipeline:
+        (seen,) = pipeline.look(Frame(*frame, arrived=0.0))
     assert isinstance(seen, Seen)
     assert not seen.held

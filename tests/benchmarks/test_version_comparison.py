@@ -1,7 +1,7 @@
 """Answers: what two versions of the program say of the same takes."""
 
 from app.recognition import Recognizer
-from benchmarks.answers import answer, differences
+from benchmarks.version_comparison import answer, differences
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line, recording
 

@@ -1,8 +1,8 @@
-"""Acceptance: the rule of three, and the exact bound of Clopper and Pearson."""
+"""Error-rate bound: the rule of three, and the exact bound of Clopper and Pearson."""
 
 import pytest
 
-from app.evaluation.acceptance import bound_error_rate, count_takes_needed
+from app.evaluation.error_rate_bound import bound_error_rate, count_takes_needed
 
 
 @pytest.mark.parametrize(

@@ -1,11 +1,11 @@
-"""Answers: compares the results of two versions of the program, number by number.
+"""Version comparison: compares the results of two versions of the program, number by number.
 
 Writes every answer that somebody may rely on: takes, recognitions, language files, reports,
 explanations, robot events, the HTTP schema, on the sample clips and on recorded sets. Written by
 two versions, the files are compared:
 
-    python -m benchmarks.answers write BEFORE.json --data ../shared/data
-    python -m benchmarks.answers compare BEFORE.json AFTER.json
+    python -m benchmarks.version_comparison write BEFORE.json --data ../shared/data
+    python -m benchmarks.version_comparison compare BEFORE.json AFTER.json
 
 It uses the public surface alone, so that it runs on any version.
 """

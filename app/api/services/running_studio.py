@@ -1,4 +1,4 @@
-"""Shared state of one running server: the store, the job runner, the event streams."""
+"""Running studio: the store, job runner and event streams that all parts of a server share."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Frame pipeline of one live view: decode, find landmarks, segment takes, recognise."""
+"""Frame pipeline: decodes the frames of a live view, finds landmarks and takes, recognises."""
 
 from __future__ import annotations
 
@@ -154,7 +154,7 @@ class Frame:
         return cls(time, message[TIMESTAMP.size :], clock.monotonic(), skipped)
 
 
-class Watcher:
+class FramePipeline:
     """Watches one camera: its estimator tracks, so every connection needs its own.
 
     Parameters

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.api.services.studio import check_store
+from app.api.services.running_studio import check_store
 from app.settings import Settings
 from app.store import StoreUnavailable
 from tests.api.running import running
