@@ -46,7 +46,7 @@ import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
-import { followTheme, openWorkspace, restart, showAgain } from "./studio/workspace.js";
+import { followTheme, openWorkspace, restart, recover } from "./studio/workspace.js";
 import { acceptFiles, drawUploads } from "./upload/upload-list.js";
 
 /** @import { State } from "./core/types.d.ts" */
@@ -207,7 +207,7 @@ async function start() {
       reloadLanguages();
     },
     returned: restart,
-    seen: showAgain,
+    seen: recover,
   });
   // A link is opened for what it shows, so no tour then.
   if (!linked) offerTour();

@@ -47,7 +47,9 @@ export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 export function h(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   const values = /** @type {any} */ (element);
-  for (const [name, value] of Object.entries(properties)) {
+  // Assigning `src` begins to load it, in some browsers before `loading: "lazy"` is known.
+  const { src, ...others } = properties;
+  for (const [name, value] of Object.entries({ ...others, src })) {
     if (value === undefined || value === null) continue;
     if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
     else if (name === "style")

@@ -3,7 +3,7 @@
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { state } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
+import { complain } from "../core/toasts.js";
 import { triggerKey } from "../languages/language-trigger.js";
 
 /** @import { Take } from "../core/types.d.ts" */
@@ -11,7 +11,7 @@ import { triggerKey } from "../languages/language-trigger.js";
 const AT_ONCE = 4; // A library has hundreds of clips, and what else is asked for must not wait.
 
 /** @type {Map<string, Take[]>} */
-export const takes = new Map(); // by clip; they change with the language's trigger alone
+export const takesByClip = new Map(); // they change with the language's trigger alone
 /** @type {Set<string>} */
 const asked = new Set();
 /** @type {Set<string>} */
@@ -31,25 +31,49 @@ export function forgetFailures() {
  * @param {() => boolean} wanted
  * @param {() => void} found  what to do when those of a clip are there
  */
-export function loadTakes(wanted, found) {
+export function loadTakesOfClips(wanted, found) {
   const key = triggerKey(state);
   if (foundBy !== key) {
     foundBy = key;
-    takes.clear();
+    takesByClip.clear();
     asked.clear();
+    failed.clear();
   }
   const by = takesLanguage(state.gestures);
   for (const { id, status } of state.clips) {
     if (loading === AT_ONCE || !wanted()) return;
     if (status !== "done" || asked.has(id)) continue;
-    asked.add(id);
-    loading += 1;
-    attempt("Loading the takes", () => api.clips.takes(id, by)).then((list) => {
-      loading -= 1;
-      if (!list) failed.add(id);
-      else if (foundBy === key) takes.set(id, list);
+    loadOne(id, by, key).then((away) => {
       found();
-      loadTakes(wanted, found);
+      if (!away) loadTakesOfClips(wanted, found);
     });
+  }
+}
+
+/**
+ * Load the takes of one clip; those that come for a former trigger are dropped.
+ *
+ * @param {string} id
+ * @param {string | null} by  the language whose trigger it is
+ * @param {string} key  of that trigger
+ * @returns {Promise<boolean>} whether the server is away, which is no failure of this clip
+ */
+async function loadOne(id, by, key) {
+  asked.add(id);
+  loading += 1;
+  try {
+    const list = await api.clips.takes(id, by);
+    if (foundBy === key) takesByClip.set(id, list);
+    return false;
+  } catch (error) {
+    const away = api.isAway(error);
+    if (foundBy === key) {
+      if (away) asked.delete(id);
+      else failed.add(id);
+    }
+    if (!away) complain(error, "Loading the takes");
+    return away;
+  } finally {
+    loading -= 1;
   }
 }

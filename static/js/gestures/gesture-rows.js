@@ -129,13 +129,16 @@ export function problemsOf(rows, others) {
       );
     seen.add(compared);
   }
-  const waiting = chosen.filter(({ takes }) => !takes).length;
+  const unread = chosen.filter(({ clip, takes }) => !takes && clip.status !== "done").length;
+  const unloaded = chosen.filter(({ clip, takes }) => !takes && clip.status === "done").length;
   const note = !chosen.length
     ? "No row is chosen."
     : problems.size
       ? `${plural(problems.size, "row")} without a name of ${problems.size > 1 ? "their" : "its"} own.`
-      : waiting
-        ? `${plural(waiting, "clip")} still without poses: wait, or leave ${waiting > 1 ? "them" : "it"} out.`
-        : "";
+      : unread
+        ? `${plural(unread, "clip")} still without poses: wait, or leave ${unread > 1 ? "them" : "it"} out.`
+        : unloaded
+          ? `Takes of ${plural(unloaded, "clip")} not loaded yet: wait, or leave ${unloaded > 1 ? "them" : "it"} out.`
+          : "";
   return { problems, note };
 }

@@ -13,7 +13,7 @@ import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
-import { forgetFailures, loadTakes, takes } from "./clip-takes.js";
+import { forgetFailures, loadTakesOfClips, takesByClip } from "./clip-takes.js";
 import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
 
 /** @import { GestureRow, Language, State } from "../core/types.d.ts" */
@@ -43,7 +43,7 @@ let table = null;
 
 /** The table, for code that runs only while it is on display. */
 const onDisplay = () => /** @type {Table} */ (table);
-const isOpen = () => Boolean(table?.list.isConnected);
+const isOpen = () => Boolean(table?.list.isConnected && byId("dialog").open);
 let followed = false;
 let drawing = false;
 
@@ -65,7 +65,7 @@ export function drawTableButton({ gestures }) {
   button.classList.toggle("primary", withoutGesture(clips, gestures).length > 1);
 }
 
-const rows = () => rowsOf(usable(), takes, targetLanguage(), onDisplay().edited);
+const rows = () => rowsOf(usable(), takesByClip, targetLanguage(), onDisplay().edited);
 
 /**
  * @param {string} key
@@ -310,10 +310,10 @@ export function openGestureTable() {
   dialog.onclose = null;
   dialog.showModal();
   forgetFailures();
-  const load = () => loadTakes(isOpen, drawSoon);
+  const load = () => loadTakesOfClips(isOpen, drawSoon);
   if (!followed) {
     followed = true;
-    follow(["clips", "gestures"], load);
+    follow(["clips", "gestures", "returns"], load);
     follow(["clips", "jobs", "gestures"], draw);
   } else load();
   draw();

@@ -152,6 +152,9 @@ export function followTestSet() {
     if (same) testAgain();
     else loadTestSet();
   });
+  follow(["returns"], ({ returns }) => {
+    if (returns && !running) loadTestSet();
+  });
   follow(["labelled"], ({ labelled }) => {
     if (labelled && labelled.id === state.language && !running) loadTestSet();
   });

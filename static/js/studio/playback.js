@@ -12,6 +12,7 @@ const RETRY = 1000; // ms
 let socket = null;
 /** @type {string | null} */
 let workspace = null;
+let cut = false; // whether the connection to this workspace's clock has broken
 /** @type {Wish[]} */
 let unsent = []; // commands from before the connection opened
 /** @type {number | null} */
@@ -24,6 +25,7 @@ let wantedFrame = null; // from the URL, until the clip is shown
  */
 export function followClock(id) {
   workspace = id;
+  cut = false;
   unsent = [];
   socket?.close();
   connect(id);
@@ -42,12 +44,16 @@ function connect(id) {
   opened.onmessage = ({ data }) => received(JSON.parse(data));
   // A workspace that is gone is opened anew by whoever shows something next.
   opened.onclose = () => {
-    if (socket === opened && workspace === id)
-      setTimeout(() => {
-        if (socket === opened) connect(id);
-      }, RETRY);
+    if (socket !== opened || workspace !== id) return;
+    cut = true;
+    setTimeout(() => {
+      if (socket === opened) connect(id);
+    }, RETRY);
   };
 }
+
+/** Whether the connection broke since the workspace was opened; that of the 3D view did too. */
+export const wasCut = () => cut;
 
 /** @param {Position} position */
 function received(position) {

@@ -5,7 +5,7 @@ import { byId, h } from "../core/dom.js";
 import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
-import { followClock, frameShown, rememberFrame } from "./playback.js";
+import { followClock, frameShown, rememberFrame, wasCut } from "./playback.js";
 import { drawByPage, drawByViser, isFlat } from "./stage-picture.js";
 
 /** @import { WorkspaceView } from "../core/types.d.ts" */
@@ -148,8 +148,18 @@ export async function restart() {
   }
 }
 
-/** Show the view again, in a new workspace where the server has closed the former meanwhile. */
-export const showAgain = () => wanted && show(wanted);
+/**
+ * Open the 3D view again if it is lost: a page in the background is not told that the server has
+ * closed its workspace, or that the network was away.
+ */
+export async function recover() {
+  if (!opened) return;
+  try {
+    if (wasCut() || !(await remembered())) await restart();
+  } catch (error) {
+    complain(error, "Opening the 3D view");
+  }
+}
 
 /**
  * Show a view; of several in a row only the newest is sent.

@@ -17,6 +17,9 @@ from tests.browser.library import add_clip
 
 CLIPS = CLIPS_OF_A_PAGE + 40
 
+AT_ONCE = 4
+"""Clips whose takes the gesture table asks for at a time."""
+
 
 @pytest.fixture(scope="module")
 def newest(server: Running, settings: Settings) -> str:
@@ -28,6 +31,10 @@ def newest(server: Running, settings: Settings) -> str:
 
 def rows(page: Page) -> int:
     return page.locator("#clips > li").count()
+
+
+def list_takes(asked: list[str]) -> list[str]:
+    return [url for url in asked if "/takes" in url]
 
 
 def test_older_clips_are_found_by_name_and_loaded_by_a_button(
@@ -67,9 +74,12 @@ def test_a_link_to_an_older_clip_opens_it_and_scrolling_loads_those_between(
     older = dialog.get_by_role("button", name=re.compile("older clips"))
     expect(older).to_have_text("Load more of 41 older clips")
     dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_be_hidden()
+    by_then = len(list_takes(asked))
     page.locator("#clips").evaluate("list => list.scrollTo(0, 0)")
     page.locator("#clips").evaluate("list => list.scrollTo(0, list.scrollHeight)")
     expect(page.locator("#clips > li")).to_have_count(CLIPS + 1)
     # What the open table asked of a clip, it asked once; what is left when it closes, not at all.
-    takes = [url for url in asked if "/takes" in url]
+    takes = list_takes(asked)
     assert 0 < len(takes) == len(set(takes)) < CLIPS_OF_A_PAGE
+    assert len(takes) <= by_then + AT_ONCE

@@ -64,6 +64,19 @@ def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
     return pages
 
 
+def look(page: Page, *, away: bool) -> None:
+    """Look away from a page for a minute, or at it again: headless browsers hide no page."""
+    if away:
+        page.evaluate("Object.defineProperty(document, 'hidden', {get: () => window.unseen})")
+        page.clock.install()
+    page.evaluate(
+        "(away) => { window.unseen = away; document.dispatchEvent(new Event('visibilitychange')); }",
+        away,
+    )
+    if away:
+        page.clock.fast_forward(60_000)
+
+
 def padded(path: Path, size: int) -> Path:
     """Write a clip that is `size` bytes longer than it need be, in a box that players skip."""
     write_clip(path, frames=2)
@@ -113,6 +126,9 @@ def test_every_view_survives_a_server_that_is_killed(
     with served(tmp_path, port=port) as (process, client):
         server.address = str(client.base_url).rstrip("/")
         pages = opened(open_page, query)
+        background = open_page(query | {"frame": str(FRAME)}, scene=False)
+        expect(background.locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
+        look(background, away=True)
         process.kill()
         for page in pages.values():
             expect(page.locator("#away")).to_contain_text("No connection to the server")
@@ -130,6 +146,12 @@ def test_every_view_survives_a_server_that_is_killed(
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME} of"))
         studio.keyboard.press(".")
         expect(studio.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
+        look(background, away=False)
+        with background.expect_response(re.compile("/workspaces/.+/view")):
+            background.clock.run_for(2000)
+        expect(background.locator("#away")).to_be_hidden()
+        background.keyboard.press(".")
+        expect(background.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
         confusions = pages["health"].get_by_role("grid", name="Estimated confusions")
         expect(confusions).to_be_visible()
         pages["health"].close()

@@ -23,7 +23,7 @@ globalThis.EventSource = Stream;
 const page = Object.assign(new EventTarget(), { hidden: false });
 globalThis.document = page;
 const { followServer } = await import("../../../static/js/core/server-events.js");
-const { state } = await import("../../../static/js/core/state.js");
+const { state, update } = await import("../../../static/js/core/state.js");
 
 /** The page is looked at, or no more. */
 function look(hidden) {
@@ -48,11 +48,17 @@ test("a page that nobody looks at gives its connection back, and catches up once
   first.dispatchEvent(new MessageEvent("clips", { data: '{"id": "c1"}' }));
   assert.deepEqual(heard.splice(0), [["clips", "c1"]]);
 
+  update({ pending: [{ clip: "c1" }] });
   look(true);
+  t.mock.timers.tick(60_000);
+  assert.equal(first.readyState, 0, "clips are tested in the background too");
+  update({ pending: [] });
   t.mock.timers.tick(60_000);
   assert.equal(first.readyState, Stream.CLOSED);
   assert.equal(Stream.all.length, 1);
   assert.equal(state.connected, true, "nothing is lost");
+
+  assert.equal(heard.length, 0);
 
   const { returns } = state;
   look(false);

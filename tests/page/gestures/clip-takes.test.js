@@ -2,10 +2,27 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { update } from "../../../static/js/core/state.js";
-import { forgetFailures, loadTakes, takes } from "../../../static/js/gestures/clip-takes.js";
+import {
+  forgetFailures,
+  loadTakesOfClips,
+  takesByClip,
+} from "../../../static/js/gestures/clip-takes.js";
+
+/** Wait until what others do has come true. */
+async function until(holds) {
+  for (let turn = 0; !holds(); turn += 1) {
+    assert.ok(turn < 200);
+    await new Promise((go) => setTimeout(go, 5));
+  }
+}
 
 const clips = (prefix, count) =>
   Array.from({ length: count }, (_, number) => ({ id: `${prefix}${number}`, status: "done" }));
+
+/** Let what has been answered have its effect. */
+async function settle() {
+  for (let turn = 0; turn < 20; turn += 1) await new Promise(setImmediate);
+}
 
 /** Answers that come one at a time. */
 function answers(t) {
@@ -18,7 +35,7 @@ function answers(t) {
     waiting,
     async one() {
       waiting.shift()();
-      for (let turn = 0; turn < 5; turn += 1) await new Promise(setImmediate);
+      await settle();
     },
   };
 }
@@ -28,7 +45,7 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   update({ clips: [{ id: "queued", status: "queued" }, ...clips("a", 9)] });
   let drawn = 0;
   const load = () =>
-    loadTakes(
+    loadTakesOfClips(
       () => true,
       () => (drawn += 1),
     );
@@ -37,9 +54,9 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   assert.equal(waiting.length, 4);
   await one();
   assert.equal(waiting.length, 4);
-  assert.deepEqual([...takes.keys()], ["a0"]);
+  assert.deepEqual([...takesByClip.keys()], ["a0"]);
   while (waiting.length) await one();
-  assert.equal(takes.size, 9);
+  assert.equal(takesByClip.size, 9);
   assert.equal(drawn, 9);
   load();
   assert.equal(waiting.length, 0);
@@ -50,7 +67,7 @@ test("what is on its way is not asked for again when the table is opened again",
   update({ clips: clips("c", 2) });
   const open = () => {
     forgetFailures();
-    loadTakes(
+    loadTakesOfClips(
       () => true,
       () => {},
     );
@@ -66,16 +83,63 @@ test("no more are asked for once nobody wants them, and the rest at the next tim
   update({ clips: clips("b", 6) });
   let open = true;
   const load = () =>
-    loadTakes(
+    loadTakesOfClips(
       () => open,
       () => {},
     );
   load();
   open = false;
   while (waiting.length) await one();
-  assert.equal([...takes.keys()].filter((id) => id.startsWith("b")).length, 4);
+  assert.equal([...takesByClip.keys()].filter((id) => id.startsWith("b")).length, 4);
   open = true;
   load();
   assert.equal(waiting.length, 2);
   while (waiting.length) await one();
+});
+
+test("a clip whose takes the server refuses does not hold up the others", async (t) => {
+  const asked = [];
+  t.mock.method(globalThis, "fetch", async (address) => {
+    asked.push(String(address));
+    // Cancelled is the one error without a toast, which needs a page.
+    if (asked.at(-1).includes("d1")) return Response.json({ code: "cancelled" }, { status: 409 });
+    return Response.json([]);
+  });
+  update({ clips: clips("d", 6) });
+  const load = () =>
+    loadTakesOfClips(
+      () => true,
+      () => {},
+    );
+  load();
+  await until(() => asked.length === 6);
+  load();
+  assert.equal(asked.length, 6, "not again while the table is open");
+  forgetFailures();
+  load();
+  await until(() => asked.length === 7);
+  assert.match(asked[6], /d1/);
+  await settle();
+});
+
+test("without a server nothing more is asked for, and everything once it is back", async (t) => {
+  const asked = [];
+  let away = true;
+  t.mock.method(globalThis, "fetch", async (address) => {
+    asked.push(String(address));
+    if (away) throw new TypeError("fetch failed");
+    return Response.json([]);
+  });
+  update({ clips: clips("e", 9) });
+  const load = () =>
+    loadTakesOfClips(
+      () => true,
+      () => {},
+    );
+  load();
+  await settle();
+  assert.equal(asked.length, 4);
+  away = false;
+  load();
+  await until(() => asked.length === 4 + 9);
 });

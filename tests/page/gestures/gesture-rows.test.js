@@ -52,6 +52,8 @@ test("every take is a row, and clips without poses wait", () => {
   ]);
   assert.match(rangeWarning(rows[3]), /^No Vulcan salute was found/);
   assert.match(problemsOf(rows, []).note, /^1 clip still without poses/);
+  const loading = rowsOf(clips.slice(0, 3), new Map(), null, new Map());
+  assert.match(problemsOf(loading, []).note, /^Takes of 3 clips not loaded yet/);
 });
 
 test("clips of the language and second clips of a label are left out until they are chosen", () => {
