@@ -27,9 +27,12 @@ PROCESSORS = ("avx2", "avx512")
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
 
 
-# What is imported and collected stays to the end: looking for garbage in it would take a fifth of
-# the collection's time, and more in each test that makes much garbage of its own.
-gc.disable()
+def pytest_collection() -> None:
+    """Look for no garbage among what is imported and collected, which stays to the end.
+
+    It would take a fifth of the collection's time, and more in each test that makes much garbage.
+    """
+    gc.disable()
 
 
 def pytest_collection_finish() -> None:

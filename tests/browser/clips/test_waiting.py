@@ -18,7 +18,7 @@ from tests.short_clips import shortened
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip on a loaded machine."""
 
-SECONDS = 2.5
+SECONDS = 4.0
 """Of the clip: enough frames for progress and an estimate of the time left."""
 
 

@@ -50,7 +50,7 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     page.keyboard.press(".")
     expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("1")
     expect(dots).not_to_have_attribute("d", str(before))
-    colleague = open_page(scene=False)
+    colleague = open_page(scene=False, alone=True)
     colleague.goto(page.url)
     expect(colleague.get_by_role("heading", name="circle and line")).to_be_visible()
     page.keyboard.press("Escape")

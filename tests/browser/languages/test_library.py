@@ -141,7 +141,7 @@ def test_two_revisions_are_compared_under_an_address_of_their_own(
     page.get_by_label("from", exact=True).select_option("nothing")
     page.get_by_label("to", exact=True).select_option("revision 3")
     expect(changes.locator(":scope > li")).to_have_count(2)
-    colleague = open_page(scene=False)
+    colleague = open_page(scene=False, alone=True)
     colleague.goto(page.url)
     expect(colleague.get_by_text("Gestures: 2 added.")).to_be_visible()
     colleague.get_by_role("link", name="All languages").click()

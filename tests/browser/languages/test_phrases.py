@@ -48,7 +48,7 @@ def test_a_phrase_is_tried_by_clicking_what_may_come_next(
     expect(page.locator("#said")).to_have_text("mission: align yourself, 3 times")
     expect(page.locator(".obeyed")).to_contain_text('{"do":"align","times":3}')
     assert faults(page) == []
-    colleague = open_page(scene=False)
+    colleague = open_page(scene=False, alone=True)
     colleague.goto(page.url)
     expect(colleague.locator("#said")).to_have_text("mission: align yourself, 3 times")
     # The next gesture begins another message; one that was not recognised is asked for again.

@@ -112,7 +112,7 @@ def test_a_link_is_copied_and_says_when_what_it_shows_is_gone(
     link = page.evaluate("navigator.clipboard.readText()")
     assert f"clip={clip}&take=1" in link
     library.client.delete(f"/api/v1/clips/{clip}").raise_for_status()
-    colleague = open_page(scene=False)
+    colleague = open_page(scene=False, alone=True)
     colleague.goto(link)
     expect(colleague.get_by_role("alert").get_by_text("The clip of this link")).to_be_visible()
 

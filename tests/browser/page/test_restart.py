@@ -69,10 +69,8 @@ def look(page: Page, *, away: bool) -> None:
     if away:
         page.evaluate("Object.defineProperty(document, 'hidden', {get: () => window.unseen})")
         page.clock.install()
-    page.evaluate(
-        "(away) => { window.unseen = away; document.dispatchEvent(new Event('visibilitychange')); }",
-        away,
-    )
+    page.evaluate("(away) => { window.unseen = away; }", away)
+    page.evaluate("document.dispatchEvent(new Event('visibilitychange'))")
     if away:
         page.clock.fast_forward(60_000)
 
