@@ -19,7 +19,8 @@ from starlette.types import Scope
 ADDRESS = "/static"
 """Where the files are."""
 
-_ALL_SHEETS = "styles.css"
+_ALL_SHEETS = "styles/all.css"
+"""Among the sheets that it holds: what they name by relative addresses is found."""
 _SHEET = re.compile(rf'<link\s+rel="stylesheet"\s+href="{ADDRESS}/([^"]+)"\s*/>\s*')
 _DIGEST = re.compile("[0-9a-f]{16}")
 _FOR_A_YEAR = "max-age=31536000, immutable"
