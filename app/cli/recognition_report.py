@@ -37,7 +37,7 @@ class TakeEntry(_Entry):
 
     start: Seconds
     end: Seconds
-    closed: Annotated[bool, Field(description="Whether a salute ended it.")]
+    closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
     profile: ProfileName
     label: Annotated[str | None, Field(description="The gesture; null where it was rejected.")]
     nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]

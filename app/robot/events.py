@@ -232,7 +232,7 @@ class TakeRejected:
     time: Seconds
     start: Seconds
     end: Seconds
-    closed: Annotated[bool, Field(description="Whether a salute ended it.")]
+    closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
     reason: Reason
     label: None = field(init=False, default=None)
     nearest: str | None = field(init=False)

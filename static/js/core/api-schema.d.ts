@@ -2085,7 +2085,7 @@ export interface components {
             time: number[];
             /**
              * Salute
-             * @description Confidence of the salute, or of the language's other trigger, 0 to 1
+             * @description Score of the salute, or of the language's other trigger, 0 to 1
              */
             salute: number[];
             /**

@@ -42,7 +42,7 @@ const SWITCHES = [
     name: "mirror",
     title: "Mirror",
     words: {
-      auto: "Only by the demonstrated hand",
+      auto: "Movements only by the demonstrated hand, held shapes by either",
       on: "Also mirrored, by the other hand",
       off: "Never mirrored, and sides are never exchanged",
     },

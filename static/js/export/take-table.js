@@ -60,7 +60,7 @@ function jump(row) {
 /** @param {TakeRow} row */
 function cellsOf(row) {
   const name = row.take === null ? row.clip : `${row.clip}, take ${row.take}`;
-  const result = row.take === null ? "" : (row.label ?? `refused, nearest ${row.nearest}`);
+  const result = row.take === null ? "" : (row.label ?? `rejected, nearest ${row.nearest}`);
   const wrong = row.take !== null && row.expected !== null && row.expected !== row.label;
   return [
     h(
@@ -91,7 +91,7 @@ function resultOf({ rows, csv }) {
     "select",
     { id: "take-filter" },
     h("option", { value: "" }, "All takes"),
-    h("option", { value: "refused" }, "Refused"),
+    h("option", { value: "rejected" }, "Rejected"),
     h("option", { value: "faults" }, "With faults"),
     labels.map((label) => h("option", { value: `=${label}` }, label)),
   );

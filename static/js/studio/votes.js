@@ -18,9 +18,9 @@ import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from ".
  * @type {Record<Recognition["profile"], string>}
  */
 const CONFIDENCE_WORDS = {
-  full: "Confidence is the estimated probability that this gesture was meant; weight is how much of the vote its voters hold.",
+  full: "Confidence is the estimated probability that this gesture was meant; the weight is that of the voters whose nearest gesture it is.",
   paper:
-    "Confidence says how clearly the winner leads, by votes and by distance; weight is how much of the vote its voters hold.",
+    "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the voters whose nearest gesture it is.",
 };
 
 const FACTORS = [0, 0.25, 0.5, 1, 2, 4];

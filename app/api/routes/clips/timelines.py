@@ -35,7 +35,7 @@ class TimelineView(BaseModel):
 
     time: list[float] = Field(description="Seconds, by the container")
     salute: list[float] = Field(
-        description="Confidence of the salute, or of the language's other trigger, 0 to 1"
+        description="Score of the salute, or of the language's other trigger, 0 to 1"
     )
     speed: dict[str, list[float | None]] = Field(
         description="Per wrist, torso lengths a second; null where it was not seen"
