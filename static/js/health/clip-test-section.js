@@ -326,12 +326,14 @@ export function batchSection() {
   const draw = () => {
     /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
     const testSet = state.testSet?.language_id === state.language ? state.testSet : null;
-    const takes = testedOf(testSet);
+    // The server may tell of a take before it answers the request that added its clip.
+    const waiting = new Set(waitingClips().map(({ clip }) => clip.id));
+    const takes = testedOf(testSet).filter(({ clip_id: clip }) => !waiting.has(clip));
     const demonstrations = takes.filter(({ demonstration }) => demonstration).length;
     const counted = takes.filter(({ demonstration, known }) => known && !demonstration);
     drawChoice();
     const uploads = uploadsHere();
-    const empty = !takes.length && !waitingClips().length && !uploads.length;
+    const empty = !takes.length && !waiting.size && !uploads.length;
     content.replaceChildren(
       ...(empty || !state.gestures
         ? []
