@@ -24,6 +24,9 @@ RECORDINGS = ROOT / "tests" / "recordings"
 PROCESSORS = ("avx2", "avx512")
 """Processors that round differently: what holds on both does not depend on rounding."""
 
+UPDATES_IMAGES = bool(os.environ.get("OSG_UPDATE_IMAGES"))
+"""Whether the pictures that tests take go into the documentation."""
+
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
 
 
@@ -101,11 +104,14 @@ def thin_clip(
 ) -> Callable[[str], Path]:
     """Return what makes a copy of a sample clip, given its name, with every third frame.
 
-    Its poses are found in a third of the time; takes and gestures are the same.
+    Its poses are found in a third of the time; takes and gestures are the same. The documentation's
+    images show the whole clip.
     """
     folder = tmp_path_factory.mktemp("thin")
 
     def make(name: str) -> Path:
+        if UPDATES_IMAGES:
+            return sample_clips / f"{name}.mp4"
         copy = folder / f"{name}.mp4"
         return copy if copy.exists() else thinned(sample_clips / copy.name, copy)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -25,7 +24,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.settings import Settings
 from tests.api.running import Running, running
-from tests.conftest import ROOT
+from tests.conftest import ROOT, UPDATES_IMAGES
 
 WEBGL = (
     "--no-sandbox",
@@ -239,7 +238,7 @@ def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
     They go to ``docs/images`` when ``OSG_UPDATE_IMAGES`` is set, so that a plain test run leaves
     the working tree as it is; there they have a palette, which takes a third of the bytes.
     """
-    kept = bool(os.environ.get("OSG_UPDATE_IMAGES"))
+    kept = UPDATES_IMAGES
     folder = IMAGES if kept else tmp_path
 
     def take(page: Page, name: str) -> Path:
