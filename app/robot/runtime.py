@@ -34,7 +34,7 @@ REPORT_SECONDS: Final = 10.0
 """Seconds between two events about dropped frames; keeps a log of several days readable."""
 
 HEARTBEAT_SECONDS: Final = 5.0
-"""Seconds between two heartbeats: a supervisor that waits for three of them acts within 15 s."""
+"""Seconds between two heartbeats; a supervisor (`docs/robots/service.md`) waits for six of them."""
 
 THE_ESTIMATOR: Final = "the pose estimator"
 """Subject of the message about a missing landmark."""

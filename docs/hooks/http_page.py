@@ -33,7 +33,7 @@ def _operations(description: Mapping[str, Any]) -> Iterator[str]:
         if method in METHODS
     ]
     everywhere = set.intersection(*(set(operation["responses"]) for *_, operation in found))
-    yield f"Every operation may answer {', '.join(sorted(everywhere))} with a problem document.\n"
+    yield f"Every operation may return {', '.join(sorted(everywhere))} with a problem document.\n"
     for tag in dict.fromkeys(tag for tag, *_ in found):
         yield f"## {tag.capitalize()}\n"
         for own, method, path, operation in found:
@@ -58,7 +58,7 @@ def _operation(
         yield f"Body: `{media_type}`, {type_of(body['schema'])}\n"
         yield keys_table(body["schema"])
     yield table(
-        ["answer", "content", "meaning"],
+        ["status", "content", "meaning"],
         [
             (status, _content(response), cell(response["description"]).replace(SUCCESS, ""))
             for status, response in sorted(operation["responses"].items())
