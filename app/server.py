@@ -77,10 +77,10 @@ from app.ui.workspace_registry import WorkspaceRegistry
 API = "/api/v1"
 
 BAD_STORE = 2
-"""Exit code when the data folder cannot be used; the command line's code for bad input."""
+"""Exit code for an unusable data folder, the same as the command line's for bad input."""
 
 GRACEFUL_SECONDS = 3
-"""Seconds for connections to close at shutdown, after `ENDING_SECONDS` for open responses; the
+"""Seconds for connections to close at shutdown, after the `ENDING_SECONDS` for open responses; the
 whole shutdown must take less than ten seconds."""
 
 
@@ -130,9 +130,9 @@ def create_app(settings: Settings | None = None) -> FastAPI:
 
 @cache
 def _build_routes() -> tuple[BaseRoute, ...]:
-    """Return the routes of the interface, built once: FastAPI looks at each one's parameters.
+    """Return the API's routes, built once because FastAPI inspects the parameters of each.
 
-    They hold nothing of an app, so that all apps of a process share them.
+    They keep no state of an app, so all apps of a process share them.
     """
     every, api = APIRouter(), APIRouter(prefix=API)
     for router in (
@@ -200,7 +200,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
             # viser compresses its messages itself; compressing them twice halves the frame rate.
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=GRACEFUL_SECONDS,
-            # The address and scheme that a trusted proxy names; never the host, which it passes on.
+            # Take address and scheme from a trusted proxy, but never the host, which it passes on.
             proxy_headers=bool(settings.forwarded_allow_ips),
             forwarded_allow_ips=settings.forwarded_allow_ips or None,
             log_config=None,
@@ -219,8 +219,8 @@ def run(settings: Settings, *, open_browser: bool) -> None:
     with contextlib.suppress(KeyboardInterrupt):
         server.run()
     if any(thread.ident != threading.get_ident() for thread in threading.enumerate()):
-        # A running computation cannot be interrupted and may take a minute. Its result is not
-        # needed any more, and everything is stored and closed.
+        # A running computation cannot be interrupted and may take a minute. Its result is no longer
+        # needed, and everything is stored and closed.
         sys.stdout.flush()
         os._exit(0)
 
@@ -228,7 +228,7 @@ def run(settings: Settings, *, open_browser: bool) -> None:
 class _AnnouncedServer(StudioServer):
     """Server that prints its address once it listens, and opens a browser if requested.
 
-    It tells the service manager the same, and at every tick of the event loop that it works.
+    It reports the same to the service manager, and a sign of life at every tick of the event loop.
     """
 
     def __init__(

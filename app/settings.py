@@ -18,16 +18,17 @@ from app.recognition.estimation.water import WaterCorrection
 MEBIBYTE = 1024 * 1024
 
 S3 = "s3://"
-"""Beginning of the address of a bucket."""
+"""Prefix of the address of an S3 bucket."""
 
 DASK = "dask://"
-"""Beginning of the address of a Dask scheduler."""
+"""Prefix of the address of a Dask scheduler."""
 
 TOKENS_FILE = "tokens.json"
 """Name of the file of the named tokens in the data folder."""
 
 SHORTEST_TOKEN = 16
-"""Characters of a token: 64 bits in hexadecimal, too many to be guessed twenty a minute."""
+"""Fewest characters of a token: 64 bits in hexadecimal, too many to guess at twenty attempts a
+minute."""
 
 
 def is_loopback(host: str) -> bool:
@@ -47,7 +48,7 @@ def _absolute(path: Path) -> Path:
 S3_ADDRESS = r"^s3://[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/\S*)?$"
 
 S3Address = Annotated[str, Field(pattern=S3_ADDRESS)]
-"""A bucket, and what the names of our objects in it begin with."""
+"""A bucket, with the prefix of our objects' names in it."""
 
 Place = Annotated[Path, AfterValidator(_absolute)]
 """A folder as an absolute path, because worker processes have another working directory."""
@@ -68,13 +69,13 @@ class Settings(BaseSettings):
     ``postgresql+psycopg://USER@HOST/NAME`` is for several."""
 
     storage: Annotated[S3Address | Place | None, Field(union_mode="left_to_right")] = None
-    """Where the clips' files are, for several servers on one database: a folder that they share, or
-    ``s3://BUCKET/PREFIX``, of which each keeps a copy in its `data_dir`. ``None`` is ``clips`` in
-    `data_dir`."""
+    """Place of the clips' files, for several servers on one database: a shared folder, or
+    ``s3://BUCKET/PREFIX``, of which each server keeps copies in its `data_dir`. ``None`` is the
+    folder ``clips`` in `data_dir`."""
 
     storage_copy_bytes: Annotated[int, Field(ge=0)] = 0
-    """Bytes of the copies of clips that a server keeps beside an ``s3://`` `storage`; those not
-    used for longest go first, and are fetched again when they are needed. 0 is any number."""
+    """Largest total size in bytes of a server's copies of clips in an ``s3://`` `storage`; the
+    least recently used are removed first, and fetched again when needed. 0 is no limit."""
 
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
@@ -93,17 +94,17 @@ class Settings(BaseSettings):
     """File of the named tokens (`osg-studio tokens`); ``tokens.json`` in `data_dir` by default."""
 
     quota_bytes: Annotated[int, Field(ge=0)] = 0
-    """Bytes of clips that each named token may keep, unless it has a quota of its own; 0 is any."""
+    """Bytes of clips that each named token may keep, unless it has its own quota; 0 is no limit."""
 
     quota_clips: Annotated[int, Field(ge=0)] = 0
-    """Clips that each named token may keep, unless it has a quota of its own; 0 is any number."""
+    """Clips that each named token may keep, unless it has its own quota; 0 is no limit."""
 
     forwarded_allow_ips: str = ""
-    """Addresses of reverse proxies whose ``X-Forwarded-For`` and ``X-Forwarded-Proto`` are
-    believed, comma separated; ``*`` is all, where only a proxy can reach the server."""
+    """Addresses of reverse proxies whose ``X-Forwarded-For`` and ``X-Forwarded-Proto`` are trusted,
+    comma separated; ``*`` trusts all, for a server that only a proxy can reach."""
 
     log_format: Literal["text", "json"] = "text"
-    """Form of the log: lines for people, or one JSON object a line with request and job ids."""
+    """Format of the log: lines for people, or one JSON object a line with request and job ids."""
 
     log_level: Literal["debug", "info", "warning", "error"] = "warning"
     """Least severe entries logged; ``info`` logs every request and job."""
@@ -130,17 +131,18 @@ class Settings(BaseSettings):
     """Seconds before the rate of a request body is checked, and the longest pause within one."""
 
     idle_seconds: Annotated[float, Field(gt=0)] = 15.0
-    """Seconds for the head of a request; connections without one are then closed."""
+    """Seconds for the header of a request; a connection without one is then closed."""
 
     max_connections: Annotated[int, Field(ge=0)] = 0
-    """Open connections, half of them for one address; 0 allows as many as the system does."""
+    """Most open connections, half of them from one address; 0 sets no limit beside the system's."""
 
     water: WaterCorrection = "auto"
-    """Correction of colour and contrast: auto as the models see most, on always, off never."""
+    """Correction of colour and contrast: ``auto`` if the models then find more, ``on`` always,
+    ``off`` never."""
 
     workers: Annotated[int, Field(ge=1, le=64)] = 1
     """Clips extracted at the same time, each in its own process (the models use all cores); with
-    `executor`, those of this server on all machines."""
+    `executor`, this server's extractions on all machines."""
 
     executor: Annotated[str, Field(pattern=r"^dask://[^/\s]+:\d+$")] | None = None
     """Where extractions, checks, test runs and exports run: ``None`` is this machine;
@@ -154,12 +156,12 @@ class Settings(BaseSettings):
     """Address space of one worker in bytes; 0 for no limit, which GPU providers need."""
 
     worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
-    """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, and the most
-    frames a clip may have (`app.recognition.recording.video.VideoLimits`) then take 72 minutes."""
+    """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, so that the
+    longest clip (`app.recognition.recording.video.VideoLimits`) takes 72 minutes."""
 
     worker_file_bytes: Annotated[int, Field(ge=0)] = 4 * 512 * MEBIBYTE
-    """Largest file that a job may write, while it unpacks a dive recording or copies a video; 0 is
-    no limit. As much as an archive may unpack to (`app.bags.staging.MOST_BYTES`)."""
+    """Largest file in bytes that a job may write while it unpacks a dive recording or copies a
+    video: the largest unpacked archive (`app.bags.staging.MOST_BYTES`). 0 is no limit."""
 
     worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
     """Seconds without progress after which a worker counts as hanging and is stopped."""
@@ -169,12 +171,12 @@ class Settings(BaseSettings):
 
     @property
     def public(self) -> bool:
-        """Whether others than this machine can reach the server."""
+        """Whether other machines can reach the server."""
         return not is_loopback(self.host)
 
     @property
     def tokens(self) -> Path:
-        """The file of the named tokens, which need not exist."""
+        """File of the named tokens, which need not exist."""
         return self.tokens_file or self.data_dir / TOKENS_FILE
 
     @property
@@ -184,7 +186,7 @@ class Settings(BaseSettings):
 
     @property
     def objects(self) -> str | None:
-        """Address of the object store of the clips' files; None where their folder is all."""
+        """Address of the object store of the clips' files; None if a folder has them all."""
         return self.storage if isinstance(self.storage, str) else None
 
     @property

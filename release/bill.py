@@ -31,11 +31,11 @@ def build_bill(version: str, seconds: int, packages: list[Licensed]) -> str:
     Parameters
     ----------
     version
-        Of this package.
+        Version of this package.
     seconds
-        Time of the release, since 1970.
+        Time of the release, in seconds since 1970.
     packages
-        What is pinned for running it.
+        The pinned packages that it needs to run.
 
     """
     licences = LicenseFactory()

@@ -1,4 +1,4 @@
-"""Release build: everything twice, from the committed files alone; the bytes must be the same."""
+"""Release build: builds everything twice from the committed files; the bytes must be equal."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def build_release(target: Path) -> list[Path]:
 
     Returns
     -------
-    Its files: wheel, source distribution, bill of materials, licences, notes, and the checksums of
-    these and of the models.
+    The files of the release: wheel, source distribution, bill of materials, licences, notes, and
+    the checksums of these and of the models.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def build_release(target: Path) -> list[Path]:
     shutil.rmtree(target, ignore_errors=True)
     target.mkdir(parents=True)
     with tempfile.TemporaryDirectory() as scratch:
-        # Another path, as on another machine.
+        # The second build has another path, as on another machine.
         first, second = Path(scratch, "first"), Path(scratch, "again", "elsewhere")
         for place in (first, second):
             _build_once(place, bill, seconds)

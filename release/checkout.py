@@ -33,12 +33,12 @@ def run_git(*arguments: str) -> bytes:
 
 
 def commit_seconds() -> int:
-    """Return when the last commit was made, in seconds since 1970."""
+    """Return the time of the last commit, in seconds since 1970."""
     return int(run_git("log", "-1", "--format=%ct"))
 
 
 def export_commit(folder: Path) -> None:
-    """Write the files of the last commit to a folder, nothing else."""
+    """Write only the files of the last commit to a folder."""
     archive = run_git("archive", "--format=tar", "HEAD")
     with tarfile.open(fileobj=io.BytesIO(archive)) as files:
         files.extractall(folder, filter="tar")

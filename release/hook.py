@@ -1,4 +1,4 @@
-"""Build hook: puts the bill of materials into the wheel, where a release has made one."""
+"""Build hook: puts the bill of materials into the wheel if a release has made one."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Licences of what is pinned for running: ``python -m release.licences`` lists them.
+"""Licences of the pinned packages: ``python -m release.licences`` lists them.
 
-They are read from the packages as they are installed; nothing is fetched.
+They are read from the installed packages; nothing is downloaded.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def _pinned() -> Iterator[str]:
 
 
 def _licence(package: Distribution) -> str:
-    """Return what the metadata names: the expression, the classifiers, or the free text."""
+    """Return the licence in the metadata: the expression, the classifiers, or the free text."""
     metadata = package.metadata
     if "License-Expression" in metadata:
         return metadata["License-Expression"]

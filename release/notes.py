@@ -1,4 +1,4 @@
-"""Release notes: what the changelog says about a version and what has come since."""
+"""Release notes: the changelog's sections about a version and the changes since."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Dive recordings: reads rosbag2 folders and files, writes bags as MCAP.
 
-A recording is read in place. An image topic becomes a clip by way of the same models as a video
-file, and a topic of recorded keypoints becomes one without them.
+A recording is read in place. A topic of pictures becomes a clip through the same models as a video
+file, a topic of recorded keypoints without models.
 """
 
 from app.bags.bag_kind import bag_and_topic, is_bag

@@ -28,26 +28,27 @@ USES: dict[str, Use] = {
     "osg_interfaces/msg/BodyKeypoints": "keypoints",
     "hri_msgs/msg/Skeleton2D": "keypoints",
 }
-"""What a topic of a type can be used for."""
+"""Use of a topic, by message type."""
 
 MOST_TOPICS_NAMED = 8
-"""In a message of one line; a robot records fifty."""
+"""Most topics named in a one-line message; a robot records fifty."""
 
 INSTALL = 'install what reads it with: pip install "osg-studio[studio]" (on a robot: [robot])'
 
 
 @dataclass(frozen=True)
 class Topic:
-    """What a recording says about one of its topics.
+    """One topic of a recording.
 
     Attributes
     ----------
     name
         As in ROS, with its leading slash.
     type
-        Of its messages, such as ``sensor_msgs/msg/Image``; empty where several types share a name.
+        Type of its messages, such as ``sensor_msgs/msg/Image``; empty if several types share the
+        name.
     use
-        ``pictures``, ``keypoints``, or None: nothing that this program understands.
+        ``pictures``, ``keypoints``, or None for a topic that this program cannot use.
     messages
         Count.
 
@@ -82,23 +83,23 @@ class Message:
 
     @property
     def stamp(self) -> int:
-        """Nanoseconds when it was acquired (its header's stamp), or 0 where it has none."""
+        """Time of acquisition in nanoseconds (the header's stamp), or 0 without a stamp."""
         header = getattr(self.content, "header", self.content)
         stamp = getattr(header, "stamp", getattr(self.content, "timestamp", None))
         return 0 if stamp is None else int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
 
 
 class Bag:
-    """A recording that is open; made by `open_bag`.
+    """An open recording, created by `open_bag`.
 
     Parameters
     ----------
     reader
-        Of rosbags, open.
+        Open reader of rosbags.
     place
-        What it reads.
+        Path that it reads.
     name
-        What to call the recording in messages.
+        Name of the recording in messages.
 
     """
 
@@ -114,12 +115,12 @@ class Bag:
         Parameters
         ----------
         name
-            The one asked for; None: the only one that can be used.
+            Name of the requested topic; None for the only usable one.
 
         Raises
         ------
         TopicError
-            When the name is not that of a usable topic, or none is given and several could be.
+            When no usable topic has that name, or no name is given and several topics are usable.
         BagError
             When there is no usable topic at all.
 
@@ -140,12 +141,12 @@ class Bag:
         raise TopicError(f"{self.name}: {self._refusal(name)}; usable are {_list_topics(usable)}")
 
     def messages(self, topic: str) -> Iterator[Message]:
-        """Go through a topic's messages in the order in which they were received.
+        """Yield a topic's messages in the order in which they were received.
 
         Raises
         ------
         BagError
-            When the recording is damaged where it is read, or a message is not of its type.
+            When the part read is damaged, or a message does not match its type.
 
         """
         connections = [each for each in self._reader.connections if each.topic == topic]
@@ -158,9 +159,9 @@ class Bag:
                 yield Message(received, store.deserialize_cdr(data, kind))
 
     def durations(self) -> dict[str, float]:
-        """Return seconds from the first message to the last of every usable topic.
+        """Return the seconds from the first to the last message of every usable topic.
 
-        All of the recording is read for it; what a damaged one does not give is not counted.
+        The whole recording is read; in a damaged one, unreadable messages do not count.
         """
         usable = {topic.name for topic in self.topics if topic.usable}
         chosen = [each for each in self._reader.connections if each.topic in usable]
@@ -199,7 +200,7 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     Raises
     ------
     BagError
-        When it is none, is damaged, or the packages that read it are not installed.
+        When it is no recording, is damaged, or the packages that read it are not installed.
 
     """
     place = Path(path)
@@ -223,7 +224,7 @@ def _topic(name: str, info: TopicInfo) -> Topic:
 
 
 def _typestore(connection: Connection) -> Typestore:
-    """Return what reads the messages of a connection, by the recording's own definition first."""
+    """Return the type store of a connection's messages; the recording's definitions come first."""
     from rosbags.interfaces import MessageDefinitionFormat
     from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
 
@@ -239,7 +240,7 @@ def _typestore(connection: Connection) -> Typestore:
             if text.strip():
                 store.register(get_types_from_idl(text))
         return store
-    # These types' layout is the same in every distribution since.
+    # The layout of these types is the same in every later distribution.
     store = get_typestore(Stores.ROS2_HUMBLE)
     for name, text in DEFINITIONS.items():
         store.register(get_types_from_msg(text, name))
@@ -253,16 +254,16 @@ def _typestore(connection: Connection) -> Typestore:
 
 @contextmanager
 def _convert_errors(place: Path, name: str) -> Iterator[None]:
-    """Turn whatever a reader trips over in a damaged recording into one line.
+    """Convert any error of a reader in a damaged recording to an error of one line.
 
-    It calls the recording by `name`, not by the `place` where it lies while it is read.
+    The message contains the `name` of the recording, not the `place` from which it is read.
     """
     try:
         yield
     except (OsgError, MemoryError, OSError):
         raise
-    # rosbags checks little of what it reads: struct.error, IndexError, KeyError, AssertionError
-    # and those of three compression libraries and SQLite all mean the same here.
+    # rosbags validates little: struct.error, IndexError, KeyError, AssertionError and the errors of
+    # three compression libraries and SQLite all mean the same here.
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         reason = reason.replace(str(place), name)

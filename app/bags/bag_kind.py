@@ -8,7 +8,7 @@ from typing import Literal
 
 BagKind = Literal["mcap", "sqlite3", "zip", "folder", "ros1"]
 """A single file of either storage, an archive of a recording's folder, the folder itself, and the
-format of ROS 1, which is known only to be refused by name."""
+format of ROS 1, which is detected only to refuse it by name."""
 
 METADATA = "metadata.yaml"
 """The file that makes a folder a rosbag2."""
@@ -22,16 +22,16 @@ _BEGINNINGS: dict[bytes, BagKind] = {
 
 
 HEAD_BYTES = max(map(len, _BEGINNINGS))
-"""How much of a file `bag_kind` wants to see."""
+"""Bytes from the beginning of a file that `bag_kind` needs."""
 
 
 def bag_kind(head: bytes) -> BagKind | None:
-    """Return what kind of recording begins with `head`, or None; a zip may hold anything else."""
+    """Return the kind of recording that begins with `head`, or None; a zip may hold other files."""
     return next((kind for start, kind in _BEGINNINGS.items() if head.startswith(start)), None)
 
 
 def kind_of(path: Path) -> BagKind | None:
-    """Return what kind of recording lies at `path`, or None when it is none or not there."""
+    """Return the kind of the recording at `path`, or None if there is none."""
     if path.is_dir():
         return "folder" if (path / METADATA).is_file() else None
     if not path.is_file():
@@ -41,7 +41,7 @@ def kind_of(path: Path) -> BagKind | None:
 
 
 def bag_and_topic(text: str) -> tuple[Path, str | None]:
-    """Split ``BAG@/TOPIC``; a file whose very name looks so is taken as it is."""
+    """Split ``BAG@/TOPIC``; an existing file of exactly that name is taken as it is."""
     match = re.fullmatch(r"(.+)@(/[\w/]+)", text)
     if match is None or Path(text).exists():
         return Path(text), None
@@ -49,5 +49,5 @@ def bag_and_topic(text: str) -> tuple[Path, str | None]:
 
 
 def is_bag(path: Path) -> bool:
-    """Return whether `path` is to be read as a dive recording and not as a video file."""
+    """Return whether `path` is read as a dive recording and not as a video file."""
     return kind_of(path) is not None

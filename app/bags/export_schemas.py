@@ -1,8 +1,8 @@
 """JSON Schemas of the messages in an exported bag.
 
-Foxglove knows its own messages by their names (https://docs.foxglove.dev/docs/sdk/schemas); of its
-fields those are given here that are written. The others are ours. All are written out in full,
-without references and without alternatives, since that is what readers of MCAP understand.
+Foxglove knows its own messages by their names (https://docs.foxglove.dev/docs/sdk/schemas); their
+schemas here contain only the fields that are written. The other messages are ours. All schemas are
+complete, without references or alternatives, because readers of MCAP understand only these.
 """
 
 from __future__ import annotations

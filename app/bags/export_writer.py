@@ -39,12 +39,12 @@ CHANNELS: dict[str, export_schemas.Schema] = {
     "/recognitions": export_schemas.RECOGNITION,
     "/log": export_schemas.LOG,
 }
-"""Topic and schema. A take and a recognition are logged when they end."""
+"""Schema of each topic. A take and a recognition are logged when they end."""
 
 FRAME_ID = "camera"
 
 PIXEL_DIGITS, SCORE_DIGITS = 2, 4
-"""Decimals of a coordinate and of a score: no model resolves a hundredth of a pixel."""
+"""Decimals of a coordinate in pixels and of a score: no model resolves a hundredth of a pixel."""
 
 WARNING = 3
 """Foxglove's level of a log message."""
@@ -52,18 +52,18 @@ WARNING = 3
 
 @dataclass(frozen=True, eq=False)
 class NamedRecognition:
-    """A recognition, and what it was about.
+    """A recognition, with its range and language.
 
     Attributes
     ----------
     start, end
         Seconds in the clip.
     language, revision
-        Name of the language that was recognised by, and which state of it.
+        Name and revision of the language used.
     result
         The recogniser's answer.
     expected
-        The label meant, when known.
+        The expected label, if known.
 
     """
 
@@ -77,7 +77,7 @@ class NamedRecognition:
 
 @dataclass(frozen=True, order=True)
 class _Event:
-    """One message; ordered by time alone, as they come within one source."""
+    """One message; ordered only by time, so that messages of one source keep their order."""
 
     time: float
     topic: str
@@ -101,13 +101,13 @@ def write_bag(
     target
         The file; incomplete when this raises.
     recording
-        What was found in the clip.
+        Keypoints of the clip.
     recognitions
-        What was recognised in it.
+        Recognitions in the clip.
     video
-        The clip's video, shown beside; None: none.
+        The clip's video; None for none.
     name
-        What the clip is called.
+        Name of the clip.
     trigger
         What begins and ends the takes.
     progress
@@ -139,7 +139,7 @@ def write_bag(
             stamp = round(event.time * 1e9)
             content = json.dumps(event.content, separators=(",", ":"), allow_nan=False).encode()
             writer.add_message(channels[event.topic], stamp, content, stamp)
-        writer.finish()  # type: ignore[no-untyped-call]  # typed but for this one
+        writer.finish()  # type: ignore[no-untyped-call]  # the only untyped function
 
 
 def _events(
@@ -149,7 +149,7 @@ def _events(
     trigger: Trigger,
     progress: Progress | None,
 ) -> Iterator[_Event]:
-    """Give all messages in the order of time."""
+    """Yield all messages in the order of time."""
     sources = [
         _log(recording),
         _frames(recording, trigger, progress),
@@ -259,7 +259,7 @@ def _recognition_events(recognitions: Sequence[NamedRecognition]) -> Iterator[_E
 
 
 def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
-    """Show each label from the end of its take to the beginning of the next one."""
+    """Yield messages that show each label from the end of its take to the start of the next one."""
     events = []
     for each in recognitions:
         shown = each.result.label or f"no gesture, nearest {each.result.nearest}"

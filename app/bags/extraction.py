@@ -1,4 +1,4 @@
-"""Landmarks and a playable video from one topic of a dive recording."""
+"""Bag extraction: finds the landmarks in a topic of a dive recording, and writes its video."""
 
 from __future__ import annotations
 
@@ -30,30 +30,30 @@ def record_bag(
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
 ) -> Recording:
-    """Find body and hands in a dive recording, as `extraction.record` in a clip.
+    """Find body and hands in a dive recording, as `extraction.record` does in a clip.
 
-    Pictures go from the recording to the models directly; recorded keypoints need no models.
+    Pictures go directly from the recording to the models; recorded keypoints need no models.
 
     Parameters
     ----------
     path
         A rosbag2 folder, its one file, or a zip of either.
     topic
-        Which of its topics; None: the only one that can be used.
+        Name of the topic; None for the only usable one.
     video
-        Where to write a copy that players show (`VideoFile`): the same pictures at the same times,
-        or the skeleton on black where only keypoints were recorded. None: nowhere.
+        Path of a copy for players (`VideoFile`): the same pictures at the same times, or the
+        skeleton on black if only keypoints were recorded. None writes no copy.
     estimator, progress, observer, limits, water
         See `app.recognition.recording.extraction.record`.
 
     Raises
     ------
     BagError
-        When it is no dive recording, is damaged, or holds no such topic.
+        When it is no dive recording, is damaged, or has no such topic.
     TopicError
-        When several topics could be used and none is named.
+        When several topics are usable and none is named.
     VideoError
-        When a limit is broken.
+        When a limit is exceeded.
     ModelError
         When the default estimator's models are not installed.
 
@@ -68,9 +68,9 @@ def record_bag(
 
 
 def write_video(path: str | Path, topic: str | None, video: Path) -> None:
-    """Write the copy that players show of a topic, without looking for landmarks in it.
+    """Write the copy of a topic for players, without finding landmarks in it.
 
-    See `record_bag`, also for what it raises.
+    See `record_bag`, also for the errors raised.
     """
     with open_bag(path) as bag:
         chosen = bag.topic(topic)
@@ -84,7 +84,7 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
 
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
-    """Return whether the topic that `record_bag` would take holds keypoints; raises as it does."""
+    """Return whether the topic that `record_bag` takes holds keypoints; raises the same errors."""
     with open_bag(path) as bag:
         return bag.topic(topic).use == "keypoints"
 
@@ -99,7 +99,7 @@ def _record_pictures(
     limits: VideoLimits | None,
     water: WaterCorrection,
 ) -> Recording:
-    """Let the models see every picture, and copy it for players on the way."""
+    """Find landmarks in every picture, and copy the picture for players."""
     frames = BagFrames(bag, topic, limits)
     with ExitStack() as open_files:
         file = None

@@ -17,13 +17,13 @@ _GROUND = {"r": 0.02, "g": 0.04, "b": 0.06, "a": 0.75}
 _NOTHING = {"r": 0.0, "g": 0.0, "b": 0.0, "a": 0.0}
 
 _POINTS, _LINE_LIST = 1, 4
-"""Foxglove's numbers of what a list of points means."""
+"""Foxglove's numbers for the meaning of a list of points."""
 
 THICKNESS = 1 / 160
-"""Of a bone, in heights of the picture: three pixels of 480."""
+"""Thickness of a bone, in heights of the picture: three pixels of 480."""
 
 FONT_SIZE = 28
-"""Pixels; read from across a table on a laptop."""
+"""Font size in pixels, readable from across a table on a laptop."""
 
 DIGITS = 2
 """Decimals of a pixel: no model resolves a hundredth."""
@@ -49,7 +49,7 @@ def skeleton(
     frame_size
         Width and height of the picture in pixels.
     stamp
-        When it was seen.
+        Time of the frame.
 
     """
     places = {name: row for row, name in enumerate(landmarks)}
@@ -72,7 +72,7 @@ def skeleton(
 
 
 def label(text: str, stamp: Stamp) -> dict[str, Any]:
-    """Draw a text in the picture's top left corner; an empty one takes it away."""
+    """Draw a text in the picture's top left corner; an empty text removes it."""
     drawn = {
         "timestamp": stamp,
         "position": {"x": FONT_SIZE / 2, "y": FONT_SIZE * 1.5},

@@ -39,18 +39,18 @@ _CHANNELS: dict[str, tuple[int, int | None]] = {
     "yuv422_yuy2": (2, cv2.COLOR_YUV2RGB_YUY2),
     "yuyv": (2, cv2.COLOR_YUV2RGB_YUY2),
 }
-"""Of each encoding with 8 bits: bytes a pixel, and OpenCV's conversion to RGB; None: it is RGB."""
+"""Bytes a pixel of each 8-bit encoding, and OpenCV's conversion to RGB; None: it is RGB."""
 
 _SHARED_COLOUR = ("yuv422", "uyvy", "yuv422_yuy2", "yuyv")
 """Encodings in which two neighbours share a colour, so that rows have an even number of pixels."""
 
 _DEEP = {"rgb16": "rgb8", "bgr16": "bgr8", "mono16": "mono8", "16UC1": "mono8"}
-"""Encodings with 16 bits, and what they are once the upper 8 are kept."""
+"""Encodings with 16 bits, and their equivalents with only the upper 8 bits."""
 
 ENCODINGS = (*_CHANNELS, *_DEEP)
 
 _CODECS = {"h264": "h264", "libx264": "h264", "h265": "hevc", "hevc": "hevc", "vp9": "vp9"}
-"""FFmpeg's decoder for what packets call their format."""
+"""FFmpeg's decoder for each format name in packets."""
 
 
 def raw_image(message: Any, limits: VideoLimits) -> Image:
@@ -59,7 +59,7 @@ def raw_image(message: Any, limits: VideoLimits) -> Image:
     Raises
     ------
     BagError
-        When its encoding is not known, or its data is not as large as it says or cannot be.
+        When its encoding is not known, or the size of its data is not as stated or not possible.
     VideoError
         When it is larger than `limits` allow.
 
@@ -104,7 +104,7 @@ class PacketDecoder:
     Parameters
     ----------
     limits
-        How large a picture may be.
+        Limits of a picture's size.
 
     """
 
@@ -120,9 +120,9 @@ class PacketDecoder:
         data
             A JPEG, a PNG, or a packet of a video stream.
         stated
-            What the message calls its format; of pictures, the content decides.
+            Format named in the message; for pictures, the content decides.
         stamp
-            Nanoseconds; the picture that comes of the data gets it, also when others come first.
+            Nanoseconds; stamp of the picture in these data, even if others are complete before it.
 
         Yields
         ------
@@ -136,7 +136,7 @@ class PacketDecoder:
             When the data is damaged.
 
         """
-        # Not one decoder for all PNGs: FFmpeg's adds what is left of the picture before.
+        # A new decoder for each PNG: FFmpeg's adds the remains of the previous picture.
         if self._codec is None or self._codec.name == "png":
             self._codec = self._open(data, stated)
         packet = av.Packet(data)
@@ -144,7 +144,7 @@ class PacketDecoder:
         yield from self._pictures(packet)
 
     def rest(self) -> Iterator[tuple[int, Image]]:
-        """Give the pictures that a stream with reordered frames still holds back."""
+        """Yield the pictures that a stream with reordered frames still holds back."""
         if self._codec is not None:
             yield from self._pictures(None)
 

@@ -1,4 +1,4 @@
-"""Frames of a clip from a topic of pictures, with the recording's own timestamps."""
+"""Bag frames: reads the frames of a topic of pictures, with the recording's own timestamps."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ RAW = "sensor_msgs/msg/Image"
 class BagFrames(Iterator[VideoFrame]):
     """The frames of one topic, read one at a time (`app.recognition.recording.video.FrameSource`).
 
-    Time is the stamp in the messages' headers, when the picture was taken; where a topic begins
-    without, it is when the messages were received. A last odd row or column of pixels is left out,
-    since the usual video codecs store even sizes only and the clip and its landmarks shall agree.
+    Time is the stamp in the messages' headers, at which the picture was taken; if the first message
+    has none, it is the time of reception. A last odd row or column of pixels is left out, because
+    the usual video codecs store only even sizes, and the clip must match its landmarks.
 
     Parameters
     ----------
     bag
-        Open until the last frame is read.
+        The recording, which must stay open until the last frame is read.
     topic
         One of its usable topics of pictures.
     limits
-        What the clip may cost.
+        Limits of the clip.
 
     Attributes
     ----------
@@ -81,7 +81,7 @@ class BagFrames(Iterator[VideoFrame]):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Say in sentences what was wrong with the frames read so far."""
+        """Sentences about faults of the frames read so far."""
         found = []
         name, total = self._topic.name, self._topic.messages
         if self._broken:
@@ -126,7 +126,7 @@ class BagFrames(Iterator[VideoFrame]):
         return VideoFrame(index=self._count - 1, time=time, image=self._fit(image))
 
     def _read(self, bag: Bag) -> Iterator[tuple[int | None, Image]]:
-        """Go through the readable pictures, with nanoseconds after the first one's stamp."""
+        """Yield the readable pictures, with nanoseconds after the stamp of the first one."""
         decoder = PacketDecoder(self._limits)
         messages = bag.messages(self._topic.name)
         try:
@@ -158,13 +158,13 @@ class BagFrames(Iterator[VideoFrame]):
             self._reason = self._reason or str(error)
 
     def _stamp(self, message: Message) -> int:
-        """Return when a message was taken, by the clock that the first one decided for."""
+        """Return the time of a message, by the clock that the first message determined."""
         if self._by_header is None:
             self._by_header = message.stamp > 0
         return message.stamp if self._by_header else message.received
 
     def _relative(self, stamp: int) -> int | None:
-        """Return nanoseconds after the first stamp, exactly; None where there is no stamp."""
+        """Return the exact nanoseconds after the first stamp; None without a stamp."""
         if not stamp:
             return None
         if self._first_stamp is None:
@@ -180,7 +180,7 @@ class BagFrames(Iterator[VideoFrame]):
 
 
 def _crop_to_even(image: Image) -> Image:
-    """Leave out a last odd row or column; raise BagError where nothing would be left."""
+    """Crop a last odd row or column; raise BagError if nothing would be left."""
     height, width = image.shape[:2]
     if min(height, width) < 2:
         raise BagError(f"a picture has {width} x {height} pixels; the recording is damaged")

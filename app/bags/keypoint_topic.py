@@ -1,4 +1,4 @@
-"""Landmark recording from a topic of recorded keypoints, without a pose model."""
+"""Keypoint topic: reads a landmark recording from a topic of keypoints, without a pose model."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from app.recognition.recording.timestamps import FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
 ASSUMED_SIZE = (1280, 720)
-"""Width and height in pixels where a recording has fractions of a picture and nothing of the
-picture: the published port's camera (a ZED) at its default resolution."""
+"""Width and height in pixels assumed for keypoints in fractions of a picture of unknown size: the
+published port's camera (a ZED) at its default resolution."""
 
 LARGEST_FRACTION = 10.0
-"""Pictures away from the picture's corner that a landmark may lie: one that a model places beyond
-the edge is one or two away; what is farther is a number gone wrong."""
+"""Largest distance of a landmark from the picture's corner, in picture sizes: models place
+landmarks one or two pictures beyond the edge; a larger number is an error."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,9 +37,9 @@ class Posed:
     xy
         ``(33, 2)`` of `POSE_LANDMARKS`; NaN: not seen or not given.
     confidence
-        ``(33,)`` in [0, 1]; 0 where not seen, 1 where a message gives none.
+        ``(33,)`` in [0, 1]; 0 if not seen, 1 if the message gives none.
     size
-        Width and height of the picture in pixels, or None where `xy` are fractions of it.
+        Width and height of the picture in pixels, or None if `xy` are fractions of it.
     given
         Names that the message has.
 
@@ -52,14 +52,14 @@ class Posed:
 
 
 def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> Recording:
-    """Read a topic of keypoints, and the salute that was recorded beside it.
+    """Read a topic of keypoints, and the salute recorded beside it.
 
-    Time is the headers' stamps, or when the messages were received where they have none.
+    Time is the headers' stamp, or the time of reception without one.
 
     Raises
     ------
     BagError
-        When no message can be read, or none has a landmark that is known here.
+        When no message can be read, or none has a known landmark.
     VideoError
         When the topic is longer than `limits` allow.
 
@@ -84,7 +84,7 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
 
 
 def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
-    """Return width and height in pixels of the picture that a topic's keypoints lie in.
+    """Return width and height in pixels of the picture of a topic's keypoints.
 
     Raises
     ------
@@ -99,14 +99,14 @@ def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
 
 
 def pad_to_even(size: tuple[int, int]) -> tuple[int, int]:
-    """Make a size even, as the usual video codecs want."""
+    """Round a size up to even numbers, as the usual video codecs require."""
     width, height = (max(2, side // 2 * 2) for side in size)
     return width, height
 
 
 @dataclass
 class _Gathered:
-    """What was read so far, with the time of each."""
+    """Messages read so far, with their times."""
 
     posed: list[Posed] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
@@ -193,7 +193,7 @@ def _pixels(posed: Posed, size: tuple[int, int]) -> FloatArray:
 
 
 def _picture_size(bag: Bag) -> tuple[int, int] | None:
-    """Return the size of the raw pictures or the camera that were recorded too."""
+    """Return the size of raw pictures, or of the camera, in the same recording."""
     for kind in ("sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/Image"):
         for topic in bag.topics:
             if topic.type == kind and topic.messages:
@@ -206,7 +206,7 @@ def _picture_size(bag: Bag) -> tuple[int, int] | None:
 def _convert_points(
     points: list[tuple[str, float, float, float]], size: tuple[int, int] | None
 ) -> Posed:
-    """Sort named points into the landmarks that are known here; others are left out."""
+    """Convert named points to the known landmarks; others are left out."""
     xy, confidence = np.full((len(POSE_LANDMARKS), 2), np.nan), np.zeros(len(POSE_LANDMARKS))
     given = set()
     farthest = LARGEST_FRACTION * (1 if size is None else max(size))
@@ -214,7 +214,7 @@ def _convert_points(
         if (name := translate_landmark(said)) is None:
             continue
         given.add(name)
-        # NaN is not nearer than anything.
+        # NaN fails both comparisons.
         if abs(x) <= farthest and abs(y) <= farthest:
             row = POSE_LANDMARKS.index(name)
             xy[row] = x, y

@@ -1,7 +1,7 @@
-"""Message definitions for recordings that carry none: sqlite3 before ROS 2 Iron kept only names.
+"""Message definitions: for recordings without any, as sqlite3 before ROS 2 Iron kept only names.
 
-ROS 2's own types come with rosbags. These are the others that topics of keypoints or packets of
-video are recorded with.
+ROS 2's own types come with rosbags. These are the other types of recorded topics of keypoints or of
+video packets.
 """
 
 from __future__ import annotations
@@ -35,4 +35,4 @@ DEFINITIONS = {
         "builtin_interfaces/Time timestamp\nstring frame_id\nuint8[] data\nstring format\n"
     ),
 }
-"""Definition by type name, without comments and constants: what decides how bytes are read."""
+"""Definition by type name, without comments and constants, which do not affect decoding."""

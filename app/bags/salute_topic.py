@@ -1,4 +1,4 @@
-"""Salute confidence and hands from the topics recorded beside keypoints."""
+"""Salute topic: reads salute scores and hands from the topics recorded beside keypoints."""
 
 from __future__ import annotations
 
@@ -19,28 +19,28 @@ OURS = "osg_interfaces/msg/Hands"
 PUBLISHED = "std_msgs/msg/Bool"
 
 LONGEST_HOLD = 0.5
-"""Seconds for which a message of the salute holds, without a newer one: the longest gap that a
-trajectory bridges too. A node that died with a salute in view must not salute for ever."""
+"""Seconds for which a salute message is valid without a newer one: the longest gap that a
+trajectory bridges too. A node that died with a salute in view must not signal it for ever."""
 
 Stamps: TypeAlias = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
 class SaluteTrack:
-    """What a topic said of the salute over time.
+    """Salute scores of a topic over time.
 
     Attributes
     ----------
     topic
-        Its name; None: the recording holds none.
+        Name of the topic; None if the recording has none.
     stamps
         ``(M,)`` nanoseconds, not decreasing.
     scores
         ``(M,)`` in [0, 1].
     hands
-        M tuples: the hands that come with each score.
+        M tuples: the hands of each score's message.
     frame_size
-        Width and height of the picture, where the messages say it.
+        Width and height of the picture, if the messages state it.
 
     """
 
@@ -56,7 +56,7 @@ class SaluteTrack:
         return bool((self.scores > 0).any())
 
     def at(self, stamps: Stamps) -> FloatArray:
-        """Return the score ``(T,)`` that held at each moment, in [0, 1]."""
+        """Return the score ``(T,)`` at each moment, in [0, 1]."""
         places = self._places(stamps)
         scores = np.append(self.scores, 0.0)
         return np.asarray(scores[places], dtype=np.float64)
@@ -67,7 +67,7 @@ class SaluteTrack:
         return tuple(hands[place] for place in self._places(stamps))
 
     def _places(self, stamps: Stamps) -> npt.NDArray[np.intp]:
-        """Index ``(T,)`` of the nearest message, -1 where none is near."""
+        """Return the index ``(T,)`` of the nearest message, -1 if none is near."""
         if not len(self.stamps):
             return np.full(len(stamps), -1, dtype=np.intp)
         after = np.clip(np.searchsorted(self.stamps, stamps), 1, max(1, len(self.stamps) - 1))
@@ -82,15 +82,16 @@ class SaluteTrack:
 def salute_track(bag: Bag, keypoints: Topic, by_header: bool) -> SaluteTrack:
     """Read the salute that belongs to a topic of keypoints.
 
-    Our own topic of hands is taken first, then a flag that is named after the salute; of several,
-    the one in the keypoints' namespace.
+    Our own topic of hands is preferred, then a flag that is named after the salute; of several, the
+    one in the keypoints' namespace.
 
     Parameters
     ----------
     bag, keypoints
         The recording, and the topic.
     by_header
-        Whether the keypoints' time is their headers' stamp. The salute's is compared with it.
+        Whether the keypoints' time is their headers' stamp; the salute's time must be of the same
+        clock.
 
     """
     topic = _choose_topic(bag, keypoints)
@@ -101,7 +102,7 @@ def salute_track(bag: Bag, keypoints: Topic, by_header: bool) -> SaluteTrack:
     hands: list[tuple[Hand, ...]] = []
     size: tuple[int, int] | None = None
     for message in _readable(bag, topic):
-        # A flag has no header: it was received when its keypoints were, about.
+        # A flag has no header; it is received at about the same time as its keypoints.
         stamps.append(message.stamp if by_header and message.stamp else message.received)
         content = message.content
         if topic.type == PUBLISHED:
@@ -122,7 +123,7 @@ def salute_track(bag: Bag, keypoints: Topic, by_header: bool) -> SaluteTrack:
 
 
 def _readable(bag: Bag, topic: Topic) -> Iterator[Message]:
-    """Give the messages up to where the recording is damaged."""
+    """Yield the messages before any damage in the recording."""
     try:
         yield from bag.messages(topic.name)
     except BagError:
@@ -150,7 +151,7 @@ def _size(content: Any) -> tuple[int, int] | None:
 
 
 def _hands(content: Any) -> tuple[Hand, ...]:
-    """Return the whole hands of a message, the larger first."""
+    """Return the complete hands of a message, the larger first."""
     found = []
     for hand in content.hands:
         points = {str(p.name).lower(): (float(p.x), float(p.y)) for p in hand.keypoints}

@@ -1,4 +1,4 @@
-"""Drawing of a skeleton on black, for clips that have landmarks and no video."""
+"""Skeleton image: draws a skeleton on black, for clips that have landmarks and no video."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from app.recognition.poses.sequence import FloatArray
 
 BONE = (208, 214, 222)
 JOINT = (90, 160, 255)
-"""RGB, light on black: the studio's own colours lie over the picture."""
+"""RGB, light on black; the studio draws its own colours over the picture."""
 
 THICKNESS = 1 / 160
-"""Of a bone, in heights of the picture: three pixels of 480, visible on a thumbnail."""
+"""Thickness of a bone, in heights of the picture: three pixels of 480, visible on a thumbnail."""
 
 _SUBPIXEL = 4
-"""Bits after the point that OpenCV draws with; movement stays smooth."""
+"""Fractional bits of coordinates in OpenCV's drawing, so that movement is smooth."""
 
 _FARTHEST = 2.0
-"""Pictures away from the picture to which a point is drawn: OpenCV counts in 32 bits."""
+"""Farthest point drawn, in picture sizes beyond the edge: OpenCV counts in 32 bits."""
 
 
 def skeleton_picture(xy: FloatArray, size: tuple[int, int]) -> Image:
@@ -42,7 +42,7 @@ def skeleton_picture(xy: FloatArray, size: tuple[int, int]) -> Image:
     picture = np.zeros((height, width, 3), dtype=np.uint8)
     thickness = max(2, round(height * THICKNESS))
     limit = _FARTHEST * max(size)
-    # NaN is not smaller than anything.
+    # The comparison is False for NaN.
     seen = np.asarray((np.abs(xy) < limit).all(axis=1))
     points = np.rint(np.nan_to_num(np.clip(xy, -limit, limit)) * 2**_SUBPIXEL).astype(int)
     for one, other in SKELETON:

@@ -1,4 +1,4 @@
-"""Video of a landmark recording: the skeleton on black, frame by frame."""
+"""Skeleton video: draws a landmark recording on black, frame by frame."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ def show_recording(
     progress: Progress | None = None,
     observer: Observer | None = None,
 ) -> None:
-    """Draw a recording's frames one by one where somebody wants to look at them.
+    """Draw a recording's frames one by one, if there is a video or an observer.
 
     Parameters
     ----------
     recording
-        Of any landmarks; those of `POSE_LANDMARKS` are drawn.
+        Recording of any landmarks; those of `POSE_LANDMARKS` are drawn.
     video
-        Where to write them as a video (`VideoFile`); None: nowhere.
+        Path of the video (`VideoFile`); None writes none.
     progress, observer
         See `app.recognition.recording.extraction.record`.
 
     Raises
     ------
     VideoError
-        When its pictures would be larger than those of a clip may be.
+        When its pictures exceed the largest size of a clip.
 
     """
     poses = recording.poses
@@ -66,7 +66,7 @@ def show_recording(
 
 
 def _whole_body(poses: PoseSequence) -> tuple[FloatArray, FloatArray]:
-    """Return ``(T, 33, 2)`` and ``(T, 33)`` of `POSE_LANDMARKS`; what is not given is not seen."""
+    """Return ``(T, 33, 2)`` and ``(T, 33)`` of `POSE_LANDMARKS`; missing ones count as not seen."""
     xy = np.full((len(poses), len(POSE_LANDMARKS), 2), np.nan)
     confidence = np.zeros(xy.shape[:2])
     known = [name for name in poses.landmarks if name in POSE_LANDMARKS]

@@ -24,12 +24,13 @@ from app.system.zip_archive import (
 )
 
 MOST_ENTRIES = 1000
-"""Of an archive. A recording split every minute for a whole day has 1440 files; nobody uploads a
-day at once, and a directory of a million entries takes minutes to read."""
+"""Most entries of an archive. A recording split every minute for a whole day has 1440 files, but
+nobody uploads a day at once, and a directory of a million entries takes minutes to read."""
 
 MOST_BYTES = 4 * 512 * 1024 * 1024
-"""Unpacked: four times what may be uploaded. Pictures in a recording are compressed already, raw
-ones by their noise to a half or a third at best; what shrinks further is no recording."""
+"""Most bytes after unpacking: four times the largest upload. Pictures in a recording are compressed
+already, and noise keeps raw ones from shrinking below a third; smaller archives are no
+recordings."""
 
 ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 """File endings by which rosbags recognises the two storages."""
@@ -37,7 +38,7 @@ ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 
 @contextmanager
 def stage(path: Path) -> Iterator[Path]:
-    """Give the place from which a recording can be read; what was unpacked there goes at the end.
+    """Yield the path from which a recording can be read; unpacked files are removed at the end.
 
     Raises
     ------
@@ -77,7 +78,7 @@ def _known_kind(path: Path) -> BagKind:
 
 
 def _stand_in(path: Path, place: Path) -> None:
-    """Let `place` stand for the file at `path`, without copying it where the system can."""
+    """Make `place` a stand-in for the file at `path`, without a copy if the system allows it."""
     for way in (os.symlink, os.link, shutil.copyfile):
         try:
             way(path, place)
@@ -107,7 +108,7 @@ def _unpack(path: Path, folder: Path) -> Path:
 
 
 def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
-    """Return the entries that make up the recording by name, after a look at all of them."""
+    """Return the entries of the recording by name, after a check of all entries."""
     entries = listed_files(archive)
     if len(entries) > MOST_ENTRIES:
         raise BagError(
@@ -137,7 +138,7 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
 
 
 def _belongs(name: str) -> bool:
-    """Return by its name whether a file is part of a recording."""
+    """Return whether a file is part of a recording, by its name."""
     return name == METADATA or name.removesuffix(".zstd").endswith((".mcap", ".db3"))
 
 
@@ -149,7 +150,7 @@ def _too_large(name: str, size: int) -> BagError:
 
 
 def is_bag_archive(path: Path) -> bool:
-    """Return whether the zip at `path` looks like a dive recording; names alone are read."""
+    """Return whether the zip at `path` looks like a dive recording; only names are read."""
     with path.open("rb") as file:
         if bag_kind(file.read(8)) != "zip":
             return False

@@ -1,4 +1,4 @@
-"""Summary of the topics that a clip can be made of; the first picture of each is decoded."""
+"""Topic summary: lists the usable topics of a recording, with the size of each first picture."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.recognition.errors import BagError, OsgError
 from app.recognition.recording.video_limits import VideoLimits
 
 LONGEST_NAME = 255
-"""Characters of a topic's name: as long as ROS allows one to be."""
+"""Most characters of a topic's name, as ROS allows."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class TopicSummary:
 
 
 def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[TopicSummary, ...]:
-    """Look into a recording, and decode the first picture of every topic that could be used.
+    """List the usable topics of a recording, and decode the first picture of each.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     BagError
         When the file is no recording, is damaged, or no topic can be used.
     VideoError
-        When every topic breaks a limit.
+        When every topic exceeds a limit.
 
     """
     limits = limits or VideoLimits()
@@ -60,7 +60,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     with open_bag(path) as bag:
         candidates = [topic for topic in bag.topics if _choosable(topic)]
         if not candidates:
-            bag.topic()  # raises, and says why
+            bag.topic()  # raises an error with the reason
         durations = bag.durations()
         for topic in candidates:
             try:

@@ -1,4 +1,4 @@
-"""H.264 video writer with a timestamp per frame."""
+"""Video writer: writes H.264 with a timestamp per frame."""
 
 from __future__ import annotations
 
@@ -17,34 +17,35 @@ from app.recognition.poses.frame import Image
 from app.recognition.recording.video import VideoFrame
 
 TICK = Fraction(1, 1_000_000)
-"""Seconds: MP4 counts the time between frames in 32 bits, which in microseconds is an hour."""
+"""Unit of time in seconds: MP4 counts the time between frames in 32 bits, an hour of
+microseconds."""
 
 QUALITY = {"crf": "18", "preset": "veryfast", "bf": "0"}
-"""Of x264: 18 is where its losses stop being seen; no frames out of order, so that players that
-step do it exactly. The landmarks come from the recording's own pictures, not from this copy."""
+"""Options of x264: at 18 its losses are no longer visible; without reordered frames, players step
+exactly. The landmarks come from the recording's own pictures, not from this copy."""
 
 STREAM_QUALITY = "23"
-"""x264's own default: the copy in a bag is to be looked at, not to be measured in."""
+"""Quality of the copy in a bag: x264's default, because the copy is only for viewing."""
 
 KEY_FRAMES = "50"
-"""Frames from one that stands alone to the next: a player that jumps decodes two seconds at most,
-at the usual 25 a second."""
+"""Frames from one key frame to the next: a player that jumps decodes at most two seconds, at the
+usual 25 frames a second."""
 
 
 class VideoFile:
-    """Writes frames of one even size; a context that ends well leaves a whole file.
+    """Writes frames of one even size; a context that ends without an error leaves a complete file.
 
     Parameters
     ----------
     path
-        Where to write; its ending does not matter.
+        Path of the file; its ending does not matter.
     width, height
         Pixels, both even.
 
     """
 
     def __init__(self, path: Path, width: int, height: int) -> None:
-        # The index first: a browser plays it while it is still being fetched.
+        # The index comes first, so that a browser plays the file during its download.
         options = {"movflags": "faststart"}
         self._container = av.open(str(path), "w", format="mp4", options=options)
         stream = self._container.add_stream("libx264", options=dict(QUALITY))
@@ -69,9 +70,9 @@ class VideoFile:
 
 
 def packets(frames: Iterable[VideoFrame]) -> Iterator[tuple[float, bytes]]:
-    """Encode frames so that each can be sent alone, as Foxglove's ``CompressedVideo`` wants it.
+    """Encode frames as separate packets, as Foxglove's ``CompressedVideo`` requires.
 
-    An odd last row or column is left out, since H.264 stores even sizes.
+    An odd last row or column is left out, because H.264 stores even sizes.
 
     Yields
     ------

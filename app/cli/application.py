@@ -77,7 +77,7 @@ BAD_INPUT = 2
 CRASHED = 3
 
 _build_command = cache(get_command)
-"""What the tests run a thousand times is built once."""
+"""Cached, because the tests run it a thousand times."""
 
 command_line = typer.Typer(
     name="osg-studio",

@@ -1,4 +1,4 @@
-"""Clip arguments of the command line: parse what names a clip, and read its landmarks."""
+"""Clip arguments: parses the arguments that name clips, and reads the clips' landmarks."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ DiverOption = Annotated[
 def keypoint_options(
     frame_rate: float | None, frame_size: str | None, landmark: list[str] | None
 ) -> KeypointOptions:
-    """Read what the user says of keypoint files.
+    """Parse the user's options for keypoint files.
 
     Raises
     ------
@@ -102,18 +102,18 @@ def keypoint_options(
 
 @dataclass(frozen=True)
 class ClipReading:
-    """How clips are turned into landmarks.
+    """Options for reading the landmarks of clips.
 
     Attributes
     ----------
     water
         Whether colour and contrast are corrected first.
     estimator, hands
-        What finds body and hands, see `create_estimator`.
+        Names of the estimators of body and hands, see `create_estimator`.
     topic
-        Of a dive recording, which one; None: the one that the clip names, or the only one.
+        Topic of a dive recording; None for the one that the clip names, or the only one.
     keypoints
-        What keypoint files do not tell.
+        Values that keypoint files do not contain.
     trigger
         What begins and ends their takes.
 
@@ -127,14 +127,14 @@ class ClipReading:
     trigger: Trigger = SALUTE
 
     def options(self, topic: str | None) -> ReadOptions:
-        """Return the same for a clip source; `topic` is the one that the clip names."""
+        """Return the options for a clip source; `topic` is the one that the clip names."""
         given = {"topic": self.topic or topic, "water": self.water}
         return ReadOptions.of_keypoints(self.keypoints).model_copy(update=given)
 
 
 @dataclass(frozen=True, eq=False)
 class ReadClip:
-    """What was read from a clip.
+    """Landmarks read from a clip.
 
     Attributes
     ----------
@@ -152,9 +152,9 @@ class ReadClip:
     trigger: Trigger = SALUTE
 
     def takes(self, span: tuple[float, float] | None) -> list[Take]:
-        """Return the range given by hand, or what lies between salutes or other triggers.
+        """Return the range given by hand, or the takes between salutes or other triggers.
 
-        The whole recording where its source cannot show a salute, or without a trigger.
+        The whole recording is one take if its source cannot show a salute, or without a trigger.
 
         Raises
         ------
@@ -199,7 +199,7 @@ class Demonstration:
 
 
 def parse_demonstrations(text: str) -> list[Demonstration]:
-    """Parse ``LABEL=CLIP[,CLIP...]``; a file whose very name has commas is taken as it is.
+    """Parse ``LABEL=CLIP[,CLIP...]``; an existing file whose name has commas is taken as it is.
 
     Raises
     ------
@@ -225,7 +225,7 @@ def define_gesture(
     diver: str = "",
     gesture: Gesture | None = None,
 ) -> Gesture:
-    """Make a gesture of clips, or add them to a `gesture`, and print what each one shows.
+    """Create a gesture from clips, or add them to a `gesture`, and print what each one shows.
 
     Raises
     ------
@@ -250,7 +250,7 @@ def define_gesture(
 
 
 def describe_shown(gesture: Gesture) -> str:
-    """Return what a gesture of one demonstration is made of: landmarks and hand shapes."""
+    """Return the landmarks and hand shapes of a gesture with one demonstration, in words."""
     followed = f"salient: {', '.join(gesture.salient)}"
     if gesture.trajectory is None:
         return followed
@@ -268,7 +268,7 @@ def _name_sides(hands: Sequence[HandShape]) -> str:
 
 
 def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
-    """Split ``CLIP@START-END`` (seconds); a file whose very name looks so is taken as it is."""
+    """Split ``CLIP@START-END`` (seconds); an existing file of that name is taken as it is."""
     number = r"\d+(?:\.\d+)?"
     match = re.fullmatch(rf"(.+)@({number})-({number})", text)
     if match is None or Path(text).exists():
@@ -301,7 +301,7 @@ def demonstration_poses(
 
 
 def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
-    """Make a take of the range the user gives, in seconds of the clip; nothing is trimmed.
+    """Create a take from the user's range, in seconds of the clip; nothing is trimmed.
 
     Raises
     ------
@@ -364,7 +364,7 @@ def recognize_clip(
 def read_clip(
     clip: Path, reading: ClipReading | None = None, language: Language | None = None
 ) -> ReadClip:
-    """Read a clip's landmarks, and print what there is to know about the recording.
+    """Read a clip's landmarks, and print the facts and warnings about the recording.
 
     Parameters
     ----------
@@ -372,17 +372,17 @@ def read_clip(
         A video, whose landmarks are found behind a progress bar; a dive recording as ``BAG`` or
         ``BAG@/TOPIC``; or a keypoint file or folder of another program (`app.keypoint_files`).
     reading
-        How to read it; None: with the installed models.
+        Options for reading; None takes the installed models.
     language
-        What is to be recognised: a source without the landmarks it needs is refused before
-        anything is recognised, and before a model looks at any frame.
+        Language to recognise: a source without the landmarks that it needs is refused before any
+        recognition, and before a model processes any frame.
 
     Raises
     ------
     LandmarkError
         When the source lacks a landmark of the language.
     VideoError, KeypointFileError
-        When there is no clip, or none that can be read.
+        When there is no clip, or it cannot be read.
     BagError
         When it is a dive recording and cannot be read, or has no such topic.
 
@@ -399,7 +399,7 @@ def read_clip(
         read = _read_keypoints(source, path, options, language)
     recording = read.recording
     if how.trigger.kind != "salute":
-        # Nobody salutes, and nobody needs to.
+        # Without salutes, warnings about them do not apply.
         kept = tuple(each for each in recording.warnings if "salute" not in each)
         recording = replace(recording, warnings=kept)
     for warning in recording.warnings:
@@ -410,7 +410,7 @@ def read_clip(
 def _read_keypoints(
     source: ClipSource, path: Path, options: ReadOptions, language: Language | None
 ) -> ReadClip:
-    """Read recorded keypoints, whose landmarks are known when they are read."""
+    """Read recorded keypoints; their landmarks are only known after reading."""
     recorded = source.record(path, options)
     if language is not None:
         name = f"{path}@{options.topic}" if options.topic else str(path)
@@ -425,7 +425,7 @@ def _read_pictures(
     how: ClipReading,
     language: Language | None,
 ) -> ReadClip:
-    """Find landmarks in pictures, after a look at which ones the estimator can find."""
+    """Find landmarks in pictures, after a check of those that the estimator can find."""
     with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
         if language is not None:
             require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")

@@ -62,7 +62,7 @@ def extract(
             stage = f"{progress.clips} of {len(clips)} clips, kB"
             advance(progress.done_bytes // _KILOBYTE, footage.total_bytes // _KILOBYTE, stage)
 
-        # The clips of a batch are files of a folder, wherever a studio keeps its own.
+        # The clips of a batch are files of a folder, even if the studio has an object store.
         processes = Workers(settings.model_copy(update={"storage": None}))
         footage = Footage(clips, recordings_dir(), processes, show)
         ended = asyncio.run(_work(footage, processes, workers or _cores()))
@@ -95,7 +95,7 @@ def _shows_diver(path: Path) -> bool:
 
 
 def _tell(folder: Path, ended: Sequence[Extracted], output: Path | None) -> None:
-    """Print clip and recording of each line by line, and what could not be read."""
+    """Print each clip with its recording, one a line, and the clips that could not be read."""
     failed = 0
     for each in ended:
         if each.recording is None:

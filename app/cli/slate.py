@@ -17,7 +17,7 @@ def slate(
     output: Annotated[Path, typer.Option(help="File to write, .pdf or .svg")],
 ) -> None:
     """Write a language as one printable page for divers: strokes, meanings, and the salute."""
-    # A robot, which has the other commands, has nothing that draws pages.
+    # Imported here, because a robot's installation has the other commands, but cannot draw pages.
     from app.ui.slate.layout import lay_out
     from app.ui.slate.pdf import to_pdf
     from app.ui.slate.svg import to_svg

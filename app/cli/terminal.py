@@ -129,7 +129,7 @@ def progress_bar(title: str) -> Iterator[Callable[..., None]]:
 
 
 _batch: ContextVar[Progress | None] = ContextVar("batch", default=None)
-"""Progress of the batch that goes on; a terminal shows only one at a time."""
+"""Progress display of the running batch; a terminal shows only one at a time."""
 
 
 @contextmanager
@@ -139,9 +139,9 @@ def batch_bar(clips: int, size: int) -> Iterator[Callable[[int, str], None]]:
     Parameters
     ----------
     clips
-        How many there are.
+        Number of clips.
     size
-        Their bytes together; the time left is estimated by them.
+        Total bytes of the clips, from which the time left is estimated.
 
     """
     columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())

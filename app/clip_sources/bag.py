@@ -43,8 +43,8 @@ class BagSource:
     has_topics = True
     makes_video = True
     probe_seconds = 120.0
-    """Probing reads all of it, after unpacking: the largest there may be
-    (`app.bags.staging.MOST_BYTES`) at 20 MB/s, the slowest disk that is still sold."""
+    """Longest time to probe, which reads the whole unpacked recording: the largest allowed
+    (`app.bags.staging.MOST_BYTES`) at 20 MB/s, the slowest disk still sold."""
     broken_off = Refusal(
         code="bag_unreadable",
         detail="the process that read this dive recording broke off: the recording is damaged, or "
@@ -110,7 +110,7 @@ class BagSource:
         return RecordedClip(found, estimator is None or finds_hands(estimator), seen)
 
     def refuse(self, error: OsgError, path: Path) -> Refusal:
-        """Name the clip, and not the file that it is stored as."""
+        """Return a refusal that names the clip, not the stored file."""
         codes: dict[type, str] = {TopicError: "topic_needed", BagError: "bag_unreadable"}
         detail = str(error).replace(path.name, "the clip")
         return Refusal(codes.get(type(error), "video_unreadable"), detail)
@@ -121,7 +121,7 @@ class BagSource:
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
-        """Open a topic of pictures; each has its own stamp."""
+        """Open a topic of pictures, each with its own stamp."""
         with ExitStack() as opening:
             bag = opening.enter_context(open_bag(path))
             chosen = bag.topic(options.topic)

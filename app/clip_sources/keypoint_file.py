@@ -1,4 +1,4 @@
-"""Clip source: another program's keypoint file, whose skeleton is drawn as the video."""
+"""Clip source: another program's keypoint file; the video is its drawn skeleton."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ FRAME_SIZE_NEEDED = (
 
 
 class KeypointFileSource:
-    """Keypoints that OpenPose, MediaPipe, DeepLabCut or SLEAP wrote."""
+    """Keypoint file written by OpenPose, MediaPipe, DeepLabCut or SLEAP."""
 
     name = "keypoints"
     noun = "a keypoint file"
@@ -62,7 +62,7 @@ class KeypointFileSource:
     has_topics = False
     makes_video = True
     probe_seconds = 120.0
-    """Probing reads all of it: there is no other way to know what it holds."""
+    """Longest time to probe, which must read the whole file to know its content."""
     broken_off = Refusal(
         code="keypoints_unreadable",
         detail="the process that read this keypoint file broke off: the file is damaged, or it "
@@ -78,7 +78,7 @@ class KeypointFileSource:
         return keypoint_ending(head, name) is not None
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
-        """Add the ending that the file is read by."""
+        """Return `options` with the ending by which the file is read."""
         return options.model_copy(update={"ending": keypoint_ending(head, name)})
 
     def media_type(self, head: bytes) -> str:
@@ -115,7 +115,7 @@ class KeypointFileSource:
         progress: Progress | None = None,
         observer: Observer | None = None,
     ) -> RecordedClip:
-        """Read the keypoints, and draw the skeleton where somebody looks at it."""
+        """Read the keypoints, and draw the skeleton if there is a video or an observer."""
         read = _read(path, options)
         recording = read.recording
         show_recording(recording, video, progress, observer)
@@ -125,7 +125,7 @@ class KeypointFileSource:
         return RecordedClip(recording, read.has_hands, recording.poses.landmarks)
 
     def refuse(self, error: OsgError, path: Path) -> Refusal:
-        """Ask for what is missing by the name of its form field; name no stored file."""
+        """Return a refusal that names missing values by form field, and not the stored file."""
         match error:
             case FrameRateError():
                 return Refusal("frame_rate_needed", FRAME_RATE_NEEDED)
@@ -149,7 +149,7 @@ class KeypointFileSource:
 
 
 def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
-    """Read a file; one that was stored without its name is read under its ending."""
+    """Read a file; one that was stored without its name is read by its ending."""
     if options.ending is None:
         return read_keypoints(path, options.keypoints)
     with stage(path, options.ending) as place:
@@ -162,7 +162,7 @@ def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
 
 
 def _without_path(text: str, place: Path) -> str:
-    """Replace the stored file's name, and say where an option of the command line is meant."""
+    """Replace the stored file's name, and mention that the named option is of the command line."""
     text = text.replace(f"{place}/", "").replace(str(place), "the file")
     text = text.replace(place.name, "the file")
     option = " --landmark" in text and "(an option of the command line)" not in text

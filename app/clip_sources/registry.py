@@ -1,4 +1,4 @@
-"""Registry of clip sources; a further kind of file is one more entry of `SOURCES`."""
+"""Registry of clip sources: a new kind of file is a new entry of `SOURCES`."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def sources_of_upload(head: bytes, name: str) -> list[ClipSource]:
 def source_of(path: Path, topic: str | None = None) -> ClipSource:
     """Return the source that reads a file or folder.
 
-    A file that no source recognises is read as a video, whose reader says what is wrong with it.
+    A file that no source recognises is read as a video; the video reader then explains the fault.
 
     Raises
     ------
@@ -52,12 +52,12 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
 
 
 def is_take(path: Path) -> bool:
-    """Return whether `path` in a folder of labelled takes is one."""
+    """Return whether `path`, in a folder of labelled takes, is a take."""
     return any(source.is_take(path) for source in SOURCES)
 
 
 def supported_kinds() -> str:
-    """Say in words which files are none of the known kinds, and what to send instead."""
+    """Return, in words, that a file is of no known kind, and which kinds to send instead."""
     nouns = _join([source.noun for source in SOURCES], "nor")
     formats = _join([source.formats for source in SOURCES], "or")
     return f"neither {nouns} this app knows, whatever its name says; send {formats}"

@@ -22,7 +22,7 @@ MADE_VIDEO: Final = "video/mp4"
 
 
 class UnsupportedFile(OsgError):
-    """Raised when a file turns out not to be of the kind that its first bytes promised."""
+    """Raised when a file is not of the kind that its first bytes indicate."""
 
 
 @dataclass(frozen=True)
@@ -43,18 +43,18 @@ class Refusal:
 
 
 class ReadOptions(BaseModel):
-    """How a file is read, as far as the file does not say so itself.
+    """Options for reading a file: values that the file does not contain.
 
     Attributes
     ----------
     topic
-        Of a dive recording: which one; None: the only one that can be used.
+        Topic of a dive recording; None for the only usable one.
     ending
-        Of a keypoint file that was stored without its name: the ending that it is read by.
+        Ending by which a keypoint file that was stored without its name is read.
     frame_rate, frame_size, landmarks
-        Of a keypoint file, see `KeypointOptions`.
+        Values for a keypoint file, see `KeypointOptions`.
     water
-        Whether colour and contrast are corrected before landmarks are looked for.
+        Whether colour and contrast are corrected before landmarks are found.
 
     """
 
@@ -69,7 +69,7 @@ class ReadOptions(BaseModel):
 
     @classmethod
     def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:
-        """Return the options of keypoint files, all else as usual."""
+        """Return options with these values for keypoint files, and defaults otherwise."""
         return cls(
             frame_rate=keypoints.frame_rate,
             frame_size=keypoints.frame_size,
@@ -119,18 +119,18 @@ class ClipTopic:
 
 @dataclass(frozen=True)
 class ClipFacts:
-    """What a file says about the clip that it would be, before all of it is read.
+    """Facts that a file states about its clip, before all of it is read.
 
     Attributes
     ----------
     width, height
         Pixels of the upright picture.
     duration
-        Seconds; None where the container does not say.
+        Seconds; None if the container does not state it.
     frames
-        Count; None where the container does not say.
+        Number of frames; None if the container does not state it.
     topics
-        Of a dive recording: the topics to choose from; the other values are those of the first.
+        Topics of a dive recording to choose from; the other values are those of the first topic.
 
     """
 
@@ -186,15 +186,15 @@ class ClipSource(Protocol):
     name
         Stable word for programs; the database and the name of the stored file use it.
     noun
-        With its article, for messages: ``a video``.
+        Noun with its article, for messages: ``a video``.
     formats
-        For messages: the formats to send.
+        Formats to send, for messages.
     endings
-        Endings of the names of such files, in lower case.
+        Endings of the names of these files, in lower case.
     folder
-        For messages: how a folder of this kind is recognised; None: it is always a file.
+        Mark of a folder of this kind, for messages; None if it is always a file.
     has_pictures
-        Whether such a file may hold pictures of the diver.
+        Whether a file of this kind may hold pictures of the diver.
     has_topics
         Whether a clip is made of one of several topics.
     makes_video
@@ -203,7 +203,7 @@ class ClipSource(Protocol):
     probe_seconds
         Longest time for `probe`.
     broken_off
-        What to answer when the process that reads the file dies.
+        Refusal to return when the process that reads the file dies.
 
     """
 
@@ -235,16 +235,16 @@ class ClipSource(Protocol):
         ...
 
     def is_take(self, path: Path) -> bool:
-        """Return by its name whether `path` in a folder of labelled takes is one."""
+        """Return whether `path`, in a folder of labelled takes, is a take, by its name."""
         ...
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
-        """Read what the file says about itself.
+        """Read the facts that the file states about its clip.
 
         Raises
         ------
         UnsupportedFile
-            When the file is of another kind after all.
+            When the file is of another kind.
         OsgError
             When no clip can be made of it.
 
@@ -272,14 +272,14 @@ class ClipSource(Protocol):
         path, options
             The file, and how it is read.
         video
-            Where to write the video that players show, if `makes_video`; None: nowhere.
+            Path of the video that players show, if `makes_video`; None writes none.
         estimator, progress, observer
             See `app.recognition.recording.extraction.record`.
 
         Raises
         ------
         OsgError
-            When the file cannot be read, or breaks a limit.
+            When the file cannot be read, or exceeds a limit.
         ModelError
             When the default estimator's models are not installed.
 
@@ -291,7 +291,7 @@ class ClipSource(Protocol):
         ...
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
-        """Return a video of the clip, written to `copy` where the file is none; None: no video."""
+        """Return a video of the clip, written to `copy` if the file is none; None for no video."""
         ...
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:

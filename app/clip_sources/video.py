@@ -25,7 +25,7 @@ class VideoSource:
     has_topics = False
     makes_video = False
     probe_seconds = 30.0
-    """Probing decodes one frame, which takes milliseconds."""
+    """Longest time to probe, which decodes one frame and takes milliseconds."""
     broken_off = Refusal(
         code="decoder",
         detail="the process that read this clip broke off: the clip is damaged, or it needs more "
@@ -58,7 +58,7 @@ class VideoSource:
         return path.suffix.lower() in self.endings and path.is_file()
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
-        """Read what the container says, and decode one frame."""
+        """Read the container's facts, and decode one frame."""
         info = probe(path)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
@@ -84,7 +84,7 @@ class VideoSource:
         return RecordedClip(found, has_hands, found.poses.landmarks)
 
     def refuse(self, error: OsgError, path: Path) -> Refusal:
-        """Name the clip, and not the file that it is stored as."""
+        """Return a refusal that names the clip, not the stored file."""
         return Refusal("video_unreadable", str(error).replace(path.name, "the clip"))
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:

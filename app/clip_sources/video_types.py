@@ -1,14 +1,14 @@
-"""Media type of a video by its first bytes; names and stated types prove nothing."""
+"""Video types: the media type by the first bytes, because names and stated types prove nothing."""
 
 from __future__ import annotations
 
 HEAD_BYTES = 4096
-"""How much of a file `video_type` wants to see."""
+"""Bytes from the beginning of a file that `video_type` needs."""
 
 _MPEG_TS_PACKET = 188
 
 _ISO_BOXES = frozenset({b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot"})
-"""What an ISO or QuickTime file may begin with; old cameras write no ``ftyp``."""
+"""First boxes of an ISO or QuickTime file; old cameras write no ``ftyp``."""
 
 
 def video_type(head: bytes) -> str | None:

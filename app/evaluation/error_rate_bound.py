@@ -12,7 +12,7 @@ CONFIDENCE = 0.95
 """Confidence of the bound, one-sided as in the rule of three (Hanley and Lippman-Hand 1983)."""
 
 STEPS = 50
-"""Bisections of [0, 1]: beyond the precision of a float that anybody reads."""
+"""Number of bisections of [0, 1]: more precise than any number that is shown."""
 
 
 @lru_cache(1024)
@@ -35,7 +35,7 @@ def bound_error_rate(errors: int, takes: int, confidence: float = CONFIDENCE) ->
 
 @lru_cache(1024)
 def count_takes_needed(errors: int, limit: float = LIMIT, confidence: float = CONFIDENCE) -> int:
-    """Return the least number of takes at which so many errors are still below the limit."""
+    """Return the least number of takes that, with these errors, show a rate below `limit`."""
     low, high = errors, errors + 1
     while bound_error_rate(errors, high, confidence) >= limit:
         low, high = high, 2 * high
@@ -49,7 +49,7 @@ def count_takes_needed(errors: int, limit: float = LIMIT, confidence: float = CO
 
 
 def _at_most(errors: int, takes: int, rate: float) -> float:
-    """Return the probability of at most so many errors; `rate` lies between 0 and 1."""
+    """Return the probability of at most `errors` errors; `rate` lies between 0 and 1."""
     whole = lgamma(takes + 1)
     return sum(
         exp(

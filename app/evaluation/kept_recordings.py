@@ -11,7 +11,7 @@ from app.recognition.recording.recording import FILE_VERSION
 from app.recognition.text.hashing import hash_file
 
 RECORDING_ENDING = ".npz"
-"""Ending of what `Recording.save` writes."""
+"""Ending of the files that `Recording.save` writes."""
 
 
 def recordings_dir() -> Path:
@@ -21,10 +21,10 @@ def recordings_dir() -> Path:
 
 
 def kept_recording(clip: Path, folder: Path) -> Path:
-    """Return the place of a clip's recording in a cache folder, whether it is there or not.
+    """Return the path of a clip's recording in a cache folder; the file need not exist.
 
-    The name is the hash of the clip's content with the versions of program and file, so that a clip
-    may be renamed or moved, and nothing of another version is taken for this one's.
+    The name is the hash of the clip's content with the versions of program and file format, so that
+    a clip may be renamed or moved, and recordings of other versions are not reused.
 
     Raises
     ------

@@ -29,8 +29,8 @@ COLUMNS: Final[dict[str, type]] = {
     "profile": str,
 }
 """Columns in order. ``start`` and ``end`` are seconds of the clip; ``label`` is empty for a
-rejected take, all of a take for a clip without one; ``expected`` is empty where no test set says
-it; ``faults`` are sentences between ``; ``."""
+rejected take, and all values of a take for a clip without takes; ``expected`` is empty if no test
+set has the take; ``faults`` are sentences separated by ``; ``."""
 
 NO_TAKE: Final = "no take found"
 
@@ -45,20 +45,20 @@ def rows_of_clip(
     results: Sequence[tuple[Take, Recognition]],
     expected: Mapping[int, str] | None = None,
 ) -> list[Row]:
-    """Return the rows of a clip's takes, or the one of a clip without takes.
+    """Return the rows of a clip's takes, or one row for a clip without takes.
 
     Parameters
     ----------
     clip
-        Its name.
+        Name of the clip.
     recognizer
-        What recognised them.
+        Recogniser of the takes.
     recording
-        What was seen in the clip.
+        Recording of the clip.
     results
-        The takes and what they were recognised as.
+        Takes with their recognitions.
     expected
-        Known labels by the take's number, from 1.
+        Known labels, by number of the take from 1.
 
     """
     if not results:
@@ -109,7 +109,7 @@ def _constant(clip: str, recognizer: Recognizer) -> Row:
 
 
 def _find_runner_up(result: Recognition) -> str | None:
-    """Return the nearest gesture but `nearest`; None where no other can be compared."""
+    """Return the second nearest gesture; None if no other can be compared."""
     scores = [
         (score, label)
         for score, label in zip(result.scores, result.gestures, strict=False)
@@ -131,6 +131,6 @@ def _to_cell(value: Any) -> str:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
-    # A spreadsheet would run a text that begins so.
+    # A spreadsheet would run a text with this beginning as a formula.
     text = str(value)
     return f"'{text}" if isinstance(value, str) and text[:1] in ("=", "+", "-", "@") else text

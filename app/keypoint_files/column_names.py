@@ -1,4 +1,4 @@
-"""Meaning of the columns of a keypoint table, by their headings."""
+"""Column names: find the meaning of a keypoint table's columns by their headings."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ AXES: Final[Mapping[str, str]] = {
     "z": "z",
     **dict.fromkeys(("v", "vis", "visibility", "confidence", "score", "likelihood", "c"), "v"),
 }
-"""Headings of a coordinate, and whether it is x, y, z (not used) or how well the point is seen."""
+"""Headings of values, with their meaning: x, y, z (not used) or visibility."""
 
 SECONDS: Final = ("time", "timestamp", "seconds", "time_s", "timestamp_s", "sec", "t")
 MILLISECONDS: Final = ("timestamp_ms", "time_ms", "milliseconds", "ms")
 FRAMES: Final = ("frame", "frame_number", "frame_num", "frame_idx", "frame_index", "frame_id", "")
-"""Headings of when a row is; nameless is the column that pandas writes first."""
+"""Headings of frame numbers; the empty one is the first column that pandas writes."""
 
 NAMES: Final = ("landmark", "landmark_name", "landmark_id", "name", "joint", "keypoint", "bodypart")
-"""Headings of which landmark a row is, in tables of one landmark a row."""
+"""Headings of the landmark's name, in tables with one landmark a row."""
 
 MOST_LANDMARKS: Final = 100
-"""Of a frame: body, hands and a few more; beyond it a file is of something else."""
+"""Most landmarks of a frame: body, hands and a few more; a file with more holds something else."""
 
 _AXIS: Final = "|".join(AXES)
 _PATTERNS: Final = (
@@ -43,16 +43,16 @@ _PATTERNS: Final = (
 
 @dataclass(frozen=True)
 class Columns:
-    """Where in a row everything stands.
+    """Places of the values in a row.
 
     Attributes
     ----------
     points
-        By landmark name the places of x, y and, where the table has it, visibility (``"v"``).
+        Places of x, y and, if the table has it, visibility (``"v"``), by landmark name.
     when
         Place of the time, or None.
     unit
-        Of the time: ``"s"``, ``"ms"`` or ``"frames"``.
+        Unit of the time: ``"s"``, ``"ms"`` or ``"frames"``.
 
     """
 
@@ -62,9 +62,9 @@ class Columns:
 
 
 def columns_of(headings: Sequence[str]) -> Columns:
-    """Read the headings of a table of one frame a row; columns that mean nothing are passed over.
+    """Read the headings of a table with one frame a row; unknown columns are skipped.
 
-    Numbered landmarks are MediaPipe's 33, counted from 0 or from 1; of any other count they keep
+    33 numbered landmarks are MediaPipe's, counted from 0 or from 1; with any other count they keep
     their numbers as names.
     """
     points: dict[str, dict[str, int]] = {}
@@ -81,7 +81,7 @@ def columns_of(headings: Sequence[str]) -> Columns:
 
 
 def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
-    """Return where the time of a row stands, and its unit; seconds go before frame numbers."""
+    """Return the place and unit of the time in a row; seconds are preferred to frame numbers."""
     plainly = [plain(heading) for heading in headings]
     for names, unit in ((SECONDS, "s"), (MILLISECONDS, "ms"), (FRAMES, "frames")):
         for name in names:
@@ -96,7 +96,7 @@ def plain(heading: str) -> str:
 
 
 def numbered_landmark(name: str, first: int = 0) -> str:
-    """Return MediaPipe's landmark of a number; any other name as it is."""
+    """Return MediaPipe's name of a numbered landmark, or any other name unchanged."""
     if name.isdigit() and 0 <= int(name) - first < len(POSE_LANDMARKS):
         return POSE_LANDMARKS[int(name) - first]
     return name

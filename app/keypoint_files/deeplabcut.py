@@ -1,7 +1,7 @@
-"""Predictions of DeepLabCut as CSV: three or four rows of headings, then one row a frame.
+"""DeepLabCut reader: predictions as CSV, with three or four rows of headings and one row a frame.
 
-DeepLabCut writes HDF5 first; those files hold pickled Python objects, which run whatever code is in
-them when read. CSV holds numbers: ``deeplabcut.analyze_videos_converth5_to_csv`` writes it.
+DeepLabCut writes HDF5 by default, but those files hold pickled Python objects, which can run any
+code when read. CSV holds only numbers: ``deeplabcut.analyze_videos_converth5_to_csv`` writes it.
 """
 
 from __future__ import annotations
@@ -28,20 +28,20 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
 
 LEAST_LIKELIHOOD: Final = 0.6
-"""Below it a keypoint is not seen: DeepLabCut's own default (``pcutoff``). What is less likely is
-often somewhere else altogether."""
+"""Likelihood below which a keypoint counts as not seen: DeepLabCut's own default (``pcutoff``).
+Less likely keypoints are often at a wrong place altogether."""
 
 MOST_HEADINGS: Final = 4
-"""Rows: scorer, individuals, bodyparts, coords."""
+"""Most rows of headings: scorer, individuals, bodyparts, coords."""
 
 COORDINATES: Final = ("x", "y", "likelihood")
 
 ONLY: Final = "single"
-"""What the one individual of a file without individuals is called."""
+"""Name of the only individual in a file without individuals."""
 
 
 def is_deeplabcut(path: Path) -> bool:
-    """Return whether a CSV file begins as DeepLabCut's do."""
+    """Return whether a CSV file begins as DeepLabCut's files do."""
     with path.open("rb") as file:
         return file.read(9).removeprefix(codecs.BOM_UTF8).lower().startswith(b"scorer")
 
@@ -51,7 +51,7 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
 
     See `app.keypoint_files.read_keypoints`.
     """
-    del options  # DeepLabCut's files need nothing but a frame rate, which is asked for later
+    del options  # DeepLabCut's files need only a frame rate, which is requested later
     with path.open(newline="", encoding="utf-8-sig") as file:
         lines = csv.reader(file)
         headings = _headings(lines, path)
@@ -70,7 +70,7 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
 
 
 def _individual(table: FloatArray, headings: dict[str, list[str]], who: str) -> KeypointTable:
-    """Take one individual's columns out of the rows ``(T, 1 + columns)``."""
+    """Return one individual's table from the rows ``(T, 1 + columns)``."""
     columns = [
         (part, axis, column)
         for column, (individual, part, axis) in enumerate(

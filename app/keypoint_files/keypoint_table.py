@@ -13,12 +13,12 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray
 
 LARGEST_FRACTION = 3.0
-"""Coordinates of which nearly all are below this are fractions of the picture: landmarks beyond its
-edge lie one or two pictures away, and a body of three pixels shows no gesture."""
+"""Coordinates count as fractions of the picture if nearly all are below this value: landmarks
+beyond its edge lie one or two pictures away, and a body of three pixels shows no gesture."""
 
 MOST_NEGATIVE = 0.25
-"""Share of the coordinates that may lie left of or above the picture: of a body in it an arm or the
-legs are outside. MediaPipe's world landmarks, metres from the hips, are negative by half."""
+"""Largest share of coordinates left of or above the picture: at most an arm or the legs of a body
+in it are outside. Half of MediaPipe's world landmarks (metres from the hips) are negative."""
 
 FALLBACK_RATE = 30.0
 """Frames per second of most cameras."""
@@ -32,10 +32,10 @@ MALFORMED = (
     OverflowError,
     RecursionError,
 )
-"""What reading raises where something else stands than expected, or numbers beyond all bounds."""
+"""Errors raised by unexpected content, or by numbers out of bounds."""
 
 NEARLY_ALL = 95.0
-"""Per cent; a few landmarks are always lost far outside."""
+"""Percentage that counts as nearly all; a few landmarks always lie far outside."""
 
 
 @dataclass(frozen=True)
@@ -49,13 +49,13 @@ class KeypointOptions:
     frame_size
         Width and height of the video in pixels, for files with fractions of it.
     landmarks
-        What the file calls a keypoint, and what it is here: a name of `POSE_LANDMARKS` or any
-        other name to keep it under. Names that are known anyway need not be given.
+        Name of each keypoint in the file, with its name here: one of `POSE_LANDMARKS`, or any other
+        name to keep it under. Known names need not be given.
 
     Raises
     ------
     KeypointFileError
-        When a rate or a size cannot be one.
+        When a rate or a size is not positive and finite.
 
     """
 
@@ -65,11 +65,11 @@ class KeypointOptions:
 
     @property
     def nominal_rate(self) -> float:
-        """Frames per second to follow people by, before a rate is asked for."""
+        """Frames per second assumed to follow people before the rate is known."""
         return self.frame_rate or FALLBACK_RATE
 
     def __post_init__(self) -> None:
-        """Refuse what is no rate and no size."""
+        """Refuse an impossible rate or size."""
         if self.frame_rate is not None and not 0 < self.frame_rate < np.inf:
             raise KeypointFileError(
                 f"the frame rate is {self.frame_rate:g}; give the video's frames per second, as 30"
@@ -82,19 +82,19 @@ class KeypointOptions:
 
 @dataclass(frozen=True, eq=False)
 class Times:
-    """When the frames of a file are.
+    """Times of the frames of a file.
 
     Attributes
     ----------
     values
         ``(T,)`` increasing: seconds, or the numbers of the frames.
     counted
-        Whether they are numbers of frames.
+        Whether the values are numbers of frames.
 
     Raises
     ------
     KeypointFileError
-        When they do not increase.
+        When the values do not increase.
 
     """
 
@@ -124,17 +124,17 @@ class KeypointTable:
     xy
         ``(T, K, 2)``, x right, y down, pixels or fractions of the picture; NaN: not seen.
     confidence
-        ``(T, K)`` in [0, 1]; None where the file has none.
+        ``(T, K)`` in [0, 1]; None if the file has none.
     times
-        When the frames are.
+        Times of the frames.
     frame_size
-        Width and height of the picture in pixels; None where the file does not say.
+        Width and height of the picture in pixels; None if the file does not state it.
     frame_rate
-        Frames per second; None where the file does not say.
+        Frames per second; None if the file does not state it.
     hands
-        T tuples of hands, in the unit of `xy`; None where the file has no hands at all.
+        T tuples of hands, in the unit of `xy`; None if the file has no hands at all.
     notes
-        What the user should know, in sentences.
+        Sentences for the user about the file.
 
     """
 
@@ -149,7 +149,7 @@ class KeypointTable:
 
     @property
     def around_zero(self) -> bool:
-        """Whether coordinates lie around 0, and so neither in a picture nor beside it."""
+        """Whether coordinates lie around 0, and so cannot be of a picture."""
         known = self.xy[np.isfinite(self.xy)]
         return bool((known < 0).mean() > MOST_NEGATIVE) if len(known) else False
 
@@ -161,7 +161,7 @@ class KeypointTable:
 
 
 def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
-    """Return keypoints ``(..., 2)`` with NaN for those of less than the `least` confidence."""
+    """Return keypoints ``(..., 2)`` with NaN for those below the `least` confidence."""
     known = np.asarray(np.isfinite(xy).all(axis=-1))
     if confidence is not None:
         known &= confidence >= least
@@ -170,9 +170,9 @@ def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> 
 
 
 def visibility_of(points: FloatArray) -> FloatArray:
-    """Return how well points ``(..., 3)`` of x, y and visibility are seen, in [0, 1].
+    """Return the visibility in [0, 1] of points ``(..., 3)`` of x, y and visibility.
 
-    A point whose visibility is unknown is seen where it has a place.
+    A point of unknown visibility counts as seen if it has coordinates.
     """
     has_place = np.asarray(np.isfinite(points[..., :2]).all(axis=-1))
     visibility = np.where(np.isnan(points[..., 2]), 1.0, np.clip(points[..., 2], 0, 1))

@@ -28,14 +28,14 @@ from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
-"""Bytes; a quarter of an hour of 33 landmarks with all their digits takes 150 MB."""
+"""Largest file in bytes; a quarter of an hour of 33 landmarks with all digits takes 150 MB."""
 
 FRAMES: Final = ("frames", "poses", "data", "results")
 LANDMARKS: Final = ("landmarks", "pose_landmarks", "keypoints", "pose")
 """Keys of the list of frames, and of a frame's landmarks."""
 
 ORDER: Final = ("x", "y", "z", "v")
-"""Of a landmark that is a list; three numbers are x, y and z."""
+"""Order of the numbers in a landmark that is a list; three numbers are x, y and z."""
 
 
 def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
@@ -79,7 +79,7 @@ def _frames(content: Any) -> list[Any]:
 
 
 def _about(content: Any) -> KeypointOptions:
-    """Return size and rate of the video, where the file has them beside the frames."""
+    """Return size and rate of the video, if the file states them beside the frames."""
     if not isinstance(content, Mapping):
         return KeypointOptions()
     rate, width, height = (content.get(key) for key in ("fps", "width", "height"))
@@ -90,7 +90,7 @@ def _about(content: Any) -> KeypointOptions:
 
 
 def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
-    """Return x, y and visibility by name; empty where nobody is seen."""
+    """Return x, y and visibility by name; empty if nobody is seen."""
     if isinstance(frame, Mapping):
         frame = next((frame[key] for key in LANDMARKS if key in frame), None)
     if not frame:
@@ -98,7 +98,7 @@ def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
     if isinstance(frame, Mapping):
         return {str(name): _point(point) for name, point in frame.items()}
     if isinstance(frame[0], list) and frame[0] and isinstance(frame[0][0], (Mapping, list)):
-        frame = frame[0]  # MediaPipe Tasks gives a list of people, the surest first
+        frame = frame[0]  # MediaPipe Tasks gives a list of people, the highest score first
     found = {}
     for index, point in enumerate(frame):
         named = isinstance(point, Mapping) and point.get("name")
@@ -118,7 +118,7 @@ def _point(point: Any) -> tuple[float, float, float]:
 
 
 def _times(frames: list[Any]) -> Times:
-    """Return when the frames are; without any time they are counted."""
+    """Return the times of the frames; without any time, their numbers."""
     place, unit = None, "frames"
     keys: list[str] = []
     if frames and all(isinstance(frame, Mapping) for frame in frames):

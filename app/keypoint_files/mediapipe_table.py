@@ -55,9 +55,9 @@ def read_mediapipe_table(
 
 
 def times_of(values: FloatArray, unit: str) -> Times:
-    """Return when frames are, from what a file says in seconds, milliseconds or frames.
+    """Return the times of frames from a file's values in seconds, milliseconds or frames.
 
-    A clock without a unit counts milliseconds where its steps are longer than a second: frames so
+    Times without a unit are milliseconds if their steps would be longer than a second: frames so
     far apart would show no gesture.
     """
     if unit == "frames":
@@ -125,7 +125,7 @@ def _long(
 def table_of(
     names: tuple[str, ...], points: FloatArray, has_visibility: bool, times: Times
 ) -> KeypointTable:
-    """Make a table of landmarks as MediaPipe gives them.
+    """Create a table of MediaPipe's landmarks.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def table_of(
     has_visibility
         Whether the file has visibilities at all.
     times
-        When the frames are.
+        Times of the frames.
 
     """
     confidence = visibility_of(points) if has_visibility else None
@@ -154,12 +154,12 @@ def _points(rows: list[list[list[float]]], count: int) -> FloatArray:
 
 
 def _lines(lines: Iterator[list[str]]) -> Iterator[list[str]]:
-    """Pass over empty lines."""
+    """Skip empty lines."""
     return (line for line in lines if any(cell.strip() for cell in line))
 
 
 def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> float:
-    """Return a cell's number; NaN for an empty cell or a column that is not there."""
+    """Return a cell's number; NaN for an empty cell or a missing column."""
     if place is None:
         return np.nan
     cell = line[place].strip() if place < len(line) else ""

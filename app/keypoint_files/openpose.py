@@ -1,8 +1,8 @@
-"""A folder that OpenPose wrote with ``--write_json``: one file a frame, with everybody in it.
+"""OpenPose reader: a folder written with ``--write_json``, one file a frame with all people in it.
 
-Files are described in OpenPose's own documentation ("Output"): BODY_25 or COCO (18), x, y and
-confidence in a row, zeros for what was not found; with ``--hand`` also 21 keypoints of each hand,
-in the same order as `HAND_LANDMARKS`.
+OpenPose's documentation ("Output") describes the files: BODY_25 or COCO (18), x, y and confidence
+in sequence, zeros for keypoints not found; with ``--hand`` also 21 keypoints of each hand, in the
+order of `HAND_LANDMARKS`.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from app.recognition.poses.skeletons import BODY_25, COCO_18, LandmarkSet
 from app.recognition.recording.video_limits import VideoLimits
 
 SETS: Final[dict[int, LandmarkSet]] = {25: BODY_25, 18: COCO_18}
-"""By the number of keypoints."""
+"""Landmark sets by number of keypoints."""
 
 LARGEST_FILE: Final = 4_000_000
 """Bytes of one frame's file; a person with face and hands takes 6 kB."""
@@ -39,7 +39,7 @@ LARGEST_FILE: Final = 4_000_000
 
 @dataclass(frozen=True, eq=False)
 class _Person:
-    """One person in one frame: ``(K, 3)`` body, and of each side a hand ``(21, 3)`` or None."""
+    """One person in one frame: body ``(K, 3)``, and for each side a hand ``(21, 3)`` or None."""
 
     body: FloatArray
     hands: tuple[FloatArray | None, ...]
@@ -146,7 +146,7 @@ def _person(entry: Any, file: Path) -> _Person:
 
 
 def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
-    """Return ``(K, 3)`` x, y, confidence, or None where the file gives nothing."""
+    """Return ``(K, 3)`` x, y, confidence, or None if the file has none."""
     values = next((entry[key] for key in keys if entry.get(key)), None)
     if values is None:
         return None
@@ -172,7 +172,7 @@ def _follow_person(everybody: list[list[_Person]], times: FloatArray) -> list[_P
 
 
 def _hands(person: _Person | None) -> tuple[Hand, ...]:
-    """Return the hands of which every keypoint is seen; a salute needs all of them."""
+    """Return the hands with all keypoints seen, which a salute needs."""
     found = []
     for side, points in zip(SIDES, person.hands if person else (None, None), strict=True):
         if points is None or not np.isfinite(points).all() or not (points[:, 2] > 0).all():

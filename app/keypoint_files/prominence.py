@@ -9,10 +9,10 @@ from app.recognition.poses.sequence import FloatArray
 
 
 def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> float:
-    """Return how much one tracked person stands out over T frames.
+    """Return the prominence of one tracked person over T frames.
 
-    Area of the box around what is seen, times the mean confidence, summed over the frames: who is
-    near, well seen and long in view.
+    It is the area of the box around the seen keypoints, times the mean confidence, summed over the
+    frames: highest for a person who is near, well seen and long in view.
 
     Parameters
     ----------

@@ -22,14 +22,14 @@ from app.recognition.recording.video_limits import VideoLimits
 
 @dataclass(frozen=True, eq=False)
 class ReadKeypoints:
-    """What was read from a keypoint file.
+    """Landmarks read from a keypoint file.
 
     Attributes
     ----------
     recording
-        The landmarks, and the hands where the file has some.
+        The landmarks, and the hands if the file has some.
     has_hands
-        Whether the file has hands at all: without them there is no salute.
+        Whether the file has hands; without them there is no salute.
 
     """
 
@@ -44,8 +44,8 @@ def read_keypoints(
 ) -> ReadKeypoints:
     """Read one person's keypoints.
 
-    Names are mapped by `translate_landmark` and by the user's own `options.landmarks`; what has no
-    counterpart is left out with a warning. Of several people the largest is followed.
+    Names are mapped by `translate_landmark` and by the user's own `options.landmarks`; keypoints
+    without a counterpart are left out with a warning. Of several people the largest is followed.
 
     Parameters
     ----------
@@ -53,9 +53,9 @@ def read_keypoints(
         A folder of OpenPose's JSON; MediaPipe's landmarks as CSV or JSON; DeepLabCut's CSV; SLEAP's
         .slp or analysis .h5 (extra ``keypoints``).
     options
-        What the file does not say.
+        Values that the file does not contain.
     limits
-        How long the recording may be.
+        Limits of the recording's length.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> Floa
 def _map_names(
     names: tuple[str, ...], given: Mapping[str, str], path: Path
 ) -> tuple[tuple[str, ...], list[int], tuple[str, ...]]:
-    """Return our names, the columns they are in, and what was left out, in sentences."""
+    """Return our names, their columns, and sentences about keypoints that were left out."""
     if unknown := [name for name in given if name not in names]:
         raise KeypointFileError(f"{path} has no keypoint {unknown[0]!r}; it has {', '.join(names)}")
     found: dict[str, int] = {}
@@ -161,7 +161,7 @@ def _map_names(
 
 
 def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> tuple[int, int]:
-    """Return the picture's size; of keypoints in pixels, else the box around them."""
+    """Return the picture's size; if unknown, the size of the box around keypoints in pixels."""
     size = options.frame_size or table.frame_size
     if size is not None:
         return size

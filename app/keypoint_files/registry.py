@@ -1,4 +1,4 @@
-"""Registry of keypoint file formats; a further format is a module with a reader and a line here."""
+"""Registry of keypoint file formats: a new format is a module with a reader and a line here."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ READERS: Mapping[str, Reader] = {
     ".h5": read_sleap,
     ".hdf5": read_sleap,
 }
-"""By the file's ending; DeepLabCut's CSV is known by its first word, OpenPose by being a folder."""
+"""Readers by the file's ending. DeepLabCut's CSV is recognised by its first word, OpenPose by its
+folder."""
 
 
 def is_keypoint_file(path: Path) -> bool:
-    """Return whether a file or folder is to be read as keypoints and not as a video."""
+    """Return whether a file or folder is read as keypoints and not as a video."""
     return is_openpose(path) if path.is_dir() else path.suffix.lower() in READERS
 
 
@@ -37,7 +38,7 @@ def find_reader(path: Path) -> Reader:
     Raises
     ------
     KeypointFileError
-        When there is no such file, or its ending is none of a keypoint file.
+        When there is no such file, or its ending is not that of a keypoint file.
 
     """
     if path.is_dir():

@@ -1,4 +1,4 @@
-"""SLEAP's files, read by its own library: projects and predictions (.slp), and analysis (.h5)."""
+"""SLEAP reader: projects and predictions (.slp) and analysis (.h5), by SLEAP's own library."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def _labels(path: Path) -> Any:
         ) from error
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # about videos that lie elsewhere, which are not needed
+            warnings.simplefilter("ignore")  # about videos that are missing but not needed
             if path.suffix.lower() == ".slp":
                 return library.load_slp(str(path), open_videos=False)
             return library.load_analysis_h5(str(path))
@@ -83,7 +83,7 @@ def _labels(path: Path) -> Any:
 
 
 def _points(instance: Any) -> FloatArray:
-    """Return ``(K, 3)`` x, y and score of an instance; what a person labelled has score 1."""
+    """Return ``(K, 3)`` x, y and score of an instance; points labelled by a person have score 1."""
     points = np.asarray(instance.numpy(), dtype=np.float64)[:, :2]
     stored = instance.points
     score = np.ones(len(points))
@@ -93,7 +93,7 @@ def _points(instance: Any) -> FloatArray:
 
 
 def _most_prominent(labelled: list[Any], tracks: list[Any]) -> Any:
-    """Return the track that stands out most; there may be thousands of short ones."""
+    """Return the most prominent track; there may be thousands of short ones."""
     total = dict.fromkeys(map(id, tracks), 0.0)
     for frame in labelled:
         for instance in frame.instances:
@@ -104,7 +104,7 @@ def _most_prominent(labelled: list[Any], tracks: list[Any]) -> Any:
 
 
 def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
-    """``(T, K, 3)`` x, y, score of one track."""
+    """Return ``(T, K, 3)`` x, y, score of one track."""
     points = np.full((len(labelled), nodes, 3), np.nan)
     for row, frame in enumerate(labelled):
         for instance in frame.instances:
@@ -114,7 +114,7 @@ def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
 
 
 def _follow_largest(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
-    """``(T, K, 3)`` of the person followed, and the most people in a frame."""
+    """Return ``(T, K, 3)`` of the followed person, and the largest number of people in a frame."""
     followed = np.full((len(labelled), nodes, 3), np.nan)
     choice, most = PersonTracker(), 0
     for row, (frame, time) in enumerate(zip(labelled, times.tolist(), strict=True)):
@@ -131,7 +131,7 @@ def _follow_largest(labelled: list[Any], times: FloatArray, nodes: int) -> tuple
 
 
 def _size(labels: Any) -> tuple[int, int] | None:
-    """Return width and height of the video where the file has them."""
+    """Return width and height of the video if the file states them."""
     shape = labels.videos[0].shape if labels.videos else None
     if shape is None or not shape[1] or not shape[2]:
         return None

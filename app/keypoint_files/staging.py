@@ -1,4 +1,4 @@
-"""Staging of a keypoint file: give it its ending back, or unpack it."""
+"""Staging of a keypoint file: restores its ending, or unpacks it."""
 
 from __future__ import annotations
 
@@ -25,21 +25,22 @@ from app.system.zip_archive import (
 )
 
 MOST_BYTES: Final = 1024 * 1024 * 1024
-"""Unpacked. The most frames there may be, of three people with face and hands at 6 kB each."""
+"""Most bytes after unpacking: the most frames allowed, of three people with face and hands at 6 kB
+each."""
 
 
 @contextmanager
 def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iterator[Path]:
-    """Give the place from which `read_keypoints` reads a file that lost its name.
+    """Yield the path from which `read_keypoints` reads a file that was stored without its name.
 
     Parameters
     ----------
     path
         The file.
     ending
-        What it is read as; an archive gives a folder.
+        Ending by which it is read; an archive becomes a folder.
     limits
-        How many frames an archive may hold.
+        Limits of the number of frames in an archive.
 
     Raises
     ------
@@ -64,7 +65,7 @@ def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iter
 
 
 def is_openpose_archive(path: Path) -> bool:
-    """Return whether the zip at `path` looks like a folder of OpenPose; names alone are read."""
+    """Return whether the zip at `path` looks like a folder of OpenPose; only names are read."""
     return any(map(_is_frame, names_in(path)))
 
 
@@ -82,7 +83,7 @@ def _unpack(path: Path, folder: Path, limits: VideoLimits) -> None:
 
 
 def _frames(archive: ZipFile) -> dict[str, ZipInfo]:
-    """Return the entries of frames by their plain names; those alone are read."""
+    """Return the entries of frames by their plain names; no others are read."""
     frames: dict[str, ZipInfo] = {}
     for entry in visible_files(archive):
         name = plain_name(entry)

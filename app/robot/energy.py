@@ -17,7 +17,8 @@ POWERCAP: Final = Path("/sys/class/powercap")
 TEGRASTATS: Final = "tegrastats"
 
 INTERVAL_MS: Final = 100
-"""Milliseconds between two lines of tegrastats, a few frames; shorter costs energy itself."""
+"""Milliseconds between two lines of tegrastats, a few frames; a shorter interval uses energy
+itself."""
 
 RAIL: Final = re.compile(r"(\w+) (\d+)(?:mW)?/\d+(?:mW)?(?=\s|$)")
 """Matches ``NAME now/average`` in milliwatts, with or without the unit."""
@@ -30,7 +31,7 @@ class EnergyMeter(Protocol):
     """Protocol of a meter that counts energy from its creation on."""
 
     name: str
-    """What is measured, and with which tool."""
+    """Name of the measured device and of the tool."""
 
     def read_joules(self) -> float:
         """Return the energy used since the meter was created."""

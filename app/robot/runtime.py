@@ -80,8 +80,8 @@ class Runtime:
     Raises
     ------
     LandmarkError
-        When the estimator cannot find a landmark that the language needs; a later language that
-        needs one is refused.
+        When the estimator cannot find a landmark that the first language needs. A later language
+        with this fault is refused.
 
     """
 
@@ -174,7 +174,7 @@ class Runtime:
             yield Heartbeat(self._time, self._drops.frames, self._drops.dropped, self._lost)
 
     def _update_language(self) -> Iterator[Event]:
-        """Activate a new language, if there is one; it also recognises a take that is open."""
+        """Activate a new language, if there is one; it also recognises an open take."""
         change = self._changes()
         if isinstance(change, ActiveLanguage):
             try:
@@ -190,7 +190,7 @@ class Runtime:
 
     @staticmethod
     def _require(active: ActiveLanguage, estimator: PoseEstimator) -> None:
-        """Refuse a language that the estimator's landmarks do not suffice for."""
+        """Refuse a language that needs landmarks beyond those of the estimator."""
         language, landmarks = active.recognizer.language, list_landmarks(estimator)
         require_landmarks(language, landmarks, THE_ESTIMATOR)
         require_trigger(language, landmarks, THE_ESTIMATOR)

@@ -27,7 +27,7 @@ STAGES: Final[tuple[Stage, ...]] = get_args(Stage)
 """Stages in order; the cost of each comes on top of those before it."""
 
 WARM_UP: Final = 10
-"""First frames, which are not counted: they load code and find the person."""
+"""Number of first frames that are not measured: these load code and find the person."""
 
 
 @dataclass(frozen=True)
@@ -135,8 +135,8 @@ class StageProfile:
 class StageProfiler:
     """Profiler: runs a source through two estimators, one without hands, and measures each stage.
 
-    The cost of the hands is the difference between the two estimators, frame by frame: body and
-    hands run in parallel where there are processors for both.
+    The cost of the hands is the difference between the two estimators, frame by frame, because body
+    and hands run in parallel if there are processors for both.
 
     Parameters
     ----------

@@ -21,8 +21,8 @@ def judge_take(
     time
         Current time of the source, in seconds.
     unclosed
-        Reason to give for a take without a stop salute. Such a take is always rejected, because
-        the gesture may be incomplete.
+        Reason to give for a take without a stop salute. This take is always rejected, because the
+        gesture may be incomplete.
 
     """
     try:

@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 
 PARTIAL_SUFFIX = ".part"
-"""Ending of files that are still being written; whatever carries it at start is an orphan."""
+"""Suffix of files that are still being written; a file with it at start is an orphan."""
 
 
 def sync_directory(directory: Path) -> None:
-    """Make the names in `directory` durable; a no-op where directories cannot be opened."""
+    """Make the names in `directory` durable; do nothing on systems that cannot open directories."""
     if os.name != "posix":
         return
     descriptor = os.open(directory, os.O_RDONLY)
@@ -26,7 +26,7 @@ def publish(partial: Path, target: Path) -> None:
     Raises
     ------
     OSError
-        When the disk refuses; `partial` is left for the caller to remove.
+        When the file cannot be renamed; `partial` is left for the caller to remove.
 
     """
     with partial.open("rb") as file:

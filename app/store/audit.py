@@ -11,7 +11,7 @@ from app.store.database import Database
 from app.store.models import AuditEntry
 
 MOST_LISTED = 1000
-"""Entries returned at once."""
+"""Most entries returned at once."""
 
 
 class AuditStore:
@@ -20,7 +20,7 @@ class AuditStore:
     Parameters
     ----------
     database
-        Where they are.
+        Database of the entries.
 
     """
 
@@ -50,9 +50,9 @@ class AuditStore:
         before
             Only entries with a smaller id: the next page.
         name
-            Only those of this name.
+            Only entries of this name.
         since, until
-            Only those from this moment on, and before that one.
+            Only entries from `since` on, and before `until`.
 
         """
         query = select(AuditEntry).order_by(col(AuditEntry.id).desc())

@@ -21,17 +21,17 @@ logger = logging.getLogger(__name__)
 class ClipFolder:
     """Finds and keeps the files of clips; each clip has a folder named by its id.
 
-    What is complete is in the object store before the database says so. The folder of a clip
-    without a row is also the note that the object store may still have files of it.
+    A complete file is in the object store before the database refers to it. The folder of a clip
+    without a row records that the object store may still have files of that clip.
 
     Parameters
     ----------
     path
         The folder on this machine.
     objects
-        Keeps the files for all servers.
+        Object store that keeps the files for all servers.
     copies
-        Removes copies from the folder when they are too large.
+        Removes copies from the folder when these are too large together.
 
     """
 
@@ -48,12 +48,12 @@ class ClipFolder:
         return self.path / clip_id
 
     def find(self, clip_id: str, name: str) -> Path:
-        """Return where a file is, fetched if it is not on this machine; it may not exist at all.
+        """Return the path of a file, fetched if it is not on this machine; it may not exist.
 
         Raises
         ------
         StoreUnavailable
-            When it is not here and the object store does not answer.
+            When the file is not on this machine and the object store does not answer.
 
         """
         target = self.home(clip_id) / name
@@ -67,12 +67,12 @@ class ClipFolder:
         return target
 
     def keep(self, clip_id: str, names: Iterable[str]) -> None:
-        """Put complete files of a clip into the object store, those that exist.
+        """Put those of the named files that exist into the object store; they must be complete.
 
         Raises
         ------
         StoreUnavailable
-            When not all of them are kept; it may be tried again.
+            When not all files are stored; the call can be repeated.
 
         """
         for name in names:
@@ -81,14 +81,14 @@ class ClipFolder:
                 self._copies.add(file)
 
     def note(self, clip_id: str) -> None:
-        """Note that a clip's files are to be removed, in case that is interrupted."""
+        """Record that a clip's files are to be removed, in case the removal is interrupted."""
         self.home(clip_id).mkdir(exist_ok=True)
 
     def remove(self, clip_ids: Iterable[str]) -> int:
-        """Remove all files of clips; return of how many.
+        """Remove all files of clips; return the number of clips.
 
-        When the object store does not answer, the folders of the others stay, by which
-        `ClipStore.sweep` removes the rest later.
+        When the object store does not answer, the folders of the remaining clips stay, so that
+        `ClipStore.sweep` removes their files later.
         """
         removed = 0
         try:

@@ -26,12 +26,12 @@ from app.store.objects.clip_copies import ClipCopies
 from app.store.quotas import Allowance, release_in, usage_of
 
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
-"""Files of a clip beside the received one, which is named by its source, and the video."""
+"""Files of a clip beside the video and the received file, which its source names."""
 
 _FOUND = RECORDING, POSTER, FILMSTRIP
 
 TOPIC_NEEDED = "topic_needed"
-"""Why the job of a clip failed that needs somebody to choose a topic."""
+"""Error code of the job of a dive recording until somebody chooses a topic."""
 
 
 @dataclass(frozen=True)
@@ -44,20 +44,20 @@ class ClipWithJob:
 
 @dataclass(frozen=True)
 class ClipQuery:
-    """Which clips a page is of, and where it begins.
+    """Query for a page of clips: the filter, and where the page begins.
 
     Attributes
     ----------
     limit
-        Most clips of it.
+        Most clips of the page.
     after
-        Id of the clip that it follows, the last one of the page before; None is the first page.
+        Id of the last clip of the previous page; None for the first page.
     name
-        What the clips' names contain, in any case; empty is any name.
+        Text that the clips' names contain, case-insensitive; empty for any name.
     statuses
-        Where the newest job of each stands; empty is anywhere.
+        Allowed statuses of each clip's newest job; empty for any.
     ids
-        Only these; empty is all.
+        Only clips with these ids; empty for all.
 
     """
 
@@ -70,12 +70,12 @@ class ClipQuery:
 
 @dataclass(frozen=True)
 class ClipPage:
-    """Some of the clips, newest first.
+    """Page of clips, newest first.
 
     Attributes
     ----------
     clips
-        Those of this page.
+        Clips of this page.
     more
         Whether another page follows.
 
@@ -91,15 +91,14 @@ class ClipStore:
     Parameters
     ----------
     database
-        Where the rows are.
+        Database of the rows.
     folder
-        Where the files are: ``<folder>/<clip id>/video``, ``recording.npz`` and pictures,
-        and uploads under way as ``<folder>/<id>.part``.
+        Folder of the files: ``<folder>/<clip id>/video``, ``recording.npz`` and pictures, and
+        uploads under way as ``<folder>/<id>.part``.
     objects
-        Keeps the files for all servers; by default the folder is what they share.
+        Object store that keeps the files for all servers; by default they share the folder.
     most_copied
-        Bytes of the files in `folder` that `objects` has as well, see `ClipCopies`; 0 is any
-        number.
+        Most bytes of the copies in `folder` of files in `objects`, see `ClipCopies`; 0 is no limit.
 
     """
 
@@ -125,14 +124,15 @@ class ClipStore:
     ) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
-        A dive recording with several topics waits for `choose_topic`: its job has failed already.
-        The file gets its place first, in the object store too: a row never refers to what is not
-        kept. When that fails, the file is at `partial` again, so that adding it can be repeated.
-        When two uploads with one idempotency key race, the second one gets the first one's clip.
+        The job of a dive recording with several topics fails at once and is retried after
+        `choose_topic`. The file is stored before the row, in the object store too, because a row
+        never refers to a missing file. When that fails, the file is at `partial` again, so that
+        adding it can be repeated. When two uploads with one idempotency key race, the second one
+        returns the first one's clip.
 
-        `allow` is asked in the same transaction, so that no other server adds a clip in between;
-        what it raises keeps the clip out. The place that a resumable upload has reserved becomes
-        the clip's.
+        `allow` is called in the same transaction, so that no other server adds a clip in between;
+        if it raises, the clip is not added. The quota that a resumable upload has reserved passes
+        to the clip.
 
         Raises
         ------
@@ -194,7 +194,7 @@ class ClipStore:
         with self._database.reading() as session:
             query = select(Clip).where(col(Clip.deleted).is_(None))
             clips = session.exec(query.order_by(col(Clip.created).desc(), col(Clip.id))).all()
-            # Not by their ids: a statement has 32 766 values at most.
+            # Not selected by id: a statement can have at most 32 766 values.
             jobs = _newest_jobs(col(Clip.deleted).is_(None), session)
             return [ClipWithJob(clip, jobs[clip.id]) for clip in clips]
 
@@ -206,7 +206,7 @@ class ClipStore:
         Raises
         ------
         NotFound
-            When the clip that the page follows is purged, or never existed.
+            When the last clip of the previous page is purged, or never existed.
 
         """
         with self._database.reading() as session:
@@ -214,7 +214,7 @@ class ClipStore:
             if query.after is not None:
                 if (last := session.get(Clip, query.after)) is None:
                     raise NotFound(f"there is no clip {query.after!r} to go on after")
-                # Not one row comparison: a database walks its index by the first condition.
+                # Not one row comparison: a database uses its index for the first condition.
                 wanted = wanted.where(
                     col(Clip.created) <= last.created,
                     or_(col(Clip.created) < last.created, col(Clip.id) > last.id),
@@ -239,7 +239,7 @@ class ClipStore:
             return session.exec(select(func.count()).where(col(Clip.deleted).is_(None))).one()
 
     def by_idempotency_key(self, key: str) -> ClipWithJob | None:
-        """Return the clip that an upload with this key made, also when deleted since."""
+        """Return the clip of the upload with this key, even if it has been deleted."""
         with self._database.reading() as session:
             clip = session.exec(select(Clip).where(Clip.idempotency_key == key)).first()
             if clip is None:
@@ -252,7 +252,7 @@ class ClipStore:
         Raises
         ------
         NotFound
-            When there is none, or it is deleted already.
+            When there is no such clip, or it is deleted already.
 
         """
         with self._database.writing() as session:
@@ -278,12 +278,12 @@ class ClipStore:
             session.add(clip)
 
     def choose_topic(self, clip_id: str, topic: str) -> None:
-        """Note which topic of its dive recording a clip is made of, and that topic's measures.
+        """Store the topic that a clip is made of, with its frame count, frame size and duration.
 
         Raises
         ------
         NotFound
-            When there is no such clip, or its recording has no such topic to choose.
+            When there is no such clip, or its recording has no such usable topic.
 
         """
         with self._database.writing() as session:
@@ -300,7 +300,7 @@ class ClipStore:
             session.add(clip)
 
     def purge(self, before: datetime) -> int:
-        """Remove for good what was deleted `before` that moment; return how many clips went."""
+        """Remove for good the clips deleted before a given time; return their number."""
         with self._database.writing() as session:
             gone = session.exec(select(Clip).where(col(Clip.deleted) < before)).all()
             for clip in gone:
@@ -310,9 +310,9 @@ class ClipStore:
         return len(gone)
 
     def sweep(self, before: datetime) -> int:
-        """Remove files that no row refers to, left by a crash; return how many went.
+        """Remove files that a crash left without a row; return their number.
 
-        Only those last changed `before` that moment.
+        Files changed since the time `before` stay.
         """
         with self._database.reading() as session:
             sources = dict(session.exec(select(Clip.id, Clip.source)).all())
@@ -343,47 +343,47 @@ class ClipStore:
         return self._files.home(clip_id) / name
 
     def keep_found(self, clip: Clip) -> None:
-        """Put what a job has written of a clip where all servers find it.
+        """Put the files that a job has written for a clip into the object store.
 
         Raises
         ------
         StoreUnavailable
-            When the object store does not answer; it may be tried again.
+            When the object store does not answer; the call can be repeated.
 
         """
         made = (VIDEO,) if clip.video_is_made else ()
         self._files.keep(clip.id, (*made, *_FOUND))
 
     def received(self, clip: Clip) -> Path:
-        """Return where the file is that a clip came as."""
+        """Return the path of the received file of a clip."""
         return self._files.find(clip.id, clip.source)
 
     def video(self, clip_id: str) -> Path:
-        """Return where the clip's video is: its own bytes, or what its job made to look at."""
+        """Return the path of the clip's video: the received file, or one that its job made."""
         return self._files.find(clip_id, VIDEO)
 
     def recording(self, clip_id: str) -> Path:
-        """Return where the landmarks found in the clip are, once its job is done."""
+        """Return the path of the clip's recording, which exists once its job is done."""
         return self._files.find(clip_id, RECORDING)
 
     def poster(self, clip_id: str) -> Path:
-        """Return where the clip's still picture is, once its job is done."""
+        """Return the path of the clip's still picture, which exists once its job is done."""
         return self._files.find(clip_id, POSTER)
 
     def filmstrip(self, clip_id: str) -> Path:
-        """Return where the thumbnails along the clip are, once its job is done."""
+        """Return the path of the clip's thumbnails, which exist once its job is done."""
         return self._files.find(clip_id, FILMSTRIP)
 
     def hold(self, files: Collection[Path]) -> AbstractContextManager[None]:
-        """Keep files on this machine until the context ends: a process opens them later."""
+        """Keep files on this machine until the context ends, because a process opens them later."""
         return self._copies.hold(files)
 
     def make_room(self) -> int:
-        """Remove copies of files that are too large together; return how many went."""
+        """Remove copies until they are within the limit; return the number removed."""
         return self._copies.make_room()
 
     def _at_rest(self, clip_ids: Collection[str]) -> set[str]:
-        """Return those clips that have a row and no job that waits or runs."""
+        """Return the clips that have a row and no waiting or running job."""
         opened = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
         busy = exists().where(col(Job.clip_id) == Clip.id, col(Job.status).in_(opened))
         with self._database.reading() as session:
@@ -395,7 +395,7 @@ class ClipStore:
 
 
 def _standing(statuses: tuple[JobStatus, ...]) -> SelectOfScalar[str]:
-    """Select the ids of the clips whose newest job stands at one of `statuses`."""
+    """Select the ids of the clips whose newest job has one of the `statuses`."""
     newer = aliased(Job)
     return (
         select(Job.clip_id)

@@ -28,10 +28,10 @@ from app.store.errors import NotFound, StoreUnavailable
 from app.store.models import ChangeCount
 
 BUSY_TIMEOUT_SECONDS = 5
-"""How long a writer waits for another one; transactions here take milliseconds."""
+"""Longest wait of a writer for another one; transactions here take milliseconds."""
 
 WRITE_LOCK = 0x0F3C_57D1
-"""Number of PostgreSQL's advisory lock that writers hold, in place of SQLite's lock of the file."""
+"""Number of the PostgreSQL advisory lock that writers hold; SQLite locks its file instead."""
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 
@@ -39,7 +39,7 @@ MIGRATIONS = Path(__file__).parent / "migrations"
 class Database:
     """Sessions on one database.
 
-    Whatever the kind, writers come one after the other, and what a session reads is one state.
+    With either kind, writers take turns, and a session reads one consistent state.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Database:
 
     @property
     def file(self) -> Path | None:
-        """The file of SQLite; None where several servers may use the database."""
+        """SQLite's file; None if several servers may use the database."""
         name = self.engine.url.database
         return None if self.shared or not name else Path(name).absolute()
 
@@ -93,7 +93,7 @@ class Database:
     def changes(self) -> int:
         """Number that grows with every committed change, by any server.
 
-        What was read while it said the same is still true. It is about the present moment in
+        While the number is unchanged, earlier results are valid. It is close to the present time in
         nanoseconds, so that neither a later run nor a restored backup repeats a number.
         """
         if not self.shared:
@@ -102,12 +102,12 @@ class Database:
             return session.exec(select(ChangeCount.changes)).one()
 
     def migrate(self) -> None:
-        """Check the database and bring its tables to this version's.
+        """Check the database and migrate its tables to this version.
 
         Raises
         ------
         StoreUnavailable
-            When it is damaged, not a database, cannot be reached, or made by a newer version.
+            When it is damaged, not a database, not reachable, or made by a newer version.
 
         """
         try:
@@ -141,8 +141,8 @@ class Database:
     def writing(self, *, counted: bool = True) -> Iterator[Session]:
         """Open a session that holds the write lock from the start and commits at the end.
 
-        Taking the lock first lets two writers wait for each other; taking it after reading would
-        make SQLite refuse the second one at once. `counted` is False for what no list shows.
+        With the lock taken first, a second writer waits; with the lock taken after reading, SQLite
+        would refuse the second writer at once. `counted` is False for changes that no list shows.
         """
         engine = self.engine.execution_options(writing=True)
         with (
@@ -181,14 +181,14 @@ class Database:
 
 
 def moment_of(session: Session) -> datetime:
-    """Return the database's present moment: the servers' clocks may differ."""
+    """Return the present time of the database, because the servers' clocks may differ."""
     moment: datetime = session.execute(select(func.current_timestamp())).scalar_one()
     return moment.replace(tzinfo=UTC) if moment.tzinfo is None else moment
 
 
 @contextmanager
 def _convert_errors() -> Iterator[None]:
-    """Turn what the database refuses for now into `StoreUnavailable`, else into `NotFound`."""
+    """Convert temporary errors to `StoreUnavailable`, and those of invalid values to `NotFound`."""
     try:
         yield
     except OperationalError as error:
@@ -196,7 +196,7 @@ def _convert_errors() -> Iterator[None]:
             f"the database cannot answer now: {error.orig}; nothing was changed, try again"
         ) from error
     except DataError as error:
-        # PostgreSQL has no text with NUL and no integer beyond its type; SQLite finds none either.
+        # PostgreSQL refuses texts with NUL and integers that are too large; SQLite finds no row.
         raise NotFound("there is nothing of that name or number") from error
 
 
@@ -213,7 +213,7 @@ def _open_postgres(url: URL) -> Engine:
         engine = create_engine(
             url,
             connect_args={"options": options, "connect_timeout": BUSY_TIMEOUT_SECONDS},
-            # A connection that the database closed, as when it is restarted, is replaced unseen.
+            # A connection that the database closed, for example at a restart, is replaced silently.
             pool_pre_ping=True,
         )
     except (NoSuchModuleError, ModuleNotFoundError) as error:
@@ -228,14 +228,14 @@ def _open_postgres(url: URL) -> Engine:
 def _take_turn(connection: Connection) -> None:
     """Wait until no other server writes; the lock ends with the transaction."""
     if connection.get_execution_options().get("writing", False):
-        # Every statement after it sees what was committed before (PostgreSQL's READ COMMITTED).
+        # Later statements see all earlier commits (PostgreSQL's READ COMMITTED).
         connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({WRITE_LOCK})")
 
 
 def _make_durable(connection: sqlite3.Connection, _record: object) -> None:
     # Transactions are begun by `_begin`, so that "acknowledged" means "one transaction on disk".
     connection.isolation_level = None
-    # SQLite's own knows ASCII alone, and a name is looked for in any case.
+    # SQLite's own `lower` knows only ASCII; the search for names ignores case.
     connection.create_function("lower", 1, str.lower, deterministic=True)
     for pragma in (
         "journal_mode=WAL",

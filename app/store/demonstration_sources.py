@@ -13,20 +13,20 @@ from app.store.models import Clip, DemonstrationSource
 class SourceStore:
     """Keeps the sources of demonstrations in `database`.
 
-    By the demonstration and not by language, revision or label: so it is known after a rename, a
-    revert, in a copy, and in a file that was exported and comes back.
+    A source is stored by demonstration and not by language, revision or label, so it stays known
+    after a rename or revert, in a copy, and in an exported file that is imported again.
     """
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def keep(self, source: DemonstrationSource) -> None:
-        """Keep where a demonstration comes from, instead of what was known before."""
+        """Store the source of a demonstration, in place of an earlier one."""
         with self._database.writing() as session:
             session.merge(source)
 
     def of(self, trajectories: Collection[str]) -> dict[str, DemonstrationSource]:
-        """Return what is known of demonstrations, without those whose clip is deleted."""
+        """Return the known sources of demonstrations, without those whose clip is deleted."""
         with self._database.reading() as session:
             query = select(DemonstrationSource).join(Clip)
             query = query.where(

@@ -2,7 +2,7 @@
 
 
 class StoreError(Exception):
-    """Base of every error the store raises on purpose; the message is one line for a person."""
+    """Base of the store's errors; the message is one line for a person."""
 
 
 class NotFound(StoreError):
@@ -10,14 +10,14 @@ class NotFound(StoreError):
 
 
 class Conflict(StoreError):
-    """Raised when somebody else changed the object meanwhile.
+    """Raised when somebody else has changed the object meanwhile.
 
     Parameters
     ----------
     message
-        What was expected and what was found.
+        The expected and the actual revision, in words.
     current
-        The revision that is now the newest.
+        Number of the newest revision.
 
     """
 

@@ -1,4 +1,4 @@
-"""Lock of the data folder: a second server would remove the first one's uploads."""
+"""Folder lock: keeps a second server, which would remove the first's uploads, off a data folder."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class FolderLock:
     Parameters
     ----------
     folder
-        Made when missing.
+        Folder to lock; created if missing.
     remedy
         What to do when another process holds it.
 
@@ -38,7 +38,7 @@ class FolderLock:
 
     def __enter__(self) -> Self:
         try:
-            # Recordings of people: nobody else on this machine needs to see them.
+            # The folder holds recordings of people, which are private to this user.
             self._folder.mkdir(parents=True, exist_ok=True, mode=0o700)
             self._lock.acquire(blocking=False)
         except Timeout as error:

@@ -1,4 +1,4 @@
-"""Server identity: the same after a restart, so that a server knows the jobs it ran before."""
+"""Server identity: an id that survives restarts, so that a server knows the jobs it ran before."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FILE = "server"
 
 
 def identity_of(folder: Path) -> str:
-    """Return the id of the server of a data folder, made at its first start."""
+    """Return the id of a data folder's server, created at its first start."""
     path = folder / FILE
     if path.is_file() and re.fullmatch("[0-9a-f]{32}", known := path.read_text("ascii", "replace")):
         return known

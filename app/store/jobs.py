@@ -14,25 +14,26 @@ from app.store.errors import NotFound
 from app.store.models import Clip, Job, JobStatus, now
 
 MAX_ATTEMPTS = 3
-"""Starts after which a job that never came to an end is given up: it may be what ends us."""
+"""Number of starts after which an unfinished job is given up: it may be the cause of our
+crashes."""
 
 _RUNNING = col(Job.status) == JobStatus.RUNNING.value
 _OPEN = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
 
 
 LEASE = timedelta(seconds=45)
-"""How long a server has a job that it starts, unless it renews it (`JobStore.renew`): a database
-that does not answer for some seconds, or a busy server, must not cost it its jobs."""
+"""Time for which a server owns a job it starts, unless it renews the lease (`JobStore.renew`): a
+server must not lose its jobs because it is busy or the database does not answer for seconds."""
 
 MOST_RESUMED = 1000
-"""Waiting jobs that are read at once; the next ones are when these have begun."""
+"""Most waiting jobs that are read at once; further ones are read when these have begun."""
 
 
 class JobStore:
     """Keeps jobs; every change of status is one transaction.
 
-    A running job belongs to the server that started it, which renews its lease. When the lease is
-    over, any server may queue the job again; what the former one finds then has no effect.
+    A running job belongs to the server that started it, which renews its lease. After the lease any
+    server may queue the job again; a later result of the former server has no effect.
 
     Parameters
     ----------
@@ -77,7 +78,7 @@ class JobStore:
         return {status: counts.get(status, 0) for status in _OPEN}
 
     def resume(self) -> list[Job]:
-        """Queue again what this server ran when it ended; return what waits, oldest first.
+        """Requeue the jobs that this server ran when it ended; return waiting jobs, oldest first.
 
         A job that was started `MAX_ATTEMPTS` times without coming to an end fails instead.
         """
@@ -89,7 +90,7 @@ class JobStore:
             return _waiting(session)
 
     def take_over(self) -> list[Job]:
-        """Queue again what other servers left running; return what waits, oldest first."""
+        """Requeue the jobs that other servers left running; return waiting jobs, oldest first."""
         with self._database.reading() as session:
             left = select(Job.id).where(_RUNNING, Job.server != self._server, _overdue(session))
             if session.exec(left).first() is None:
@@ -102,7 +103,7 @@ class JobStore:
             return _waiting(session)
 
     def renew(self, job_ids: Collection[str]) -> set[str]:
-        """Go on having some running jobs; return those that this server still has."""
+        """Renew the leases of running jobs; return the ids of those that this server still owns."""
         with self._database.writing(counted=False) as session:
             until = moment_of(session) + LEASE
             query = select(Job).where(
@@ -127,12 +128,12 @@ class JobStore:
             return job
 
     def is_running(self, job_id: str) -> bool:
-        """Return whether this server runs a job, which is neither over nor removed."""
+        """Return whether this server runs a job, which is neither final nor removed."""
         with self._database.reading() as session:
             return self._has(session.get(Job, job_id))
 
     def requeue(self, job_id: str) -> None:
-        """Put a running job back, because the server stops in good order."""
+        """Put a running job back into the queue, because the server shuts down."""
         with self._database.writing() as session:
             job = session.get(Job, job_id)
             if job is not None and self._has(job):
@@ -141,16 +142,16 @@ class JobStore:
                 session.add(job)
 
     def complete(self, job_id: str, frames: int, warnings: Sequence[str]) -> bool:
-        """End a job that found what it looked for; return whether this server still had it.
+        """End a successful job; return whether this server still owned it.
 
         Parameters
         ----------
         job_id
             Which one.
         frames
-            How many were decoded; noted with the clip.
+            Number of decoded frames; stored with the clip.
         warnings
-            What the user should know about the clip.
+            Sentences for the user about the clip.
 
         """
         with self._database.writing() as session:
@@ -166,7 +167,7 @@ class JobStore:
             return True
 
     def retry(self, clip_id: str, client: str) -> Job | None:
-        """Queue another job for a clip; ``None`` when one is open or was done already."""
+        """Queue another job for a clip; ``None`` if it has an open or a successful job."""
         with self._database.writing() as session:
             query = select(Job).where(Job.clip_id == clip_id)
             if any(job.status in (*_OPEN, JobStatus.DONE) for job in session.exec(query)):
@@ -178,9 +179,9 @@ class JobStore:
     def finish(
         self, job_id: str, status: JobStatus, *, code: str | None = None, error: str | None = None
     ) -> bool:
-        """End a job that found nothing; return whether it was still open.
+        """End a failed or cancelled job; return whether it was still open.
 
-        Anybody may cancel a job; one that another server runs does not fail by this one.
+        Any server may cancel a job; only the one that runs it may let it fail.
 
         Parameters
         ----------
@@ -189,9 +190,9 @@ class JobStore:
         status
             Failed or cancelled.
         code
-            Stable word for why it failed.
+            Stable word for the reason.
         error
-            The same as one line for a person.
+            The reason as one line for a person.
 
         """
         with self._database.writing() as session:

@@ -14,10 +14,10 @@ from app.store.errors import NotFound, StoreError
 from app.store.models import Clip, LabelledResult, LabelledTake, RecognitionRecord
 
 MOST_TAKES = 500
-"""Takes of a language's test set: more would make every change of the language wait for minutes."""
+"""Most takes of a language's test set: more would delay every change of the language by minutes."""
 
 KEPT_RESULTS = 3
-"""Newest results kept of a take: the present one, the one before, and one more for an undo."""
+"""Number of newest results kept for a take: the current, the previous, and one for an undo."""
 
 
 class TestSetFull(StoreError):
@@ -37,7 +37,7 @@ class TestedTake:
     clip
         Name of its clip.
     results
-        At most `KEPT_RESULTS`.
+        At most `KEPT_RESULTS` results.
 
     """
 
@@ -55,12 +55,12 @@ class LabelledTakeStore:
         self._database = database
 
     def add(self, takes: Sequence[LabelledTake]) -> list[LabelledTake]:
-        """Add takes of one language; one that is there gets the new label.
+        """Add takes of one language; a take that exists already gets the new label.
 
         Raises
         ------
         TestSetFull
-            When there would be too many.
+            When the test set would have too many takes.
 
         """
         with self._database.writing() as session:
@@ -75,7 +75,7 @@ class LabelledTakeStore:
         return kept
 
     def label(self, language_id: str, take_id: str, expected: str) -> None:
-        """Give a take another label; its results were for the one before.
+        """Give a take another label, and remove its results, which are for the previous label.
 
         Raises
         ------
@@ -105,7 +105,7 @@ class LabelledTakeStore:
             session.delete(take)
 
     def of(self, language_id: str) -> list[TestedTake]:
-        """Return the takes of a language's test set, by clip and moment."""
+        """Return the takes of a language's test set, by clip and time."""
         with self._database.reading() as session:
             rows = session.exec(
                 select(LabelledTake, Clip.name)
@@ -125,7 +125,7 @@ class LabelledTakeStore:
         return [TestedTake(take, name, tuple(results[take.id])) for take, name in rows]
 
     def keep(self, result: LabelledResult, expected: str) -> bool:
-        """Keep a result, and drop old ones; False when the take is gone or has another label."""
+        """Store a result and remove old ones; False if the take is removed or has another label."""
         with self._database.writing() as session:
             take = session.get(LabelledTake, result.take_id)
             if take is None or take.expected != expected:
@@ -144,7 +144,7 @@ class LabelledTakeStore:
 
 
 def _put(session: Session, take: LabelledTake) -> LabelledTake:
-    """Add a take, or label the one of the same range."""
+    """Add a take, or relabel the existing take of the same range."""
     there = session.exec(
         select(LabelledTake).where(
             LabelledTake.language_id == take.language_id,
@@ -175,7 +175,7 @@ def _forget(session: Session, take_id: str) -> None:
 
 
 def _drop(session: Session, result: LabelledResult) -> None:
-    """Remove a result, with the recognition that was made for it."""
+    """Remove a result with its recognition."""
     session.delete(result)
     if result.recognition_id is not None:
         session.execute(

@@ -15,12 +15,12 @@ from app.store.errors import Conflict, NotFound
 from app.store.models import LanguageRecord, LanguageRevision, SeededSample, now
 
 _WITHOUT_DOCUMENT = defer(LanguageRevision.document, raiseload=True)  # type: ignore[arg-type]
-"""Hundreds of kilobytes each, which no list shows."""
+"""Leaves out the documents: hundreds of kilobytes each, which no list shows."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Draft:
-    """What a new revision says, before it has its number's row."""
+    """Content of a new revision that is not stored yet."""
 
     name: str
     labels: Sequence[str]
@@ -51,16 +51,16 @@ class LanguageStore:
     def create(
         self, draft: Draft, revision: int = 1, *, sample: str | None = None
     ) -> LanguageState:
-        """Add a language whose first revision is `draft` under the number `revision`.
+        """Add a language with `draft` as its first revision, numbered `revision`.
 
         Parameters
         ----------
         draft
-            What it says.
+            Content of the revision.
         revision
-            The number its document carries.
+            The revision number in its document.
         sample
-            Name under which we brought it, so that it is brought only once unasked.
+            Name of the sample that it is; a sample is added automatically only once.
 
         """
         with self._database.writing() as session:
@@ -74,7 +74,7 @@ class LanguageStore:
         return LanguageState(record, row)
 
     def seeded(self) -> set[str]:
-        """Return the names of the samples that were brought before, deleted or not."""
+        """Return the names of the samples that were added before, deleted or not."""
         with self._database.reading() as session:
             return set(session.exec(select(SeededSample.name)).all())
 
@@ -93,7 +93,7 @@ class LanguageStore:
     def all(self) -> list[LanguageState]:
         """Return the languages that are not deleted in their newest revisions, oldest first.
 
-        Their documents are left where they are: ask `get` for one.
+        Their documents are not read; `get` reads one.
         """
         with self._database.reading() as session:
             query = (
@@ -109,7 +109,7 @@ class LanguageStore:
             return [LanguageState(record, row) for record, row in session.exec(query)]
 
     def revisions(self, language_id: str) -> list[LanguageRevision]:
-        """Return every revision, newest first, without the documents: ask `get` for one.
+        """Return every revision, newest first, without the documents; `get` reads one.
 
         Raises
         ------
@@ -125,7 +125,7 @@ class LanguageStore:
                 .options(_WITHOUT_DOCUMENT)
                 .order_by(col(LanguageRevision.revision).desc())
             )
-            # What the check above read whole would come back whole.
+            # Otherwise the session would return the revision that the check read with its document.
             session.expunge_all()
             return list(session.exec(query))
 
@@ -137,7 +137,7 @@ class LanguageStore:
     ) -> LanguageState:
         """Add a revision made from the newest one.
 
-        Reading, changing and writing happen under the write lock: no edit gets lost.
+        Reading, changing and writing happen under the write lock, so that no edit is lost.
 
         Parameters
         ----------
@@ -212,7 +212,7 @@ class LanguageStore:
             return _load(session, language_id, None)
 
     def purge(self, before: datetime) -> int:
-        """Remove for good what was deleted `before` that moment; return how many went."""
+        """Remove for good the languages deleted before a given time; return their number."""
         with self._database.writing() as session:
             query = select(LanguageRecord).where(col(LanguageRecord.deleted) < before)
             gone = session.exec(query).all()
@@ -236,7 +236,7 @@ def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
 def _load(
     session: Session, language_id: str, revision: int | None, *, changing: bool = False
 ) -> LanguageState:
-    # SQLite's writers hold the whole file; other databases are asked to lock the row.
+    # SQLite's writers lock the whole file; other databases lock the row.
     record = session.get(LanguageRecord, language_id, with_for_update=changing)
     if record is None or record.deleted is not None:
         raise NotFound(f"there is no language {language_id!r}")

@@ -33,7 +33,7 @@ def new_id() -> str:
 
 
 class UtcDateTime(TypeDecorator[datetime]):
-    """A moment in UTC; SQLite keeps no time zone, so it is put back when read."""
+    """A moment in UTC; SQLite stores no time zone, so it is added when read."""
 
     impl = DateTime
     cache_ok = True
@@ -43,12 +43,12 @@ class UtcDateTime(TypeDecorator[datetime]):
         return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
 
     def process_result_value(self, value: datetime | None, dialect: object) -> datetime | None:
-        """Put the zone back."""
+        """Add the zone."""
         return None if value is None else value.replace(tzinfo=UTC)
 
 
 ByteCount = BigInteger().with_variant(Integer(), "sqlite")
-"""Type of a number of bytes: SQLite's integers have 64 bits anyhow."""
+"""Type of a number of bytes: 64 bits, which SQLite's integers always have."""
 
 
 class JobStatus(StrEnum):
@@ -67,9 +67,9 @@ class JobStatus(StrEnum):
 
 
 class Clip(SQLModel, table=True):
-    """One video, topic of a dive recording, or keypoint file that the user gave us.
+    """One video, topic of a dive recording, or keypoint file that a user added.
 
-    Its file and what was found in it lie under `id` in the clip folder.
+    Its file and the results of its job are in the folder `id` of the clip folder.
     """
 
     __tablename__ = "clip"
@@ -88,29 +88,29 @@ class Clip(SQLModel, table=True):
     frames: int | None = None
     """Frames the container states, then those decoded; ``None`` while unknown."""
     topics: str = Field(default="[]", sa_column=Column(Text, nullable=False, server_default="[]"))
-    """Of a dive recording: the topics that a clip can be made of, as a JSON array; else empty."""
+    """Usable topics of a dive recording, as a JSON array; empty for other clips."""
     topic: str | None = Field(default=None, max_length=255)
-    """Name of the topic that this clip is made of; ``None`` where nobody chose, or for a video."""
+    """Name of the topic that this clip is made of; ``None`` before the choice, or for a video."""
     source: str = Field(default=VIDEO, max_length=16, sa_column_kwargs={"server_default": VIDEO})
-    """Kind of the file that came: the name of its `app.clip_sources.ClipSource`."""
+    """Kind of the received file: the name of its `app.clip_sources.ClipSource`."""
     options: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
     """How the file is read, as a JSON object (`app.clip_sources.ReadOptions`)."""
     owner: str = Field(
         default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
     )
-    """Name of the token that added it: a quota counts by it."""
+    """Name of the token that added it, to which quotas apply."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
     @property
     def video_is_made(self) -> bool:
-        """Whether its video is made by its job, and is not the file that came."""
+        """Whether its video is made by its job, and is not the received file."""
         return self.source != VIDEO
 
     @property
     def needs_topic(self) -> bool:
-        """Whether somebody has to choose a topic before its job can begin."""
+        """Whether somebody must choose a topic before its job can begin."""
         return self.topics != "[]" and self.topic is None
 
 
@@ -127,27 +127,27 @@ class Job(SQLModel, table=True):
     id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
     clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
     client: str = Field(max_length=64)
-    """Address that asked for it: a queue limit counts per client."""
+    """Address that requested it; the queue limit is per client."""
     status: str = Field(default=JobStatus.QUEUED.value, max_length=16, index=True)
     attempts: int = 0
-    """How often it was started; a job that ended the server several times is given up."""
+    """Number of starts; a job that ended the server several times is given up."""
     frames: int | None = None
     """Frames decoded, once it is done."""
     error_code: str | None = Field(default=None, max_length=64)
     error: str | None = Field(default=None, sa_column=Column(Text))
     warnings: str = Field(default="[]", sa_column=Column(Text, nullable=False))
-    """What the user should know about the clip, as a JSON array of sentences."""
+    """Warnings about the clip for the user, as a JSON array of sentences."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     started: datetime | None = Field(default=None, sa_type=UtcDateTime)
     server: str | None = Field(default=None, max_length=32)
     """The server that runs it, see `JobStore`."""
     lease: datetime | None = Field(default=None, sa_type=UtcDateTime)
-    """Until when that server has it, unless it says that it goes on."""
+    """End of that server's ownership, unless it renews the lease."""
     finished: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
 
 class LanguageRecord(SQLModel, table=True):
-    """A language's identity; what it says lies in its revisions."""
+    """A language's identity; its content is in its revisions."""
 
     __tablename__ = "language"
 
@@ -155,7 +155,7 @@ class LanguageRecord(SQLModel, table=True):
     head: int
     """Number of the newest revision."""
     sample: bool = False
-    """Whether we brought it."""
+    """Whether it was added as a sample."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
@@ -174,16 +174,16 @@ class LanguageRevision(SQLModel, table=True):
     labels: str = Field(sa_column=Column(Text, nullable=False))
     """The gestures' labels as a JSON array, for lists."""
     change: str = Field(max_length=300)
-    """What this revision did, for the history."""
+    """Change made by this revision, for the history."""
     author: str = Field(default="", max_length=200, sa_column_kwargs={"server_default": ""})
-    """Who made the language, as this revision says."""
+    """Author of the language according to this revision."""
     document: str = Field(sa_column=Column(Text, nullable=False))
     """The whole language file."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
 class RecognitionRecord(SQLModel, table=True):
-    """One recognition as it was answered, kept even when its language moves on."""
+    """One recognition as it was answered, kept even if its language changes."""
 
     __tablename__ = "recognition"
 
@@ -198,7 +198,7 @@ class RecognitionRecord(SQLModel, table=True):
     end: float
     profile: str = Field(max_length=32)
     expected: str | None = Field(default=None, max_length=200)
-    """The label the user meant, when known."""
+    """The label the user meant, if known."""
     result: str = Field(sa_column=Column(Text, nullable=False))
     """`Recognition.to_dict` as JSON."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
@@ -224,7 +224,7 @@ class LabelledTake(SQLModel, table=True):
 
 
 class LabelledResult(SQLModel, table=True):
-    """How a labelled take is recognised by one revision of its language."""
+    """Result of a labelled take with one revision of its language."""
 
     __tablename__ = "labelled_result"
 
@@ -233,7 +233,7 @@ class LabelledResult(SQLModel, table=True):
     )
     revision: int = Field(primary_key=True)
     recognition_id: str | None = Field(default=None, max_length=32)
-    """The recognition; ``None`` where there is none, for the reason in `fault`."""
+    """The recognition; ``None`` if there is none, for the reason in `fault`."""
     label: str | None = Field(default=None, max_length=200)
     nearest: str | None = Field(default=None, max_length=200)
     confidence: float = 0.0
@@ -242,7 +242,7 @@ class LabelledResult(SQLModel, table=True):
 
 
 class PracticeTake(SQLModel, table=True):
-    """A gesture that a diver was asked to show, and how it was recognised."""
+    """A gesture that a diver was asked to show, and its recognition."""
 
     __tablename__ = "practice_take"
 
@@ -263,7 +263,7 @@ class PracticeTake(SQLModel, table=True):
 
 
 class DemonstrationSource(SQLModel, table=True):
-    """The clip that a demonstration was taken from; gone with the clip."""
+    """The clip that a demonstration was taken from; removed with the clip."""
 
     __tablename__ = "demonstration_source"
 
@@ -271,14 +271,14 @@ class DemonstrationSource(SQLModel, table=True):
     """Digest of the demonstration's trajectory, which is the same in every file and revision."""
     clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
     start: float
-    """Seconds in the clip, as they were asked for."""
+    """Seconds in the clip, as requested."""
     end: float
     keep_transit: bool
     """Whether the hand's way from and to the salute was kept."""
 
 
 class SeededSample(SQLModel, table=True):
-    """A sample language that was offered once; deleting it does not bring it back."""
+    """A sample language that was added once; after deletion it is not added again."""
 
     __tablename__ = "seeded_sample"
 
@@ -287,41 +287,41 @@ class SeededSample(SQLModel, table=True):
 
 
 class AuditEntry(SQLModel, table=True):
-    """One change, by name."""
+    """One change made by a named token."""
 
     __tablename__ = "audit_entry"
 
     id: int | None = Field(default=None, primary_key=True)
     time: datetime = Field(default_factory=now, sa_type=UtcDateTime)
     name: str = Field(max_length=80, index=True)
-    """Of the token; empty where none is needed."""
+    """Name of the token; empty if none is needed."""
     role: str = Field(max_length=16)
     address: str = Field(max_length=64)
     method: str = Field(max_length=16)
     path: str = Field(max_length=300)
-    """What was changed, with the query: it names a gesture."""
+    """Path of the request with its query, which names a gesture."""
     status: int
-    """What was answered."""
+    """HTTP status of the response."""
     request_id: str = Field(max_length=64)
-    """The same as in the log."""
+    """Id of the request, as in the log."""
 
 
 class UploadReservation(SQLModel, table=True):
-    """The place that a resumable upload under way takes in its owner's quota."""
+    """The share of its owner's quota that a resumable upload under way takes."""
 
     __tablename__ = "upload_reservation"
 
     id: str = Field(primary_key=True, max_length=32)
-    """Of the upload."""
+    """Id of the upload."""
     owner: str = Field(max_length=80, index=True)
     size: int = Field(sa_type=ByteCount)
     """Bytes of the whole file."""
     touched: datetime = Field(sa_type=UtcDateTime)
-    """When bytes of it came, about."""
+    """Approximate time at which its last bytes arrived."""
 
 
 class ChangeCount(SQLModel, table=True):
-    """The one row that counts the changes, where several servers share the database."""
+    """The one row that counts the changes if several servers share the database."""
 
     __tablename__ = "change_count"
 

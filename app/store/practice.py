@@ -9,17 +9,17 @@ from app.store.errors import NotFound
 from app.store.models import PracticeTake
 
 MOST_TAKES = 5000
-"""Newest takes of a language that are counted: a hundred divers' acceptance."""
+"""Number of a language's newest takes that are counted: an acceptance test of a hundred divers."""
 
 
 class PracticeStore:
-    """Keeps takes of practice in `database`; those of clips that are gone for good go with them."""
+    """Keeps practice takes in `database`; they are removed with the purged clips."""
 
     def __init__(self, database: Database) -> None:
         self._database = database
 
     def keep(self, take: PracticeTake) -> PracticeTake:
-        """Keep a take; the same one, shown again to the same revision, takes its place."""
+        """Store a take; it replaces the same take recognised by the same revision."""
         with self._database.writing() as session:
             same = session.exec(
                 select(PracticeTake).where(

@@ -1,4 +1,4 @@
-"""Quota store: what each owner keeps, and reserves for uploads under way, on all servers."""
+"""Quota store: space that each owner uses, and reserves for uploads under way, on all servers."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from app.store.models import Clip, UploadReservation
 from app.store.uploads import ACTIVE, Upload
 
 RENEWED = timedelta(minutes=15)
-"""Age of a reservation that another part of its upload renews: a part may take seconds, and each
-renewal is a write."""
+"""Age from which the next part of an upload renews its reservation; not every part does, because
+each renewal is a write."""
 
 
 @dataclass(frozen=True)
 class Usage:
-    """What somebody keeps, with what is reserved for uploads under way."""
+    """Clips and bytes that an owner keeps, including reservations for uploads under way."""
 
     clips: int
     bytes: int
 
 
 Allowance = Callable[[Usage], None]
-"""Raises an error of its own when beside that usage there is no place for what is to come."""
+"""Raises its own error if the quota, with this usage, has no place for the new clip."""
 
 
 class QuotaStore:
-    """Reserves place for uploads; who checks and who reserves holds the database's write lock.
+    """Reserves quota for uploads; checks and reservations hold the database's write lock.
 
     Parameters
     ----------
@@ -43,12 +43,12 @@ class QuotaStore:
         self._database = database
 
     def usage(self, owner: str) -> Usage:
-        """Return what somebody keeps and has reserved at this moment."""
+        """Return the present usage of an owner."""
         with self._database.reading() as session:
             return usage_of(session, owner)
 
     def reserve(self, upload: Upload, allow: Allowance | None) -> None:
-        """Count an upload that begins by its owner's quota; what `allow` raises keeps it out."""
+        """Reserve quota for a new upload; if `allow` raises, nothing is reserved."""
         with self._database.writing(counted=False) as session:
             over = moment_of(session) - ACTIVE
             session.execute(delete(UploadReservation).where(col(UploadReservation.touched) < over))
@@ -57,7 +57,7 @@ class QuotaStore:
             session.add(_reservation(upload, session))
 
     def renew(self, upload: Upload) -> None:
-        """Go on counting an upload to which bytes come; without them it counts for `ACTIVE`."""
+        """Renew the reservation of an upload; without new bytes it expires after `ACTIVE`."""
         with self._database.reading() as session:
             kept = session.get(UploadReservation, upload.id)
             if kept is not None and kept.touched > moment_of(session) - RENEWED:
@@ -66,13 +66,13 @@ class QuotaStore:
             session.merge(_reservation(upload, session))
 
     def release(self, upload_id: str) -> None:
-        """Count an upload no more; nothing happens when it does not count."""
+        """Release the reservation of an upload; do nothing if it has none."""
         with self._database.writing(counted=False) as session:
             release_in(session, upload_id)
 
 
 def usage_of(session: Session, owner: str, *, without: str | None = None) -> Usage:
-    """Return what somebody keeps and has reserved, except for the upload `without`."""
+    """Return the usage of an owner, except for the upload `without`."""
     kept = select(func.count(), func.coalesce(func.sum(Clip.size), 0)).where(
         Clip.owner == owner, col(Clip.deleted).is_(None)
     )
@@ -87,7 +87,7 @@ def usage_of(session: Session, owner: str, *, without: str | None = None) -> Usa
 
 
 def release_in(session: Session, upload_id: str) -> None:
-    """Count an upload no more, in a transaction that makes a clip of it."""
+    """Release the reservation of an upload, in the transaction that makes a clip of it."""
     session.execute(delete(UploadReservation).where(col(UploadReservation.id) == upload_id))
 
 

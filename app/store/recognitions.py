@@ -18,13 +18,13 @@ class RecognitionStore:
         self._database = database
 
     def add(self, record: RecognitionRecord) -> RecognitionRecord:
-        """Keep `record`."""
+        """Store `record`."""
         with self._database.writing() as session:
             session.add(record)
         return record
 
     def get(self, recognition_id: str) -> RecognitionRecord:
-        """Return one.
+        """Return a recognition.
 
         Raises
         ------
@@ -42,7 +42,7 @@ class RecognitionStore:
     def all(
         self, *, clip_id: str | None = None, language_id: str | None = None, limit: int
     ) -> list[RecognitionRecord]:
-        """Return the newest `limit` ones of a clip, of a language, or of all."""
+        """Return the newest `limit` recognitions of a clip, of a language, or of all."""
         with self._database.reading() as session:
             query = select(RecognitionRecord).join(Clip).join(LanguageRecord).where(*_VISIBLE)
             if clip_id is not None:

@@ -1,4 +1,4 @@
-"""Messages between the servers of one database: PostgreSQL's LISTEN and NOTIFY; none for SQLite."""
+"""Server messages: sends texts between servers by PostgreSQL's LISTEN and NOTIFY, not on SQLite."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ MOST_UNSENT: Final = 1000
 """Messages kept while the database cannot be reached; older ones are dropped."""
 
 PAUSE_SECONDS: Final = 1.0
-"""Before connecting again, and how long closing may take."""
+"""Wait in seconds before reconnecting, and longest time to close."""
 
 logger = logging.getLogger(__name__)
 
 
 class Messages(Protocol):
-    """Sends texts to the other servers, and hears theirs."""
+    """Protocol of messages: sends texts to the other servers and receives theirs."""
 
     def send(self, text: str) -> None:
         """Send a text to all servers, this one among them; from any thread, without waiting."""
         ...
 
     def close(self) -> None:
-        """Send and hear no more."""
+        """Stop sending and receiving."""
         ...
 
 
@@ -57,7 +57,7 @@ def open_messages(
 
 
 class _NoMessages:
-    """For a database with one server, which has nobody to tell."""
+    """Messages of a database with one server: does nothing."""
 
     def send(self, text: str) -> None:
         pass
@@ -67,7 +67,7 @@ class _NoMessages:
 
 
 class _PostgresMessages:
-    """One thread and one connection for hearing, and one of each for sending."""
+    """Messages over PostgreSQL: one thread and connection to receive, and one to send."""
 
     def __init__(
         self, database: Database, hear: Callable[[str], None], missed: Callable[[], None]
@@ -82,7 +82,7 @@ class _PostgresMessages:
         ]
         for thread in self._threads:
             thread.start()
-        # What is changed from now on by others is heard.
+        # From here on the changes of other servers are received.
         listening.wait(PAUSE_SECONDS)
 
     def send(self, text: str) -> None:
@@ -101,7 +101,7 @@ class _PostgresMessages:
     def _keep(
         self, work: Callable[[Connection, threading.Event], None], ready: threading.Event
     ) -> None:
-        """Do a work on a connection of its own, again whenever it is lost."""
+        """Run `work` on a separate connection, and again after each loss of the connection."""
         import psycopg
 
         url = self._database.engine.url.set(drivername="postgresql")
@@ -128,6 +128,6 @@ class _PostgresMessages:
             self._woken.wait()
             self._woken.clear()
             while self._unsent:
-                # Taken away after it was sent: a connection that is lost repeats it.
+                # Removed only after it was sent, so that it is repeated after a lost connection.
                 connection.execute("SELECT pg_notify(%s, %s)", (CHANNEL, self._unsent[0]))
                 self._unsent.popleft()

@@ -1,6 +1,6 @@
 """Named tokens: a file beside the database that says who may read, edit or administer.
 
-The file holds digests, never the tokens. It is read again when it changes, so that a token is
+The file holds digests, never the tokens. It is read again after a change, so that tokens can be
 added or withdrawn while the server runs.
 """
 
@@ -35,12 +35,12 @@ class Role(StrEnum):
 
 
 class NamedToken(BaseModel):
-    """A token, without itself.
+    """The entry of a token, which holds only its digest.
 
     Attributes
     ----------
     name
-        Who uses it; in the audit log.
+        Name of its user, shown in the audit log.
     role
         What it allows.
     sha256
@@ -48,7 +48,7 @@ class NamedToken(BaseModel):
     created
         When it was made.
     quota_bytes, quota_clips
-        Most that this name may keep; None is as the settings say.
+        Most bytes and clips that this name may keep; None takes the quota of the settings.
 
     """
 
@@ -157,7 +157,7 @@ class TokenFile:
         document = _Document(tokens=tuple(tokens)).model_dump(mode="json", exclude_none=True)
         self._path.parent.mkdir(parents=True, exist_ok=True)
         partial = self._path.with_suffix(".part")
-        # For its owner alone: a digest tells nothing, names and roles do.
+        # Readable only by its owner, because of the names and roles; the digests reveal nothing.
         with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
             json.dump(document, file, indent=2)
         publish(partial, self._path)
@@ -165,5 +165,5 @@ class TokenFile:
 
 
 def digest(token: str) -> str:
-    """Return what is kept of a token."""
+    """Return the stored digest of a token."""
     return hashlib.sha256(token.encode("utf-8", "surrogateescape")).hexdigest()

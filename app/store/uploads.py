@@ -17,8 +17,8 @@ from app.store.errors import NotFound
 from app.store.models import new_id, now
 
 ACTIVE = timedelta(hours=1)
-"""How long after its newest byte an upload counts as going on: longer than a dropped connection or
-a restart lasts, so that files that nobody goes on with do not use up the disk's reservation."""
+"""Time after its newest byte for which an upload counts as active: longer than a dropped connection
+or a restart lasts, but short enough that abandoned uploads do not keep disk space reserved."""
 
 _ID = re.compile(r"[0-9a-f]{32}")
 
@@ -30,19 +30,19 @@ class Upload:
     Attributes
     ----------
     id
-        Ours; the clip that it becomes remembers it as its idempotency key.
+        Id of the upload; the later clip keeps it as its idempotency key.
     name
-        What its sender calls it.
+        File name given by the sender.
     size
         Bytes of the whole file.
     path
-        What has come of it so far.
+        File of the bytes received so far.
     fields
-        Values that its sender gave beside the bytes, by name.
+        Values from the sender beside the bytes, by name.
     client
-        Address of its sender.
+        Address of the sender.
     owner
-        Name of its sender's token.
+        Name of the sender's token.
 
     """
 
@@ -56,12 +56,12 @@ class Upload:
 
     @property
     def offset(self) -> int:
-        """Bytes that have come."""
+        """Number of bytes received."""
         return self.path.stat().st_size
 
     @property
     def missing(self) -> int:
-        """Bytes that are still to come."""
+        """Number of bytes still missing."""
         return max(self.size - self.offset, 0)
 
 
@@ -71,8 +71,8 @@ class UploadStore:
     Parameters
     ----------
     folder
-        Where the files are: ``<id>`` with the bytes and ``<id>.json`` with what they are. On the
-        same file system as the clips, so that a finished one is renamed and not copied.
+        Folder of the files: ``<id>`` with the bytes and ``<id>.json`` with their description. It is
+        on the same file system as the clips, so that a finished file is renamed and not copied.
 
     """
 
@@ -88,7 +88,7 @@ class UploadStore:
         client: str = "",
         owner: str = "",
     ) -> Upload:
-        """Begin an upload of `size` bytes, with the values that its sender gave."""
+        """Begin an upload of `size` bytes, with the values from its sender."""
         upload_id, given = new_id(), dict(fields or {})
         about = {"name": name, "size": size, "fields": given, "client": client, "owner": owner}
         path, partial = self._folder / upload_id, self._folder / f"{upload_id}{PARTIAL_SUFFIX}"
@@ -123,7 +123,7 @@ class UploadStore:
 
         """
         path = self._folder / upload_id
-        # Only ids of our own become paths.
+        # Only our own ids become paths.
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
         about = json.loads(self._about(upload_id).read_text())
@@ -133,15 +133,15 @@ class UploadStore:
         return Upload(upload_id, about["name"], about["size"], path, fields, client, owner)
 
     def remove(self, upload_id: str) -> None:
-        """Forget an upload and what came of it; does nothing where there is none."""
+        """Remove an upload and its bytes; do nothing if there is none."""
         for path in (self._folder / upload_id, self._about(upload_id)):
-            if path.is_dir():  # What a crash left of looking into it.
+            if path.is_dir():  # Left over from a crash during a probe.
                 shutil.rmtree(path, ignore_errors=True)
             else:
                 path.unlink(missing_ok=True)
 
     def purge(self, before: datetime) -> int:
-        """Remove uploads to which nothing came since `before`; return how many went."""
+        """Remove uploads that got no bytes since `before`; return the number removed."""
         newest: dict[str, datetime] = {}
         for path in self._folder.iterdir():
             newest[path.stem] = max(

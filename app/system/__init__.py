@@ -1,1 +1,1 @@
-"""What the operating system gives: archives of files, and the manager of services."""
+"""System: reads archives of files, and reports to the service manager."""

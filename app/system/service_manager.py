@@ -12,17 +12,17 @@ from typing import Final
 MICROSECONDS: Final = 1e6
 
 SHARE: Final = 0.5
-"""Of the watchdog's time between two signs of life, as sd_watchdog_enabled(3) advises."""
+"""Share of the watchdog's time between two signs of life, as sd_watchdog_enabled(3) advises."""
 
 
 class ServiceManager:
-    """Connection to systemd; silent where it did not start this process.
+    """Connection to systemd; does nothing if systemd did not start this process.
 
     Parameters
     ----------
     environment
-        Has ``NOTIFY_SOCKET``, the socket of systemd, and with a watchdog ``WATCHDOG_USEC`` and
-        ``WATCHDOG_PID``.
+        Variables ``NOTIFY_SOCKET``, the socket of systemd, and with a watchdog ``WATCHDOG_USEC``
+        and ``WATCHDOG_PID``.
 
     """
 
@@ -38,24 +38,24 @@ class ServiceManager:
         self._status = ""
 
     def tell_ready(self) -> None:
-        """Tell that the service works from now on."""
+        """Report that the service works from now on."""
         self._send("READY=1")
 
     def tell_alive(self) -> None:
-        """Tell that the service works, at most as often as the watchdog needs it."""
+        """Report that the service works, at most as often as the watchdog needs it."""
         now = clock.monotonic()
         if self._pause is not None and now - self._beaten >= self._pause:
             self._beaten = now
             self._send("WATCHDOG=1")
 
     def tell_status(self, text: str) -> None:
-        """Tell in one line what the service does, for ``systemctl status``."""
+        """Report in one line what the service does, for ``systemctl status``."""
         if text != self._status:
             self._status = text
             self._send(f"STATUS={' '.join(text.split())}")
 
     def tell_stopping(self) -> None:
-        """Tell that the service ends."""
+        """Report that the service ends."""
         self._send("STOPPING=1")
 
     def _send(self, line: str) -> None:

@@ -24,11 +24,11 @@ _DAMAGE = (
     zlib.error,
     lzma.LZMAError,
 )
-"""Errors of reading a damaged, encrypted or unusual archive, besides some of `OSError`."""
+"""Errors from reading a damaged, encrypted or unusual archive, besides some `OSError`."""
 
 _DAMAGE_NUMBERS = (None, errno.EINVAL)
-"""Numbers of an `OSError` by damage: bz2's has none, and an offset before the file's start is
-invalid. All others come from the disk."""
+"""Error numbers of an `OSError` that means damage: bz2's has none, and an offset before the file's
+start is invalid. All others come from the disk."""
 
 _PIECE = 1024 * 1024
 """Bytes unpacked at once; a file over the limit is detected before it fills memory or disk."""
@@ -91,7 +91,7 @@ def visible_files(archive: ZipFile) -> list[ZipInfo]:
 
 
 def listed_files(archive: ZipFile) -> list[ZipInfo]:
-    """Return the entries that are files; one without a name, which no program makes, is none."""
+    """Return the entries that are files; an entry without a name is not counted as one."""
     return [entry for entry in archive.infolist() if entry.filename and not entry.is_dir()]
 
 

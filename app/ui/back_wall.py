@@ -19,7 +19,7 @@ class Wall:
     Attributes
     ----------
     image
-        As the recogniser draws it.
+        Trajectory image as the recogniser draws it.
     centre
         x and y, in heights of the video.
     side

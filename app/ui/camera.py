@@ -13,7 +13,8 @@ from viser import CameraHandle
 Point = tuple[float, float, float]
 
 DISTANCE = 2.5
-"""Of the flat camera from the picture, in heights of the video: its layers hardly diverge."""
+"""Distance of the flat camera from the picture, in heights of the video: far enough that the layers
+hardly shift against each other."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class CameraPose:
     Attributes
     ----------
     position, target
-        Where it stands and what it looks at, in the scene's units.
+        Positions of the camera and of its target, in the scene's units.
     fov
         Vertical field of view, in radians.
 
@@ -64,10 +65,10 @@ class CameraPose:
 
 
 FLAT: Final = CameraPose((0.0, 0.0, -DISTANCE), (0.0, 0.0, 0.0), 2 * math.atan(0.5 / DISTANCE))
-"""Square to the picture, whose height fills the view."""
+"""Camera square to the picture, whose height fills the view."""
 
 CUBE: Final = CameraPose((-2.75, -1.15, -1.85), (0.0, 0.28, 0.66), 0.57)
-"""Left of the video and above it: picture, trails and back wall are visible, none edge-on."""
+"""Camera left of and above the video: picture, trails and back wall are visible, none edge-on."""
 
 
 def ease(share: float) -> float:

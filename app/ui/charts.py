@@ -206,7 +206,7 @@ def line_chart(
     Parameters
     ----------
     title
-        What is drawn, with its unit.
+        Title of the chart, with the unit.
     time
         ``(T,)`` seconds, increasing.
     curves
@@ -214,7 +214,7 @@ def line_chart(
     bounds
         Least and largest value of the axis; by default those of the curves.
     height
-        Of the plot, in the units of a picture that is 340 wide.
+        Height of the plot, in the units of a picture that is 340 wide.
 
     """
     if len(time) < 2:
@@ -258,7 +258,7 @@ def cursor(share: float) -> str:
 
 
 def short_number(value: float) -> str:
-    """Format a distance in at most four characters, or as many as its size needs."""
+    """Format a distance in at most four characters, or more if its size needs them."""
     if not np.isfinite(value):
         return "\N{INFINITY}" if value > 0 else "\N{EN DASH}"
     if value == 0:
@@ -289,7 +289,7 @@ def _path(x: FloatArray, y: FloatArray) -> str:
 
 
 def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
-    """Least and largest finite value, never equal."""
+    """Return the least and the largest finite value, never equal."""
     finite = np.concatenate([curve[np.isfinite(curve)] for curve in values] or [np.zeros(0)])
     if not len(finite):
         return 0.0, 1.0

@@ -20,7 +20,7 @@ MAX_WIDTH = 640
 """Pixels. Larger pictures reduce the frame rate of playback."""
 
 MAX_FRAMES = 1800
-"""Most frames kept: a minute at 30 a second; of longer ranges every n-th frame."""
+"""Most frames kept: a minute at 30 a second; longer ranges keep every n-th frame."""
 
 JPEG_QUALITY = 82
 """Below 80, compression artefacts surround a bright diver on dark water."""

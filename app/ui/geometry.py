@@ -1,7 +1,7 @@
 """Geometry of the space-time cube: positions of video, skeleton and trails.
 
-Axes as a camera has them: x right, y down, z forward, and z is time. The height of the video is
-1; the video is centred on the z axis.
+The axes are those of a camera: x right, y down, z forward, which is time. The height of the video
+is 1; the video is centred on the z axis.
 """
 
 from __future__ import annotations
@@ -27,7 +27,8 @@ UNMARKED: Final = frozenset(name for names in LANDMARK_GROUPS.values() for name 
     "left_wrist",
     "right_wrist",
 }
-"""Drawn without a dot: eleven dots on a mask hide the face, three on a hand hide the fingers."""
+"""Landmarks drawn without a dot: eleven dots on a mask hide the face, three on a hand the
+fingers."""
 
 MAX_TRAIL_SEGMENTS = 600
 """Most segments of one trail, which is sent again for every frame; longer ones are decimated."""

@@ -19,10 +19,10 @@ would never be undone."""
 def start_server() -> viser.ViserServer:
     """Start a viser server on a free loopback port, closed to web pages.
 
-    viser checks no origin, so that any page in the user's browser could open a websocket to it
-    and bypass the relay's checks. Browsers always send an origin, the relay sends none: only
-    connections without one are let in. Requests for a public tunnel, which any client may make,
-    are ignored.
+    viser checks no origin, so that any page in the user's browser could open a websocket to it and
+    bypass the relay's checks. Browsers always send an origin, the relay sends none: only
+    connections without an origin are accepted. Requests for a public tunnel, which any client may
+    make, are ignored.
     """
     closed = functools.partial(websockets.asyncio.server.serve, origins=[None])
     with quiet(), _swapped_serve(closed):

@@ -51,7 +51,7 @@ class Inspector:
         self._panel.minimize()
 
     def set_visible(self, visible: bool) -> None:
-        """Show the panel, or leave the room to the picture."""
+        """Show or hide the panel; hidden, it leaves its room to the picture."""
         self._panel.visible = visible
         self._style.content = "" if visible else SHEET_HIDDEN
 
@@ -67,7 +67,7 @@ class Inspector:
         Parameters
         ----------
         trajectory
-            Of the salient landmarks; None when nothing moves.
+            Trajectory of the salient landmarks; None if nothing moves.
         start
             Seconds in the clip at which it begins.
         held
@@ -85,7 +85,7 @@ class Inspector:
 
 
 def draw_trigger(time: FloatArray, held: FloatArray, trigger: Trigger) -> str:
-    """Draw the confidence in [0, 1] of what is held before and after a gesture, as SVG.
+    """Draw the score in [0, 1] of the trigger held before and after a gesture, as SVG.
 
     `time` is in seconds of the clip, `(T,)` like `held`.
     """

@@ -28,10 +28,10 @@ MAX_WIDTH = 400
 """Width of a picture in the file, in pixels."""
 
 MAX_PICTURES = 120
-"""Most pictures in the file, about 2 MB; of longer takes every n-th frame."""
+"""Most pictures in the file, about 2 MB; longer takes keep every n-th frame."""
 
 JPEG_QUALITY = 72
-"""Keeps the file near 2 MB, small enough for an e-mail; at 82 it is 3 MB."""
+"""JPEG quality that keeps the file near 2 MB, small enough for an e-mail; at 82 it is 3 MB."""
 
 DIGITS = 4
 """Decimals of landmark coordinates as fractions of the picture: a tenth of a pixel."""
@@ -39,7 +39,7 @@ DIGITS = 4
 POLICY: Final = (
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 )
-"""The file is self-contained and may make no request."""
+"""Content security policy: the file is self-contained and may make no request."""
 
 
 def analysis_page(
@@ -52,7 +52,7 @@ def analysis_page(
     view
         The take that was recognised.
     recognition
-        Its result.
+        Result of the recognition.
     explanation
         The explanation; None without an expected label.
 
@@ -122,7 +122,7 @@ def _why(explanation: Explanation | None) -> str:
 
 
 def _lesson(explanation: Explanation) -> str:
-    """Return what to show differently the next time."""
+    """Return advice on what to show differently next time."""
     if (lesson := explanation.lesson) is None:
         return ""
     moment = "" if lesson.start is None else f" (from {lesson.start:.2f} s)"
@@ -130,7 +130,7 @@ def _lesson(explanation: Explanation) -> str:
 
 
 def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:
-    """Return what the script plays: pictures, timestamps, poses, bones and trails."""
+    """Return the data that the script plays: pictures, timestamps, poses, bones and trails."""
     poses = shown.poses
     stride = max(1, -(-len(poses) // MAX_PICTURES))
     kept = range(shown.first, shown.first + len(poses), stride)

@@ -19,7 +19,8 @@ WALL_GAP = 0.03
 """Room between the last frame and the back wall, in heights of the video."""
 
 LAYERS: Final = {"rim": 0.002, "ahead": 0.003, "trail": 0.004, "bones": 0.006, "joints": 0.009}
-"""How far in front of the video plane things are drawn, so that they do not flicker into it."""
+"""Distances of the drawn layers in front of the video plane, so that they do not flicker with
+it."""
 
 DIM = 0.5
 """Brightness of the part of a trail that is still to come."""
@@ -31,7 +32,7 @@ class SpaceTimeCube:
     Parameters
     ----------
     server
-        Where to draw.
+        Server to draw in.
     theme
         Dark or light.
 
@@ -80,7 +81,7 @@ class SpaceTimeCube:
         wall
             The back wall; None without a trajectory image.
         poses
-            The whole clip's.
+            Poses of the whole clip.
         first
             Index in the clip of the range's first frame.
 
@@ -207,7 +208,7 @@ class SpaceTimeCube:
         return in_front(segments[known], "trail"), colours[known]
 
     def _segment_colours(self, frames: npt.NDArray[np.intp]) -> npt.NDArray[np.uint8]:
-        """``(N, 2, 3)`` sRGB at both ends of the segments of a trail with corners at `frames`."""
+        """Return ``(N, 2, 3)`` sRGB at both ends of a trail's segments with corners at `frames`."""
         colours = self._colours[frames]
         return np.stack([colours[:-1], colours[1:]], axis=1)
 
@@ -284,7 +285,7 @@ def in_front(points: Points, layer: str) -> Points:
 def text_image(text: str, colour: Rgb) -> npt.NDArray[np.uint8]:
     """Write text into an image ``(H, W, 4)`` RGBA, transparent around it.
 
-    viser's own labels stand in grey boxes of one size, whatever the theme.
+    viser's own labels have grey boxes of one size in every theme.
     """
     font, scale, weight, margin = cv2.FONT_HERSHEY_SIMPLEX, 1.4, 3, 6
     (width, height), below = cv2.getTextSize(text, font, scale, weight)

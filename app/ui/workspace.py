@@ -35,11 +35,11 @@ from app.ui.scene_theme import DARK, LIGHT
 
 TRANSITION_SECONDS = 0.45
 TRANSITION_STEPS = 12
-"""Of the way between the flat picture and the cube: long enough to follow, short enough to wait."""
+"""Steps between the flat picture and the cube: enough to follow, few enough to wait for."""
 
 INITIAL_SHARE = 0.45
-"""Share of a range at which it is first shown: half of the trail is past, half is to come, and
-the back wall is visible."""
+"""Share of a range at which it is first shown: about half of the trail is past, half is to come,
+and the back wall is visible."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class WorkspaceView:
     start, end
         Seconds of the range on display; None is the clip's own start or end.
     recognition
-        Of the range; None before it is recognised.
+        Recognition of the range; None before it is recognised.
     expected
         The expected label, if known.
     language
@@ -92,7 +92,7 @@ class Range:
     first
         Index of the first one in the recording.
     held
-        ``(T,)`` confidence in [0, 1] that what begins or ends a take is held.
+        ``(T,)`` score in [0, 1] of the held trigger.
 
     """
 
@@ -102,7 +102,7 @@ class Range:
 
     @classmethod
     def of(cls, view: WorkspaceView) -> Range:
-        """Cut a view's range out of its recording.
+        """Return the range of a view, cut from its recording.
 
         Raises
         ------
@@ -160,12 +160,12 @@ class Workspace:
 
     @property
     def view(self) -> WorkspaceView | None:
-        """What is on display."""
+        """View on display."""
         return self._view
 
     @property
     def connected(self) -> bool:
-        """Whether a browser shows it."""
+        """Whether a browser is connected."""
         return bool(self._server.get_clients())
 
     def show(self, view: WorkspaceView) -> None:
@@ -199,7 +199,7 @@ class Workspace:
             self.playback.redraw(self.playback.frame)
 
     def set_flat(self, flat: bool, *, animate: bool = True) -> None:
-        """Show the picture flat, or the space-time cube; browsers see the way between them."""
+        """Show the picture flat, or the space-time cube; browsers show the transition."""
         with self._lock:
             if flat == self._flat:
                 return
@@ -242,7 +242,7 @@ class Workspace:
             self._decode(view, first, last)
 
     def _decode(self, view: WorkspaceView, first: int, last: int) -> None:
-        """Keep the pictures of the whole clip, or of the range where the clip is too long."""
+        """Decode the pictures of the whole clip, or only of the range if the clip is too long."""
         if self._filmstrip is not None:
             self._filmstrip.close()
         if len(view.recording.poses) <= MAX_FRAMES:
@@ -303,7 +303,7 @@ def initial_frame(frames: int) -> int:
 def _salient_motion(
     view: WorkspaceView, poses: PoseSequence
 ) -> tuple[Trajectory | None, tuple[str, ...]]:
-    """Return the salient landmarks' trajectory and names; None and none when nothing moves."""
+    """Return the salient landmarks' trajectory and names; None and no names if nothing moves."""
     try:
         trajectory = Trajectory.from_poses(poses)
     except PoseError:
@@ -315,10 +315,10 @@ def _salient_motion(
 def compared_images(
     view: WorkspaceView, recognition: Recognition, poses: PoseSequence
 ) -> list[tuple[str, npt.NDArray[np.uint8]]]:
-    """Return what a recognition compared, with captions.
+    """Return the images that a recognition compared, with captions.
 
     The take is drawn as the recogniser drew it: with the salient landmarks of the gesture it is
-    compared with. Where the expected and the chosen gesture differ in them, there are two drawings.
+    compared with. If those of the expected and the chosen gesture differ, there are two drawings.
     """
     chosen, expected = recognition.nearest, view.expected
     known = {gesture.label: gesture for gesture in view.language.gestures} if view.language else {}
@@ -339,9 +339,9 @@ def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> 
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:
-    """Draw a take's paths of the named landmarks; None when it has no such landmark.
+    """Draw a take's paths of the named landmarks; None if it has none of them.
 
-    Without names it is drawn as the hand shape that it holds, or two in sequence; None without.
+    Without names the take is drawn as its held hand shape, or two in sequence; None without one.
     """
     try:
         if not names:
@@ -355,11 +355,11 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 
 
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
-    """Return what of a view decides which frames, trails and curves are shown."""
+    """Return the values of a view that determine the frames, trails and curves shown."""
     return view.video, view.start, view.end, view.salient, view.trigger
 
 
 def _pictures_of(view: WorkspaceView) -> tuple[object, ...]:
-    """Return what of a view decides which pictures are kept."""
+    """Return the values of a view that determine the pictures kept."""
     whole = len(view.recording.poses) <= MAX_FRAMES
     return (view.video,) if whole else (view.video, view.start, view.end)

@@ -22,9 +22,10 @@ class WorkspaceRegistry:
     Parameters
     ----------
     limit
-        How many there may be. Each costs a thread or two and, with a clip on display, 10 MB.
+        Most open workspaces. Each costs a thread or two and, with a clip on display, 10 MB.
     ttl
-        Seconds that one without a connected browser is kept: a reload, or a laptop's nap.
+        Seconds for which a workspace without a connected browser is kept: a reload, or a laptop's
+        nap.
 
     """
 
@@ -58,7 +59,7 @@ class WorkspaceRegistry:
         return workspace
 
     def get(self, name: str) -> Workspace | None:
-        """Return an open workspace and count this as a sign of life; None when there is none."""
+        """Return an open workspace and count this as its use; None if there is none."""
         with self._lock:
             workspace = self._workspaces.get(name)
         if workspace is not None:
@@ -80,7 +81,7 @@ class WorkspaceRegistry:
         return True
 
     def close_idle(self, seconds: float) -> None:
-        """Close those that no browser has shown for so long."""
+        """Close the workspaces that no browser has shown for `seconds`."""
         with self._lock:
             workspaces = list(self._workspaces.values())
         for workspace in workspaces:
@@ -96,7 +97,7 @@ class WorkspaceRegistry:
             await asyncio.to_thread(self.close_idle, self.ttl)
 
     def close(self) -> None:
-        """Close them all."""
+        """Close all workspaces."""
         for workspace in list(self._workspaces.values()):
             self.remove(workspace.id)
 

@@ -17,13 +17,13 @@ from app.store.server_messages import Messages
 Result = TypeVar("Result")
 
 SECONDS_PER_STREAM = 0.001
-"""Between two events about how far a job is, for each open stream: writing one takes 20 to 150 us
-of a core (`benchmarks.cost.scale`), so that a running job takes a sixth of one at most. Below a
-hundred streams each event is written, ten a second."""
+"""Shortest time in seconds between two progress events of a job, for each open stream: writing one
+takes 20 to 150 us of a core (`benchmarks.cost.scale`), so that a running job takes at most a sixth
+of a core. With fewer than a hundred streams each event is written, ten a second."""
 
 MOST_UNREAD = 256
-"""Events kept for a stream that is not read; older ones are dropped, since each says how things
-stand and not what changed."""
+"""Events kept for a stream that is not read; older ones are dropped, because each event describes a
+state and not a change."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,11 @@ class Event:
     Attributes
     ----------
     kind
-        ``clips``, ``languages``, ``recognitions`` or ``jobs``: what changed; ``checks``,
-        ``exports`` or ``tables``: how far one is.
+        ``clips``, ``languages``, ``recognitions`` or ``jobs`` for a change; ``checks``, ``exports``
+        or ``tables`` for progress.
     data
-        JSON types; at least ``id``. Of ``jobs`` that run: ``progress``, the fields of `Progress`.
+        Plain JSON types, at least ``id``. For running ``jobs`` also ``progress``, the fields of
+        `Progress`.
 
     """
 
@@ -52,14 +53,14 @@ class Event:
         Parameters
         ----------
         name
-            Of the value.
+            Name of the value.
         compute
             Called by the first stream that asks.
 
         """
         if name not in self._shared:
             self._shared[name] = asyncio.ensure_future(compute())
-        # A stream that ends meanwhile must not cancel it for the others.
+        # A stream that ends meanwhile must not cancel the computation for the others.
         value: Result = await asyncio.shield(self._shared[name])
         return value
 
@@ -87,12 +88,13 @@ Join = Callable[[Callable[[str], None], Callable[[], None]], Messages]
 
 
 class Broadcast:
-    """Publishes events from any thread to the streams on the event loop it was made on.
+    """Publishes events from any thread to the streams on the event loop that created it.
 
     Parameters
     ----------
     join
-        Opens the messages of other servers, which get the same events; None: there are none.
+        Opens the messages to the other servers, which get the same events; None for a single
+        server.
     heard
         Called on the loop with every event of another server, before the streams get it.
 
@@ -139,7 +141,7 @@ class Broadcast:
         self._end_streams()
 
     def leave(self) -> None:
-        """Send nothing to other servers any more, and hear nothing of them."""
+        """Stop exchanging events with the other servers."""
         if self._messages is not None:
             self._messages.close()
 
@@ -155,7 +157,7 @@ class Broadcast:
         self._deliver(event)
 
     def _miss(self) -> None:
-        """End the streams: the pages then connect again, and load what they may have missed."""
+        """End the streams, so that the pages reconnect and load the changes they missed."""
         if not self._loop.is_closed():
             self._loop.call_soon_threadsafe(self._end_streams)
 
@@ -170,7 +172,7 @@ class Broadcast:
             subscription.put(event)
 
     def _comes_too_soon(self, event: Event) -> bool:
-        """Return whether an event about how far a job is follows another one of it too closely."""
+        """Return whether a progress event follows the previous one of its job too soon."""
         progress = event.data.get("progress")
         if progress is None:
             self._told.pop(event.data.get("id", ""), None)

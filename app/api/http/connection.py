@@ -45,7 +45,7 @@ async def compute_while_connected(
     Parameters
     ----------
     request
-        Whose client waits.
+        Request of the waiting client.
     places
         Limits the computations that run at the same time; further ones wait.
     compute

@@ -13,7 +13,7 @@ from app.api.http.ranges import keep_single_range
 
 
 def picture_responses(description: str) -> dict[int | str, dict[str, Any]]:
-    """Describe in OpenAPI what a route answers that ends in `send_picture`."""
+    """Return the OpenAPI ``responses`` of a route that answers with `send_picture`."""
     return {
         **problem_responses(404, 416),
         200: {"description": description, "content": {"image/jpeg": {}}},

@@ -37,21 +37,21 @@ def _tags(
 
 
 KnownTags = Annotated[frozenset[str], Depends(_tags)]
-"""The ETags of what the caller has."""
+"""ETags of the lists that the caller has."""
 
 
 def list_response(
     views: Callable[[Store], list[View]], adapter: TypeAdapter[list[View]]
 ) -> Callable[[Store, frozenset[str]], Response]:
-    """Return a function that answers with the list of what is in a store.
+    """Return a function that answers with the list of a store's entries.
 
-    A library of a thousand clips is listed by every page at every start, and changes rarely: its
-    list is read and written after a change only, and a browser that has it gets a 304.
+    Every page lists the whole library at its start, maybe a thousand clips that change rarely. So
+    the list is read and serialised only after a change, and a browser that has it gets a 304.
 
     Parameters
     ----------
     views
-        Reads the list.
+        Reads the list of views.
     adapter
         Writes it.
 
@@ -73,16 +73,16 @@ def page_response(
     adapter: TypeAdapter[list[View]],
     kept: int,
 ) -> Callable[[Store, frozenset[str], Query], Response]:
-    """Return a function that answers with a part of the list of what is in a store.
+    """Return a function that answers with a part of the list of a store's entries.
 
     Parameters
     ----------
     read
-        Reads the part that a query names, and the headers that say where it stands.
+        Reads the part that a query selects, and the headers that state its position.
     adapter
         Writes it.
     kept
-        Parts that are kept written, until the store changes.
+        Number of serialised parts that are kept until the store changes.
 
     """
 
@@ -92,7 +92,7 @@ def page_response(
         return adapter.dump_json(views), headers
 
     def answer(store: Store, known: frozenset[str], query: Query) -> Response:
-        # Before reading: what changes meanwhile makes this list old, never a new one taken for old.
+        # Before reading, so that an old list is never sent as new when the store changes meanwhile.
         changes = store.changes
         headers = {"ETag": f'"{changes}"', "Cache-Control": "private, no-cache"}
         if headers["ETag"] in known:

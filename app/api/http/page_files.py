@@ -1,7 +1,7 @@
 """Page files: HTML, scripts and styles of the page, at addresses with a digest of their contents.
 
-A browser keeps them without asking again, and none from before an update stands beside newer ones.
-The style sheets come as one file: twenty requests over a slow link take longer than it.
+A browser can keep them without a further request, and never mixes files from before and after an
+update. The style sheets are joined into one file, which loads faster than twenty requests.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from starlette.responses import Response
 from starlette.types import Scope
 
 ADDRESS = "/static"
-"""Where the files are."""
+"""Path of the files."""
 
 _ALL_SHEETS = "styles/all.css"
-"""Among the sheets that it holds: what they name by relative addresses is found."""
+"""Path of the joined style sheets, in their folder so that relative addresses in them stay
+valid."""
 _SHEET = re.compile(rf'<link\s+rel="stylesheet"\s+href="{ADDRESS}/([^"]+)"\s*/>\s*')
 _DIGEST = re.compile("[0-9a-f]{16}")
 _FOR_A_YEAR = "max-age=31536000, immutable"
@@ -28,16 +29,16 @@ _ASK_FIRST = "no-cache"
 
 
 class PageFiles(StaticFiles):
-    """Serves the page's files, below a digest of all of them too.
+    """Serves the page's files, also at addresses with a digest of all files.
 
-    Below the digest of what is there now a file may be kept; below another one, or none, the
-    browser asks whether it has changed.
+    At an address with the current digest a file may be kept; at one with another digest, or none,
+    the browser must ask whether it has changed.
 
     Parameters
     ----------
     folder
-        Holds ``index.html`` and the files that it names as ``/static/...``. Its style sheets are
-        joined in the order of their links.
+        Folder of ``index.html`` and the files that it refers to as ``/static/...``. The style
+        sheets are joined in the order of their links.
 
     """
 
@@ -47,7 +48,7 @@ class PageFiles(StaticFiles):
         self._digest = self._compute_digest()
 
     def read_page(self) -> HTMLResponse:
-        """Return the page, its files named below their digest as they are now."""
+        """Return the page, with the current digest in the addresses of its files."""
         self._digest = self._compute_digest()
         page = self._read_index()
         if first := _SHEET.search(page):
@@ -58,7 +59,7 @@ class PageFiles(StaticFiles):
         return HTMLResponse(named, headers={"Cache-Control": _ASK_FIRST})
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """Answer with a file, and how long a browser may keep it."""
+        """Answer with a file, and set how long a browser may keep it."""
         digest, _, below = Path(path).as_posix().partition("/")
         if _DIGEST.fullmatch(digest):
             path = below
@@ -73,7 +74,7 @@ class PageFiles(StaticFiles):
         return (self._folder / "index.html").read_text(encoding="utf-8")
 
     def _join_sheets(self) -> str:
-        """Return what the page's style sheets hold, in the order of their links."""
+        """Return the contents of the page's style sheets, in the order of their links."""
         paths = _SHEET.findall(self._read_index())
         return "\n".join((self._folder / path).read_text(encoding="utf-8") for path in paths)
 

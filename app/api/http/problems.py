@@ -33,7 +33,7 @@ from app.store import Conflict, NotFound, StoreError
 MEDIA_TYPE = "application/problem+json"
 
 RETRY_SECONDS = "5"
-"""``Retry-After`` where waiting may help: as long as a writer waits for the database."""
+"""``Retry-After`` in seconds where waiting may help: the time a writer waits for the database."""
 
 _DISK_FULL = (errno.ENOSPC, errno.EDQUOT)
 
@@ -75,7 +75,7 @@ class ProblemError(HTTPException):
     detail
         What is wrong, why, and what to do next.
     errors
-        Each fault of the request, where there can be several.
+        Each fault of the request, if there can be several.
     headers
         Response headers.
     more
@@ -117,7 +117,7 @@ class ProblemError(HTTPException):
 
 def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI ``responses`` of an operation that may answer with these statuses."""
-    # Every operation may be refused by the guards or meet a store that cannot answer.
+    # Every operation may be refused by the middleware, or fail because the store is unavailable.
     return {
         status: {
             "description": HTTPStatus(status).phrase,
@@ -190,7 +190,7 @@ def _convert_recognition_error(error: OsgError) -> ProblemError:
 
 
 def _convert_os_error(error: OSError) -> ProblemError:
-    # The path stays in the log: it is nobody's business outside this machine.
+    # The path is only logged, because it must not leave this machine.
     logger.error("storage failed", exc_info=error)
     reason = error.strerror or type(error).__name__
     headers = {"Retry-After": RETRY_SECONDS}
@@ -202,7 +202,7 @@ def _convert_os_error(error: OSError) -> ProblemError:
 
 
 async def _on_disconnect(_request: Request, _error: Exception) -> JSONResponse:
-    # Nobody reads it, and it is no fault of the server that its log should tell.
+    # Nobody reads this response; a 400 keeps the server's log free of an error that is not its own.
     return ProblemError(400, "client_left", "the client left before it was answered").response()
 
 
@@ -230,7 +230,7 @@ async def _on_invalid_request(_request: Request, error: Exception) -> JSONRespon
 
 
 def _fault(item: Mapping[str, Any]) -> Fault:
-    """Translate one of pydantic's errors; the input is not echoed, it may be anything."""
+    """Convert one of pydantic's errors, without the input, which may be anything."""
     place, *steps = item["loc"]
     if place != "body":
         name = str(steps[0]) if steps else str(place)

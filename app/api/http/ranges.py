@@ -12,10 +12,10 @@ _SINGLE_RANGE = re.compile(r"bytes=(\d{1,18})-(\d{0,18})|bytes=-(\d{1,18})", re.
 
 
 def keep_single_range(request: Request, size: int) -> None:
-    """Leave one well-formed range to the response, and ignore all other kinds.
+    """Keep a single well-formed range in the request, and remove all other forms.
 
-    A server may ignore ranges it does not want to serve (RFC 9110, 14.2); a header of ten
-    thousand ranges then costs nothing.
+    A server may ignore ranges (RFC 9110, 14.2), so that a header of ten thousand ranges costs
+    nothing.
 
     Raises
     ------

@@ -10,14 +10,14 @@ from fastapi import WebSocket
 UNSUPPORTED_DATA: Final = 1007
 POLICY_VIOLATION: Final = 1008
 SERVICE_RESTART: Final = 1012
-"""Close codes (RFC 6455, 7.4.1, and its registry)."""
+"""Close code (RFC 6455, 7.4.1, and its registry)."""
 
 
 def same_origin(websocket: WebSocket) -> bool:
     """Return whether the page that opens the websocket is from this server.
 
-    Browsers send Origin with every websocket and let scripts of other sites open them; programs
-    that are no browser need not send it.
+    Browsers send Origin with every websocket, but let scripts of other sites open websockets. Other
+    programs need not send it.
     """
     origin = websocket.headers.get("origin")
     return origin is None or urlsplit(origin).netloc == websocket.headers.get("host")

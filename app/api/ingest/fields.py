@@ -1,4 +1,4 @@
-"""Upload fields: what a sender says of a file, as form fields or as tus metadata."""
+"""Upload fields: a sender's values for a file, from form fields or tus metadata."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from app.api.http.problems import Fault, ProblemError
 from app.clip_sources import ReadOptions
 
 LONGEST_TOPIC: Final = 255
-"""Bytes of a topic's name: as long as ROS allows one to be."""
+"""Most bytes of a topic's name, as ROS allows."""
 
 _LONGEST_NUMBER: Final = 32
-"""Bytes of a rate or a size: more digits than any has."""
+"""Most bytes of a rate or a size: more digits than any needs."""
 
 LONGEST: Final[Mapping[str, int]] = {
     "topic": LONGEST_TOPIC,
     "frame_rate": _LONGEST_NUMBER,
     "frame_size": _LONGEST_NUMBER,
 }
-"""The names of the fields, and the bytes that each may have."""
+"""Most bytes of each field, by name."""
 
 FASTEST: Final = 1000.0
-"""Frames per second: no camera under water takes more."""
+"""Highest frame rate accepted, in frames per second: no underwater camera takes more."""
 
 Size = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,4}\s*[xX]\s*[1-9]\d{0,4}$")]
 
@@ -49,7 +49,7 @@ class UploadFields(BaseModel):
 
     @classmethod
     def read(cls, texts: Mapping[str, str]) -> UploadFields:
-        """Parse the fields; unknown ones are ignored, as both protocols have it.
+        """Parse the fields; unknown ones are ignored, as both protocols require.
 
         Raises
         ------

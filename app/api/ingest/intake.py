@@ -24,18 +24,18 @@ UNSUPPORTED = "unsupported_media_type"
 
 
 def client_of(request: Request) -> str:
-    """Return the address that a queue limit counts by."""
+    """Return the client's address, to which the queue limit applies."""
     return request.client.host[:64] if request.client else "local"
 
 
 async def require_place_in_queue(request: Request, studio: Studio) -> int:
-    """Refuse, before its body is read, a request whose sender has too many jobs waiting.
+    """Refuse a request whose sender has too many waiting jobs, before its body is read.
 
     A resumable upload counts as a job from its beginning.
 
     Returns
     -------
-    The bytes that resumable uploads of all senders have announced and not yet sent.
+    Number of bytes that the resumable uploads of all senders have announced and not yet sent.
 
     """
     most, client = studio.settings.max_jobs_per_client, client_of(request)
@@ -70,8 +70,8 @@ async def inspect(
     name, size
         The name to show, and the file's bytes.
     fields
-        What its sender says of it. Of a dive recording without a topic the only one is meant, or
-        it is chosen later.
+        Values from its sender. Without a topic, the only one of a dive recording is taken, or the
+        topic is chosen later.
 
     Returns
     -------
@@ -80,7 +80,7 @@ async def inspect(
     Raises
     ------
     ProblemError
-        415 when it is of no known kind, 422 when it is one that cannot be read, has no such
+        415 when the kind of the file is unknown; 422 when the file cannot be read, has no such
         topic, or needs more `fields`.
 
     """
@@ -102,7 +102,7 @@ async def inspect(
                 media_type=source.media_type(head),
                 **_facts(name, options, probed),
             )
-        # An archive of one kind may turn out to be one of another kind.
+        # An archive may turn out to be of another kind than its beginning suggests.
         if probed.code != UNSUPPORTED or source is candidates[-1]:
             raise _refusal(probed, name)
     if given.topic is not None:
@@ -115,7 +115,7 @@ async def inspect(
 async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> ClipAccepted:
     """Store an inspected file as its sender's `clip`, queue its job, and publish the change.
 
-    The job of a dive recording whose topic nobody chose has failed already, for that reason.
+    The job of a dive recording whose topic is not chosen yet is stored as failed, for that reason.
 
     Raises
     ------
@@ -134,7 +134,7 @@ async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> 
 
 
 def _facts(name: str, options: ReadOptions, probed: Probed) -> dict[str, Any]:
-    """Return what is stored of a clip that was probed."""
+    """Return the fields of a probed clip that are stored."""
     topic = options.topic
     named = {each.name: each for each in probed.topics}
     if topic is None and len(named) == 1:

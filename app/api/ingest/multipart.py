@@ -19,10 +19,10 @@ from app.api.middleware.body_limit import too_large
 from app.settings import Settings
 
 FRAME_BYTES = 64 * 1024
-"""What the multipart framing around the file may take: a few headers and small fields."""
+"""Most bytes of the multipart framing around the file: a few headers and small fields."""
 
 MOST_PARTS = 16
-"""Parts of one form; the page sends one."""
+"""Most parts of one form; the page sends one."""
 
 LONGEST_NAME = 200
 """Characters of a file name that are shown and kept."""
@@ -37,11 +37,11 @@ class Upload:
     Attributes
     ----------
     name
-        What to show for it; see `display_name`.
+        Name to show; see `display_name`.
     size
         Bytes.
     fields
-        What the form's other fields say.
+        Values of the form's other fields.
 
     """
 
@@ -55,14 +55,14 @@ async def receive_file(
 ) -> Upload:
     """Write the form's part ``file`` to `target`; `reserved` as in `require_space`.
 
-    Memory stays at about a megabyte; `target` is the caller's to remove when this raises.
+    Memory stays at about a megabyte. After an error the caller must remove `target`.
 
     Raises
     ------
     ProblemError
-        400 when the form is malformed or cut short, 408 when it comes too slowly, 413 when the
-        file is too large, 415 when the body is no multipart form, 422 when a field says what it
-        cannot, 507 when the disk is too full.
+        400 when the form is malformed or cut short, 408 when it comes too slowly, 413 when the file
+        is too large, 415 when the body is no multipart form, 422 when a field has an invalid value,
+        507 when the disk is too full.
 
     """
     stated = request.headers.get("content-length", "")
@@ -99,10 +99,10 @@ async def receive_body(request: Request, target: Path, settings: Settings) -> in
 
 
 def display_name(name: str) -> str:
-    """Return what to show for a file that its sender calls `name`.
+    """Return the name to show for a file that its sender calls `name`.
 
-    Folders, control characters and marks that turn the direction of writing are dropped, and
-    what is too long is cut before its ending.
+    Folders, control characters and marks that change the writing direction are removed, and a name
+    that is too long is cut before its ending.
     """
     base = name.replace("\\", "/").rsplit("/", 1)[-1]
     visible = "".join(
@@ -117,7 +117,7 @@ def display_name(name: str) -> str:
 
 
 class _FilePart:
-    """Picks the bytes of the part ``file``, and the fields beside it, out of a multipart body."""
+    """Extracts the bytes of the part ``file``, and the other fields, from a multipart body."""
 
     def __init__(self, boundary: bytes, limit: int) -> None:
         self.pending = bytearray()
@@ -228,9 +228,9 @@ async def _flush(parser: _FilePart, file: BinaryIO) -> None:
 
 
 def require_space(folder: Path, size: int, settings: Settings, *, reserved: int = 0) -> None:
-    """Refuse a file of `size` bytes that would leave too little of the disk that holds `folder`.
+    """Refuse a file of `size` bytes that would leave too little space on the disk of `folder`.
 
-    `reserved` bytes were announced by others and are still to come.
+    `reserved` is the number of bytes that other uploads have announced and not yet sent.
     """
     needed = size + reserved + settings.free_disk_bytes
     free = shutil.disk_usage(folder).free

@@ -13,18 +13,18 @@ from app.api.services.running_studio import Studio
 from app.store import Allowance, Usage
 
 CLOSE = {"Connection": "close"}
-"""What is left of the body stays unread, so the connection cannot be used again."""
+"""The rest of the body stays unread, so the connection cannot be reused."""
 
 
 def owner_of(request: Request) -> str:
-    """Return the name that a quota counts by; empty where no token is needed."""
+    """Return the name to which a quota applies; empty if no token is needed."""
     return identity_of(request.scope).name
 
 
 async def require_quota(request: Request, studio: Studio, size: int) -> None:
-    """Refuse early a clip of at least so many bytes that its sender's quota has no place for.
+    """Refuse, early, a clip of at least `size` bytes that exceeds its sender's quota.
 
-    Whether there is still place is asked again when the clip or its upload is written down.
+    The quota is checked again when the clip or its upload is stored.
 
     Raises
     ------
@@ -37,10 +37,11 @@ async def require_quota(request: Request, studio: Studio, size: int) -> None:
 
 
 def allowance_of(request: Request, size: int) -> Allowance | None:
-    """Return what refuses a clip of so many bytes by its sender's quota; None without a quota.
+    """Return the check of a clip of `size` bytes against its sender's quota; None without a quota.
 
-    It raises ProblemError: 413 when the clip alone is larger than the quota, 507 when less than
-    that is left, or as many clips are kept as may be. Uploads under way count with all their bytes.
+    It raises ProblemError: 413 when the clip alone exceeds the quota, 507 when too little of the
+    quota is left or the owner keeps the most clips allowed. Uploads under way count with all their
+    bytes.
     """
     identity = identity_of(request.scope)
     if not (identity.quota_bytes or identity.quota_clips):

@@ -1,5 +1,4 @@
 """Jobs: work that takes long, with progress and cancel; one module per kind.
 
-A further kind is one more class with the members of `job.Job`; a route awaits it with
-`studio.runner.run`.
+A new kind is a class with the members of `job.Job`; a route awaits it with `studio.runner.run`.
 """

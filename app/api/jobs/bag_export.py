@@ -22,7 +22,7 @@ class BagExportJob:
     Parameters
     ----------
     export_id
-        Names the export in its events: there may be several of one clip.
+        Id of the export in its events, because a clip can have several.
     request
         The content of the bag.
     target
@@ -56,7 +56,7 @@ class BagExportJob:
         return f"session {self._target.name}"
 
     def event(self, progress: Progress) -> Event:
-        """Return how far the export is."""
+        """Return the event with the progress of the export."""
         content = {
             "id": self._export_id,
             "stage": progress.stage,
@@ -67,7 +67,7 @@ class BagExportJob:
         return Event("exports", content)
 
     async def run(self, report: Report) -> Finished | Failed:
-        """Write the file, and return how that ended."""
+        """Write the file, and return the outcome."""
         request = self._request.model_dump_json().encode()
         left = TimeLeft()
         async with aclosing(self._workers.write_bag(request, self._target, self._files)) as steps:

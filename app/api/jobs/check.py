@@ -21,7 +21,7 @@ _reports: OrderedDict[str, dict[str, Any]] = OrderedDict()
 
 
 class CheckJob:
-    """Checks one revision of a language; everybody who asks for it meanwhile waits for one job.
+    """Checks one revision of a language; all requests for it meanwhile wait for the same job.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ class CheckJob:
     workers
         Starts the process.
     folder
-        Where its files may be.
+        Folder for its files.
 
     """
 
@@ -53,7 +53,7 @@ class CheckJob:
         return f"check {hashlib.sha256(self._document.encode()).hexdigest()}"
 
     def event(self, progress: Progress) -> Event:
-        """Return how far the check is."""
+        """Return the event with the progress of the check."""
         content = {
             "id": self._language_id,
             "revision": self._revision,
@@ -64,7 +64,7 @@ class CheckJob:
         return Event("checks", content)
 
     async def run(self, report: Report) -> dict[str, Any] | Failed:
-        """Compute the report, or return the kept one, or why there is none."""
+        """Return the computed or kept report, or the reason for its absence."""
         key = self.key
         if key not in _reports:
             computed = await self._compute(report)

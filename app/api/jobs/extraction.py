@@ -21,7 +21,7 @@ from app.store.models import VIDEO
 
 
 class ExtractionJob:
-    """Runs a job of the store, and writes its end there.
+    """Runs a job of the store, and stores its outcome.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class ExtractionJob:
         return self._job.id
 
     def event(self, progress: Progress) -> Event:
-        """Return the event of the job, with how far it is."""
+        """Return the event with the progress of the job."""
         event = job_event(self._job)
         return Event(event.kind, {**event.data, "progress": asdict(progress)})
 
@@ -75,7 +75,7 @@ class ExtractionJob:
                     report(_progress(message, left))
                 else:
                     end = message
-        # After the worker has ended: storing may have to wait for the database.
+        # After the end of the worker, because storing may have to wait for the database.
         match end:
             case Finished(frames=frames, warnings=warnings):
                 await persist(self._clips.keep_found, clip)
@@ -101,14 +101,14 @@ def options_of(clip: Clip) -> ReadOptions:
 
 
 def files_to_write(clips: ClipStore, clip_id: str) -> ClipFiles:
-    """Return where the parts of a clip are to be written."""
+    """Return the paths to which the parts of a clip are written."""
     return ClipFiles(
         *(clips.place(clip_id, name) for name in (VIDEO, RECORDING, POSTER, FILMSTRIP))
     )
 
 
 def files_of(clips: ClipStore, clip_id: str) -> ClipFiles:
-    """Return where the parts of a clip are stored.
+    """Return the paths of the stored parts of a clip.
 
     Raises
     ------
@@ -125,6 +125,6 @@ def files_of(clips: ClipStore, clip_id: str) -> ClipFiles:
 
 
 def _progress(message: Progressed, left: TimeLeft) -> Progress:
-    """Add the time left, from the rate so far."""
+    """Return the progress with the time left, from the rate so far."""
     eta = left.estimate(message.done, message.total, time.monotonic())
     return Progress(message.stage, message.done, message.total, eta, message.time, message.pose)

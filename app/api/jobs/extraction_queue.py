@@ -18,13 +18,13 @@ from app.api.workers.worker_processes import Workers
 from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
 
 RENEW_SECONDS = 10.0
-"""Between two renewals: a server may miss three before another one takes its jobs over."""
+"""Seconds between two renewals: a server may miss three before another one takes over its jobs."""
 
 logger = logging.getLogger(__name__)
 
 
 class ExtractionQueue:
-    """Runs extraction jobs; those that are open when the server stops run at the next start.
+    """Runs extraction jobs; jobs that are open when the server stops run at the next start.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class ExtractionQueue:
     broadcast
         Publishes every step as ``jobs``, and every end as ``clips``.
     count
-        How many jobs run at the same time.
+        Number of jobs that run at the same time.
 
     """
 
@@ -62,14 +62,14 @@ class ExtractionQueue:
         self._look = asyncio.Event()
 
     async def start(self) -> None:
-        """Queue again what an earlier server left open, and begin to work."""
+        """Requeue the jobs that an earlier run left open, and start the workers."""
         for job in await run_in_threadpool(self._jobs.resume):
             await self._waiting.put(job.client, job.id)
         self._loops = [asyncio.create_task(self._work()) for _ in range(self._count)]
         self._loops.append(asyncio.create_task(self._keep_up()))
 
     def look(self) -> None:
-        """Look soon whether other servers took, cancelled or queued jobs; on the event loop."""
+        """Check soon for changes of jobs by other servers; call it on the event loop."""
         self._look.set()
 
     async def stop(self) -> None:
@@ -80,7 +80,7 @@ class ExtractionQueue:
         await asyncio.gather(*self._loops, return_exceptions=True)
         for job_id in running:
             await self._runner.cancel(job_id)
-            # When not even that can be written, the next start finds it running.
+            # If this cannot be stored either, the next start finds the job running.
             with suppress(StoreError):
                 await run_in_threadpool(self._jobs.requeue, job_id)
 
@@ -90,7 +90,7 @@ class ExtractionQueue:
         self._broadcast.send(job_event(job))
 
     async def cancel(self, job: Job) -> bool:
-        """End a job that waits or runs; return whether it did."""
+        """Cancel a waiting or running job; return whether it waited or ran."""
         cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
         await self._runner.cancel(job.id)
         if cancelled:
@@ -104,12 +104,12 @@ class ExtractionQueue:
                 if job := await persist(self._jobs.start, job_id):
                     await self._run(job)
             except Exception:
-                # One job's trouble, such as a full disk, must not end the loop for all others.
+                # The failure of one job, such as a full disk, must not end the loop for all others.
                 logger.exception("job %s could not be run", job_id)
                 await self._give_up(job_id)
 
     async def _keep_up(self) -> None:
-        """Renew the leases of what runs here, and take over what other servers left."""
+        """Renew the leases of this server's jobs, and take over those that other servers left."""
         while True:
             with suppress(TimeoutError):
                 await asyncio.wait_for(self._look.wait(), RENEW_SECONDS)

@@ -7,7 +7,7 @@ from collections import OrderedDict, deque
 
 
 class FairQueue:
-    """Ids of waiting jobs by client; a client that queues a hundred does not hold up the others."""
+    """Ids of waiting jobs by client; a client with a hundred jobs does not delay the others."""
 
     def __init__(self) -> None:
         self._waiting: OrderedDict[str, deque[str]] = OrderedDict()
@@ -15,7 +15,7 @@ class FairQueue:
         self._changed = asyncio.Condition()
 
     async def put(self, client: str, job_id: str) -> None:
-        """Add a job at the end of its client's line, unless it is in it already."""
+        """Add a job at the end of its client's queue, unless it is in it already."""
         async with self._changed:
             if job_id in self._known:
                 return

@@ -23,16 +23,16 @@ class Progress:
     Attributes
     ----------
     stage
-        Of an extraction: ``starting``, ``poses`` or ``saving``; of others as they name it.
+        Stage of an extraction: ``starting``, ``poses`` or ``saving``; other jobs name their own.
     done, total
         Frames or other pieces of work; `total` may be an estimate.
     eta_s
         Seconds still to go at the present rate, or None before there is one.
     time
-        Of an extraction: seconds after the clip's first frame, of the newest frame whose landmarks
-        were found; None in the other stages.
+        For an extraction: time of the newest frame with landmarks, in seconds after the clip's
+        first frame; None in the other stages.
     pose
-        The body in that frame, or None where nobody is in it.
+        The body in that frame, or None if it shows nobody.
 
     """
 
@@ -45,13 +45,13 @@ class Progress:
 
 
 def progress_of(event: Event) -> Progress | None:
-    """Return how far the job of an event is; None where the event does not say."""
+    """Return the progress in an event; None if it has none."""
     told = event.data.get("progress")
     return None if told is None else Progress(**told)
 
 
 Report = Callable[[Progress], None]
-"""Takes the progress, from any thread; raises `JobCancelled` when the job is to end."""
+"""Receives the progress, from any thread; raises `JobCancelled` when the job must end."""
 
 
 class Job(Protocol[Result]):
@@ -60,9 +60,9 @@ class Job(Protocol[Result]):
     Attributes
     ----------
     key
-        Identity: running a job whose key runs already waits for that run.
+        Identity: a job whose key is already running waits for that run.
     resumable
-        Whether the next start of the server runs it again, so that stopping need not cancel it.
+        Whether the next start of the server runs it again, so that a stop need not cancel it.
 
     """
 

@@ -1,4 +1,4 @@
-"""Persistence of a job's state: repeats a write until the database takes it."""
+"""Persistence: repeats the write of a job's state until the database accepts it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.store import StoreUnavailable
 
 FIRST_PAUSE_SECONDS = 0.5
 LONGEST_PAUSE_SECONDS = 5.0
-"""Pauses between tries: short enough that nobody waits long once the database is back."""
+"""Longest pause between attempts: short enough that nobody waits long once the database is back."""
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
@@ -24,9 +24,9 @@ logger = logging.getLogger(__name__)
 async def persist(
     call: Callable[Arguments, Result], *args: Arguments.args, **kwargs: Arguments.kwargs
 ) -> Result:
-    """Call a method of the store in a thread, again while the database is locked or full.
+    """Call a method of the store in a thread, and repeat it while the database is locked or full.
 
-    A job whose end is lost would be running for ever. Cancelling the task ends the tries.
+    A job whose end is not stored would seem to run for ever. Cancelling the task ends the attempts.
     """
     pause = FIRST_PAUSE_SECONDS
     while True:

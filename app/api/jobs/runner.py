@@ -38,14 +38,14 @@ class _Run:
 
 
 class JobRunner:
-    """Runs jobs on the event loop it was made on.
+    """Runs jobs on the event loop that created it.
 
     Parameters
     ----------
     broadcast
         Publishes every step as an event.
     metrics
-        Measures how long jobs take.
+        Measures the duration of jobs.
 
     """
 
@@ -59,8 +59,8 @@ class JobRunner:
     async def run(self, job: Job[Result]) -> Result:
         """Run a job, or wait for the running one of the same key, and return its result.
 
-        The job goes on when a caller is cancelled and others wait for it. When the last one is
-        cancelled, it ends, unless it is resumable.
+        The job goes on when a caller is cancelled while others wait. When the last caller is
+        cancelled, the job ends, unless it is resumable.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class JobRunner:
         task: asyncio.Task[Result] = self._runs[job.key][1]
         run.waiting += 1
         try:
-            # Not awaited itself: cancelling the job must not look like cancelling the caller.
+            # Not awaited directly: cancelling the job must not look like cancelling the caller.
             await asyncio.wait([task])
         finally:
             run.waiting -= 1
@@ -85,13 +85,13 @@ class JobRunner:
         return task.result()
 
     def progress(self, key: str) -> Progress | None:
-        """Return how far a job is, here or on another server; None when it does not run."""
+        """Return the progress of a job, here or on another server; None if it is not running."""
         if key in self._runs:
             return self._runs[key][0].progress
         return self._elsewhere.get(key)
 
     def note(self, key: str, progress: Progress | None) -> None:
-        """Note how far a job of another server is; None: it does not run there any more."""
+        """Store the progress of another server's job; None if it is no longer running there."""
         if progress is None:
             self._elsewhere.pop(key, None)
         else:
@@ -108,7 +108,7 @@ class JobRunner:
         return True
 
     async def stop(self) -> None:
-        """Cancel the jobs that no later start takes up again, and refuse new ones."""
+        """Cancel the jobs that are not resumable, and refuse new ones."""
         self._closed = True
         for key in [key for key, (run, _) in self._runs.items() if not run.job.resumable]:
             await self.cancel(key)

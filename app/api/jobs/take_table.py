@@ -22,11 +22,11 @@ class TakeTableJob:
     Parameters
     ----------
     table_id
-        Names the table in its events.
+        Id of the table in its events.
     clips
         The clips.
     recognize
-        Returns the rows of one; calls back with the share of its takes that is done.
+        Returns the rows of one clip; reports the share of its takes that is done to its callback.
 
     """
 
@@ -44,11 +44,11 @@ class TakeTableJob:
 
     @property
     def key(self) -> str:
-        """The table, in this run alone."""
+        """Id of the table, unique to this run."""
         return f"table {self._table_id} {id(self)}"
 
     def event(self, progress: Progress) -> Event:
-        """Return how far the table is."""
+        """Return the event with the progress of the table."""
         content = {
             "id": self._table_id,
             "stage": progress.stage,

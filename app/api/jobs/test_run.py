@@ -17,7 +17,7 @@ from app.api.workers.worker_processes import Workers
 
 
 class TestRunJob:
-    """Recognises one take after the other; what is done stays when it is cancelled.
+    """Recognises one take after the other; finished results stay when it is cancelled.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class TestRunJob:
     request
         The takes to recognise.
     keep
-        Keeps the answer about the take of an index.
+        Stores the result of the take with that index.
     workers
         Starts the process.
     folder
@@ -55,11 +55,11 @@ class TestRunJob:
 
     @property
     def key(self) -> str:
-        """The revision: two runs of it would do the same."""
+        """Id of the revision, because two runs of it would do the same."""
         return test_run_key(self._language_id, self._revision)
 
     def event(self, progress: Progress) -> Event:
-        """Return how far the run is."""
+        """Return the event with the progress of the run."""
         content = {
             "id": self._language_id,
             "revision": self._revision,
@@ -69,7 +69,7 @@ class TestRunJob:
         return Event("tests", content)
 
     async def run(self, report: Report) -> Failed | None:
-        """Recognise the takes; return why the process could not."""
+        """Recognise the takes; return the failure of the process, if any."""
         done, total = 0, len(self._request.takes)
         report(Progress("recognising", done, total))
         if not total:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 LEAST_SHARE = 0.05
-"""Share of the frames after which the rate is known: models load and caches fill before."""
+"""Share of the frames after which the rate is known; before, models load and caches fill."""
 
 
 class TimeLeft:

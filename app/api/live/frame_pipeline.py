@@ -27,20 +27,21 @@ from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 MOST_PIXELS: Final = 2_500_000
-"""Of one frame, with the margin that FFmpeg adds when it counts: 1920 x 1080 passes, and the page
-sends half of it."""
+"""Most pixels of one frame, with the margin that FFmpeg adds to its count: 1920 x 1080 is accepted,
+and the page sends half of that."""
 
 RATE_SECONDS: Final = 2.0
-"""Time over which frames per second are counted: long enough to be read, short enough to follow."""
+"""Seconds over which the frame rate is averaged: long enough to read, short enough to be
+current."""
 
 TIMESTAMP: Final = struct.Struct("<d")
-"""What stands before a frame's JPEG: when it was captured, in seconds of the page's own clock."""
+"""Header of a frame's JPEG: the time of capture, in seconds of the page's own clock."""
 
 ASK_SECONDS: Final = 1.0
-"""Seconds between two looks at the language's trigger, which an edit may change."""
+"""Seconds between two checks of the language's trigger, which an edit may change."""
 
 RecognizerSource = Callable[[], Recognizer | None]
-"""Returns the recogniser to ask now; None where only landmarks and takes are wanted."""
+"""Returns the recogniser to use now; None if only landmarks and takes are wanted."""
 
 
 class Seen(BaseModel):
@@ -51,21 +52,21 @@ class Seen(BaseModel):
     time
         The frame's timestamp, as the page gave it.
     pose
-        The body; None where nobody is in the frame.
+        The body; None if the frame shows nobody.
     hands
         Up to two hands of 21 landmarks each (`HAND_LANDMARKS`), as `pose`.
     salute
-        In [0, 1]: how much the best hand salutes, or the language's other trigger is shown.
+        Score in [0, 1] of the best hand's salute, or of the language's other trigger.
     held
-        Whether it counts now.
+        Whether the trigger counts as held now.
     state
         Whether a salute is awaited, a take goes on, or the salute that ended it is still held.
     frames_per_second
-        How many frames were looked at lately.
+        Recent rate of processed frames.
     seconds
         From the frame's arrival to this answer.
     skipped
-        Frames since the one before that were not looked at, because newer ones had arrived.
+        Number of frames skipped since the previous one because newer ones had arrived.
 
     """
 
@@ -91,13 +92,13 @@ class Recognized(BaseModel):
     closed
         Whether a stop salute ended it.
     language
-        Name of the language that was asked; None: there was none to ask.
+        Name of the language that was used; None if there was none.
     label, nearest, confidence
-        As in `app.recognition.Recognition`; None where nothing was recognised.
+        As in `app.recognition.Recognition`; None if nothing was recognised.
     voters, agreeing
-        How many votes counted, and how many of them chose `nearest`.
+        Number of votes that counted, and of those for `nearest`.
     problem
-        Why there is no label, where the movement itself is not the reason.
+        Reason for a missing label, if it is not the movement itself.
 
     """
 
@@ -121,13 +122,13 @@ class Frame:
     Attributes
     ----------
     time
-        When it was captured, in seconds of the page's clock.
+        Time of capture, in seconds of the page's clock.
     jpeg
         The picture.
     arrived
-        When it arrived, in seconds of `time.monotonic`.
+        Time of arrival, in seconds of `time.monotonic`.
     skipped
-        Frames that had arrived since the last look and were not looked at.
+        Number of frames that arrived since the last processed one and were skipped.
 
     """
 
@@ -138,12 +139,12 @@ class Frame:
 
     @classmethod
     def parse(cls, message: bytes, skipped: int) -> Self:
-        """Take apart what a page sends: `TIMESTAMP`, then a JPEG.
+        """Parse a message of the page: `TIMESTAMP`, then a JPEG.
 
         Raises
         ------
         VideoError
-            When it is too short, or the time is no number.
+            When the message is too short, or the time is no number.
 
         """
         if len(message) <= TIMESTAMP.size:
@@ -155,16 +156,17 @@ class Frame:
 
 
 class FramePipeline:
-    """Watches one camera: its estimator tracks, so every connection needs its own.
+    """Processes the frames of one camera; its estimator tracks, so every connection needs its own.
 
     Parameters
     ----------
     estimator
-        What finds the landmarks; closed by `close`.
+        Finds the landmarks; closed by `close`.
     water
         Whether colour and contrast are corrected first.
     recognizer
-        Asked for the recogniser whenever a take ends, so that an edit of the language counts.
+        Called for the recogniser whenever a take ends, so that an edit of the language takes
+        effect.
 
     """
 
@@ -176,17 +178,17 @@ class FramePipeline:
         self._recognizer = recognizer
         self._takes: LiveTakes | None = None
         self._trigger = SALUTE
-        self._asked = -np.inf  # when the trigger was asked for
+        self._asked = -np.inf  # time of the last check of the trigger
         self._spotter: Spotter | None = None
         self._spots: Recognizer | None = None  # whose gestures the spotter finds
         self._time = -np.inf
         self._looks: deque[float] = deque()
 
     def look(self, frame: Frame) -> tuple[Seen | Recognized, ...]:
-        """Look at the next frame, and at the take that it ends.
+        """Process the next frame, and the take that it ends.
 
-        A frame of another size, or from before the last one, is another camera's: what was tracked
-        and every take begun are forgotten.
+        A frame of another size, or from before the last one, comes from another camera: tracking
+        and an open take are reset.
 
         Raises
         ------
@@ -225,7 +227,7 @@ class FramePipeline:
         self._estimator.close()
 
     def _rate(self) -> float:
-        """Count this look, and return how many there were in a second."""
+        """Count this frame, and return the number of frames processed per second."""
         now = clock.monotonic()
         self._looks.append(now)
         while now - self._looks[0] > RATE_SECONDS:
@@ -234,7 +236,7 @@ class FramePipeline:
         return round((len(self._looks) - 1) / lasted, 2) if lasted > 0 else 0.0
 
     def _find_trigger(self) -> Trigger:
-        """Return the trigger of the language that is asked, of none the salute."""
+        """Return the trigger of the language in use; without a language, the salute."""
         if clock.monotonic() - self._asked > ASK_SECONDS:
             self._asked = clock.monotonic()
             try:
@@ -312,7 +314,7 @@ def decode_frame(jpeg: bytes) -> Image:
     Raises
     ------
     VideoError
-        When it is none, or has more than `MOST_PIXELS`; found out before it takes memory.
+        When it is no JPEG, or has more than `MOST_PIXELS`; checked before memory is allocated.
 
     """
     decoder = av.CodecContext.create("mjpeg", "r")

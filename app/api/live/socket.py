@@ -1,7 +1,7 @@
 """Live websocket: a page sends a camera's frames and receives landmarks and recognitions.
 
-One websocket a view. Frames are looked at one after the other in a thread of their own; while one
-is looked at only the newest of those that arrive is kept, so the answer is never about the past.
+Each view has one websocket. Its frames are processed one after the other in a separate thread.
+While one is processed, only the newest arrival is kept, so that answers are never about the past.
 """
 
 from __future__ import annotations
@@ -33,19 +33,19 @@ MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013
 """Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
 
 NO_FRAMES = 4408
-"""Close code of our own, after HTTP's 408: nothing came for `SILENCE_SECONDS`."""
+"""Private close code, modelled on HTTP's 408: no frame came for `SILENCE_SECONDS`."""
 
 MOST_REASON_BYTES: Final = 123
-"""Of a close frame's reason (RFC 6455, 5.5)."""
+"""Most bytes of a close frame's reason (RFC 6455, 5.5)."""
 
 MOST_FRAME_BYTES: Final = 1024 * 1024
-"""Of one frame; the page's are around 100 kB."""
+"""Most bytes of one frame; the page's frames have around 100 kB."""
 
 MOST_VIEWS: Final = 2
-"""Live views at the same time: each keeps two cores busy, and a laptop has not many more."""
+"""Most live views at the same time: each keeps two cores busy, and a laptop has few more."""
 
 SILENCE_SECONDS: Final = 60.0
-"""A view without frames for so long is closed: its place may be wanted by another one."""
+"""Seconds without frames after which a view is closed, to make place for another one."""
 
 
 class Listen(BaseModel):
@@ -133,7 +133,7 @@ class _View:
         self._arrived = asyncio.Event()
 
     async def run(self) -> None:
-        """Look and answer until the page leaves.
+        """Process frames and answer until the page leaves.
 
         Raises
         ------
@@ -156,12 +156,12 @@ class _View:
                 raise end
 
     def close(self) -> None:
-        """Wait for the look that goes on, and release the models."""
+        """Wait for the frame being processed, and release the models."""
         self._thread.shutdown()
         self._pipeline.close()
 
     async def _receive(self) -> None:
-        """Keep the newest frame, and do what else is asked."""
+        """Keep the newest frame, and handle the page's other messages."""
         while True:
             message = await self._browser.receive()
             if message["type"] == "websocket.disconnect":
@@ -189,7 +189,7 @@ class _View:
             raise _End(UNSUPPORTED_DATA, reason) from error
         answer = Listening()
         try:
-            # Made ready now, so that the first take need not wait for it.
+            # Built now, so that the first take need not wait for it.
             if recognizer := await run_in_threadpool(self._recognizer):
                 language = recognizer.language
                 answer = Listening(language=language.name, gestures=len(language.gestures))
@@ -217,7 +217,7 @@ class _View:
                 await self._browser.send_text(answer.model_dump_json())
 
     def _recognizer(self) -> Recognizer | None:
-        """Return a recogniser of the wanted language as it is now."""
+        """Return a recogniser of the requested language in its present state."""
         wanted = self._wanted
         if wanted is None or wanted.language_id is None:
             return None

@@ -1,9 +1,9 @@
 """ASGI middleware: checks host name, origin and token of every request.
 
-Plain ASGI, for HTTP and websockets alike. A browser lets every page of the web send requests to
-127.0.0.1, and DNS rebinding even lets it read the answers; so the `Host` must be ours, a request
-that changes something must come from our own page (Fetch Metadata and `Origin`, no CSRF tokens),
-and websockets, which no same-origin policy covers, must name our own `Origin`.
+It is plain ASGI, for HTTP and websockets alike. A browser lets every web page send requests to
+127.0.0.1, and with DNS rebinding the page can even read the answers. Therefore `Host` must be ours,
+a request that changes something must come from our own page (Fetch Metadata and `Origin`, no CSRF
+tokens), and a websocket, which no same-origin policy covers, must send our own `Origin`.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from app.store import StoreError
 
 COOKIE = "osg_studio_session"
 COOKIE_SECONDS = 30 * 24 * 60 * 60
-"""A month: as long as a project of designing gestures takes."""
+"""Lifetime of the session cookie: a month, the length of a project to design gestures."""
 
 
 OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
-"""Answered without a token, for monitoring."""
+"""Paths that are answered without a token, for monitoring."""
 
 MOST_GUESSES = 20
-"""Wrong tokens that one address may send within `GUESS_SECONDS`: some people share an address."""
+"""Wrong tokens that one address may send within `GUESS_SECONDS`; several people may share it."""
 
 GUESS_SECONDS = 60.0
 
@@ -65,7 +65,7 @@ class SameOrigin:
     app
         What to guard.
     settings
-        Gives the host names that are ours.
+        Settings with our host names.
 
     """
 
@@ -73,8 +73,8 @@ class SameOrigin:
         self._app = app
         self._hosts = {settings.host.strip("[]").lower()}
         self._hosts |= {host.strip("[]").lower() for host in settings.allowed_hosts}
-        # On all addresses the names under which we are reached cannot be known. There the token
-        # stands against rebinding: its cookie belongs to the real host name.
+        # A server that listens on all addresses cannot know its own names. There the token protects
+        # against rebinding, because its cookie belongs to the real host name.
         self._any_host = settings.host in {"0.0.0.0", "::"} and not settings.allowed_hosts
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -112,7 +112,7 @@ class SameOrigin:
 
 
 def _is_navigation(headers: Headers) -> bool:
-    """Whether a person followed a link to a page of ours."""
+    """Return whether a person followed a link to a page of ours."""
     return (
         headers.get("sec-fetch-mode") == "navigate" and headers.get("sec-fetch-dest") == "document"
     )
@@ -125,7 +125,7 @@ class Guesses:
         self._times: OrderedDict[str, deque[float]] = OrderedDict()
 
     def add(self, client: str) -> None:
-        """Note a wrong token."""
+        """Count a wrong token."""
         times = self._times.pop(client, deque(maxlen=MOST_GUESSES))
         times.append(time.monotonic())
         self._times[client] = times
@@ -143,14 +143,14 @@ class Guesses:
 class TokenRequired:
     """Requires a token: as bearer, or in the cookie that ``/?token=`` sets.
 
-    It notes for the parts inside whose token it is, see `identities.identity_of`.
+    It stores the identity of the token in the scope, see `identities.identity_of`.
 
     Parameters
     ----------
     app
         What to guard.
     settings
-        Give the tokens; without any, everybody who reaches the server is let in.
+        Settings with the tokens; without any, everybody who reaches the server has access.
 
     """
 
@@ -177,7 +177,7 @@ class TokenRequired:
                 return await answer(scope, receive, send)
 
     def _answer(self, scope: Scope) -> Identity | ProblemError | Response:
-        """Return who sends a request, or how it is answered instead."""
+        """Return the sender of a request, or the answer that refuses or redirects it."""
         if scope["path"] in OPEN_PATHS or not self._identities.required:
             return ANYBODY
         headers = Headers(scope=scope)
@@ -185,7 +185,7 @@ class TokenRequired:
             return found
         client = scope["client"][0] if scope.get("client") else "local"
         if self._guesses.too_many(client):
-            # Not compared at all: of many guesses at once, none must learn more than the others.
+            # The token is not compared, so that many simultaneous guesses reveal nothing more.
             detail = "too many wrong tokens came from this address; try again in a minute"
             again = {"Retry-After": f"{GUESS_SECONDS:.0f}"}
             return ProblemError(429, "too_many_guesses", detail, headers=again)
@@ -216,7 +216,7 @@ class TokenRequired:
         return None if cookie is None else self._identities.of_session(cookie.value)
 
     def _welcome(self, scope: Scope) -> Response | None:
-        """Trade ``?token=`` in a page's address for the cookie, and take it out of the address."""
+        """Exchange ``?token=`` in a page's address for the cookie, and redirect without it."""
         if scope["type"] != "http" or scope["method"] != "GET":
             return None
         query = parse_qsl(scope["query_string"].decode("latin-1"))
@@ -224,7 +224,7 @@ class TokenRequired:
         if self._identities.of_token(shown) is None:
             return None
         rest = urlencode([(name, value) for name, value in query if name != "token"])
-        # One leading slash only: `//host` would be another site.
+        # Only one leading slash, because `//host` would be another site.
         path = "/" + scope["path"].lstrip("/")
         response = RedirectResponse(f"{path}?{rest}" if rest else path, 303)
         response.set_cookie(

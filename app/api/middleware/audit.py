@@ -20,12 +20,12 @@ logger = logging.getLogger(__name__)
 
 
 class Audit:
-    """Notes the changes that succeed; the parts of an upload count once, when it is whole.
+    """Logs the changes that succeed; an upload in parts is logged once, when it is complete.
 
     Parameters
     ----------
     app
-        What makes the changes.
+        App that makes the changes.
 
     """
 
@@ -33,7 +33,7 @@ class Audit:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, and note what is answered."""
+        """Pass on the request, and log it according to the answer."""
         if scope["type"] != "http" or needed_role(scope["method"], scope["path"]) is Role.READ:
             return await self._app(scope, receive, send)
         if scope["method"] in SAFE_METHODS:
@@ -67,5 +67,5 @@ async def _note(scope: Scope, status: int) -> None:
     try:
         await run_in_threadpool(audit.add, entry)
     except StoreError:
-        # The change is made and must be acknowledged; the log of the process has it then.
+        # The change is made and must be acknowledged; the process log then has the entry instead.
         logger.exception("a change could not be written to the audit log", extra={FIELDS: fields})

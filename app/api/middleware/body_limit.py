@@ -1,6 +1,6 @@
 """ASGI middleware: limits the request body by Content-Length or while streaming.
 
-Starlette has a middleware of this kind; it answers with plain text, and ours are problems.
+Starlette's middleware of this kind answers with plain text, not with a problem document.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ class BodyLimit:
     Parameters
     ----------
     app
-        What reads the bodies.
+        App that reads the bodies.
     default
         Bytes allowed.
     exceptions
-        Bytes allowed for single paths; ``/*`` at the end stands for every name in that place.
+        Bytes allowed for individual paths; ``/*`` at the end matches any one name.
 
     """
 
@@ -33,7 +33,7 @@ class BodyLimit:
         self._exceptions = dict(exceptions)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, counting the bytes."""
+        """Pass on the request, and count its bytes."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         path = scope["path"]
@@ -56,10 +56,10 @@ class BodyLimit:
 
 
 def too_large(limit: int) -> ProblemError:
-    """Return the refusal of a body of more than `limit` bytes."""
+    """Return the problem that refuses a body of more than `limit` bytes."""
     detail = (
         f"the request is larger than the limit of {limit / 1e6:g} MB; "
         "send a shorter or smaller file"
     )
-    # What is left of the body stays unread, so the connection cannot be used again.
+    # The rest of the body stays unread, so the connection cannot be reused.
     return ProblemError(413, "too_large", detail, headers={"Connection": "close"}, limit=limit)

@@ -1,7 +1,7 @@
 """Connection guard: limits open connections, and closes those on which no request comes.
 
-uvicorn ends idle connections only between two requests: a client that connects and says nothing,
-or sends the head of a request byte by byte, would hold a file descriptor for ever.
+uvicorn ends idle connections only between two requests: a client that connects and sends nothing,
+or sends a request's header byte by byte, would hold a file descriptor for ever.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from typing import Any
 from uvicorn.protocols.http.auto import AutoHTTPProtocol
 
 MOST_CONNECTIONS = 4096
-"""Open connections, where the system allows so many files: 500 open pages with eight each."""
+"""Most open connections, if the system allows as many files: 500 open pages with eight each."""
 
 FEWEST_CONNECTIONS = 32
-"""Open connections even where the system allows very few files."""
+"""Connections allowed even if the system allows very few files."""
 
 SHARE_OF_FILES = 0.6
 """Share of the files that a process may open; the others are for clips, pipes and the database."""
@@ -32,7 +32,7 @@ SHARE_OF_ADDRESS = 0.5
 class _Connection:
     """One open connection.
 
-    `cycle` is its last request, and `idle_since` when that was found to be answered.
+    `cycle` is its last request, `idle_since` the time at which that was found to be answered.
     """
 
     protocol: GuardedProtocol
@@ -47,7 +47,7 @@ class _Connection:
 
     @property
     def idle(self) -> bool:
-        """Whether no request is being answered; a websocket never is idle."""
+        """Whether no request is being answered; a websocket is never idle."""
         if self.transport.get_protocol() is not self.protocol:
             return False
         cycle = self.protocol.cycle
@@ -55,14 +55,14 @@ class _Connection:
 
 
 class ConnectionGuard:
-    """Keeps count of the connections of a server.
+    """Counts and limits the connections of a server.
 
     Parameters
     ----------
     idle_seconds
-        Time for the head of a request, from the connection or the last answer on.
+        Seconds for a request's header, from the connection or the last answer on.
     most
-        Open connections at the same time; by default as many as the system allows.
+        Most open connections at the same time; by default as many as the system allows.
 
     """
 
@@ -76,7 +76,7 @@ class ConnectionGuard:
         return len(self._connections)
 
     def open(self, protocol: GuardedProtocol) -> None:
-        """Count a new connection; close the one that is idle longest where there are too many."""
+        """Count a new connection; if there are too many, close the one idle longest."""
         address = protocol.client[0] if protocol.client else "local"
         connection = _Connection(protocol, address, time.monotonic())
         self._connections[protocol.transport] = connection
@@ -87,11 +87,11 @@ class ConnectionGuard:
         if counts[address] > max(self._most * SHARE_OF_ADDRESS, FEWEST_CONNECTIONS / 2):
             self._make_room(connection, address)
         elif len(self._connections) > self._most:
-            # Whoever has most gives way.
+            # The address with the most connections loses one.
             self._make_room(connection, counts.most_common(1)[0][0])
 
     def close(self, transport: asyncio.BaseTransport) -> None:
-        """Forget a connection that is closed."""
+        """Remove a closed connection."""
         self._connections.pop(transport, None)
 
     def sweep(self) -> None:

@@ -14,7 +14,7 @@ PAGE_POLICY = (
 ``?websocket=`` in its address, from talking to other servers."""
 
 DATA_POLICY = "default-src 'none'; sandbox; frame-ancestors 'self'"
-"""Policy of what users gave us (videos, pictures, exports): nothing in it may run."""
+"""Policy of users' files (videos, pictures, exports): nothing in them may run."""
 
 _COMMON = {
     "X-Content-Type-Options": "nosniff",
@@ -26,12 +26,12 @@ _COMMON = {
 
 
 class SecurityHeaders:
-    """Adds the headers to every answer; one that a route set itself stays.
+    """Adds the headers to every answer; a header that a route has set stays.
 
     Parameters
     ----------
     app
-        What answers.
+        App that answers.
 
     """
 
@@ -39,7 +39,7 @@ class SecurityHeaders:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, and add to the answer's head."""
+        """Pass on the request, and add the headers to the answer."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         api = scope["path"].startswith("/api/")

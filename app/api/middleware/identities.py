@@ -1,4 +1,4 @@
-"""Identities: whose token or session a request shows, and what that allows."""
+"""Identities: determine the sender of a request by token or session, and the sender's role."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from app.store import NamedToken, Role, TokenFile
 from app.store.tokens import digest
 
 ADMINISTRATOR = "admin"
-"""Name of who shows the one token of the settings."""
+"""Name of the sender who uses the single token of the settings."""
 
 
 @dataclass(frozen=True)
 class Identity:
-    """Who sends a request.
+    """Sender of a request.
 
     Attributes
     ----------
     name
-        Of the token; empty where the server needs none.
+        Name of the token; empty if the server needs none.
     role
-        What it allows.
+        Role of the token.
     quota_bytes, quota_clips
-        Most that this name may keep; 0 is any.
+        Most bytes and clips that this name may keep; 0 is no limit.
 
     """
 
@@ -38,7 +38,7 @@ class Identity:
 
 
 ANYBODY = Identity("", Role.ADMIN)
-"""Whoever reaches a server without tokens, which listens on this machine alone."""
+"""Sender of any request to a server without tokens, which listens only on this machine."""
 
 
 class Identities:
@@ -47,7 +47,7 @@ class Identities:
     Parameters
     ----------
     settings
-        Give the one token, the file of the named ones, and the quotas.
+        Settings with the single token, the file of the named tokens, and the quotas.
 
     """
 
@@ -67,20 +67,21 @@ class Identities:
         return self._own is not None or bool(self._file.read())
 
     def of_token(self, shown: str) -> Identity | None:
-        """Return whose token this is; None where it is nobody's."""
-        # Digests are looked up: how long that takes tells nothing about the token.
+        """Return the identity of a token; None if it is unknown."""
+        # The lookup is by digest, so that its duration reveals nothing about the token.
         self._update()
         return self._by_digest.get(digest(shown))
 
     def of_session(self, shown: str) -> Identity | None:
-        """Return whose session this is; None where it is nobody's."""
+        """Return the identity of a session; None if it is unknown."""
         self._update()
         return self._by_session.get(shown)
 
     def session(self, shown: str) -> str:
         """Return the session of a token that `of_token` knows.
 
-        The cookie is not the token itself: what leaks from a browser does not open scripts.
+        The cookie is not the token itself, so that a leaked cookie cannot be used as a bearer
+        token.
         """
         shown_digest = digest(shown)
         if shown_digest == self._own and self._own_session is not None:
@@ -109,7 +110,7 @@ class Identities:
 
 
 def identity_of(scope: Scope) -> Identity:
-    """Return who sends a request, as `TokenRequired` found."""
+    """Return the sender of a request, as stored by `TokenRequired`."""
     found: Identity = scope.get("state", {}).get("identity", ANYBODY)
     return found
 

@@ -16,9 +16,9 @@ class BodyPace:
     Parameters
     ----------
     app
-        What reads the bodies.
+        App that reads the bodies.
     grace_seconds
-        Longest pause, and the time before the rate counts.
+        Longest pause, and the time before the rate is checked.
     bytes_per_second
         Slowest rate; 0 tolerates any.
 
@@ -30,7 +30,7 @@ class BodyPace:
         self._bytes_per_second = bytes_per_second
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, with an eye on the clock."""
+        """Pass on the request, and check the time between pieces of its body."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         began, received, complete = time.monotonic(), 0, False
@@ -55,6 +55,6 @@ class BodyPace:
 
 
 def too_slow() -> ProblemError:
-    """Return the refusal of a body that comes too slowly."""
+    """Return the problem that refuses a body that comes too slowly."""
     detail = "the upload came too slowly and was ended; try again on a better connection"
     return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})

@@ -20,7 +20,7 @@ HEADER: Final = "X-Request-ID"
 METHODS: Final = frozenset({"GET", "HEAD", "OPTIONS", "POST", "PUT", "PATCH", "DELETE"})
 
 ID: Final = re.compile(r"[A-Za-z0-9._-]{1,64}")
-"""What is taken over from a client or a proxy; other ids are replaced by one of ours."""
+"""Ids accepted from a client or a proxy; others are replaced by our own."""
 
 logger = logging.getLogger("app.requests")
 
@@ -31,9 +31,9 @@ class RequestLog:
     Parameters
     ----------
     app
-        What answers them.
+        App that answers the requests.
     metrics
-        Counts them.
+        Counts the requests.
 
     """
 
@@ -42,7 +42,7 @@ class RequestLog:
         self._metrics = metrics
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on under an id, which the response names too."""
+        """Pass on the request under an id, which the response repeats."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         given = Headers(scope=scope).get(HEADER, "")
@@ -63,7 +63,7 @@ class RequestLog:
 
     def _observe(self, scope: Scope, status: int, seconds: float) -> None:
         route = getattr(scope.get("route"), "path", None) or "other"
-        # A client may invent methods, and each would be a series of numbers for ever.
+        # A client may invent methods, each of which would create a permanent time series.
         method = scope["method"] if scope["method"] in METHODS else "other"
         self._metrics.requests.labels(method, route, str(status)).inc()
         self._metrics.request_seconds.labels(method, route).observe(seconds)

@@ -1,4 +1,4 @@
-"""ASGI middleware: refuses what a token's role does not allow."""
+"""ASGI middleware: refuses requests that a token's role does not allow."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ READING: Final = re.compile(
     r"/api/v1/(recognitions|session|workspaces(/.*)?|clips/[^/]+/session\.mcap"
     r"|languages/[^/]+/(preview(/health)?|take-table))"
 )
-"""Paths where no method changes what others see: a recognition is kept as a record of its own, a
-workspace is one browser tab's picture, and a session is written to be fetched."""
+"""Paths at which no method changes what others see: a recognition is a new record, a workspace is
+the picture of one browser tab, and an exported session is written for its sender."""
 
 
 class RoleRequired:
-    """Answers 403 where the role of the request's token is not enough.
+    """Answers 403 if the role of the request's token is not sufficient.
 
     Parameters
     ----------
     app
-        What answers all other requests.
+        App that answers all other requests.
 
     """
 
@@ -36,7 +36,7 @@ class RoleRequired:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is allowed."""
+        """Pass on allowed requests."""
         if scope["type"] == "http":
             identity, needed = identity_of(scope), needed_role(scope["method"], scope["path"])
             roles = [*Role]
@@ -51,7 +51,7 @@ class RoleRequired:
 
 
 def needed_role(method: str, path: str) -> Role:
-    """Return the least role that a request needs."""
+    """Return the lowest role that a request needs."""
     if path in ADMIN_PATHS:
         return Role.ADMIN
     if method in SAFE_METHODS or READING.fullmatch(path):

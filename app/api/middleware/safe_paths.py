@@ -2,7 +2,7 @@
 
 The router redirects a path that ends in a slash to the one without it. A browser turns
 ``DELETE /languages/ID/gestures/..`` into ``DELETE /languages/ID/``, which must not delete the
-language. A NUL is in no id, and some databases cannot even be asked for one.
+language. No id contains a NUL, and some databases refuse queries with one.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class SafePaths:
     Parameters
     ----------
     app
-        What answers all other requests.
+        App that answers all other requests.
 
     """
 
@@ -28,7 +28,7 @@ class SafePaths:
         self._app = app
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what names something."""
+        """Pass on requests with a safe path."""
         if scope["type"] != "http":
             return await self._app(scope, receive, send)
         # A slash in a label is encoded, and only the raw path shows that.

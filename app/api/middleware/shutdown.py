@@ -16,25 +16,25 @@ from app.api.middleware.connections import GuardedProtocol
 from app.api.services.running_studio import Studio
 
 ENDING_SECONDS = 2.0
-"""Time for open requests once the server is to stop: all but checks and long explanations are done
-by then, and the whole server must be gone within ten seconds."""
+"""Seconds for open requests at shutdown: enough for all but checks and long explanations, and the
+whole shutdown must take less than ten seconds."""
 
 SWEEP_SECONDS = 1.0
-"""Between two looks at the connections."""
+"""Seconds between two sweeps of the connections."""
 
 FLUSH_SECONDS = 0.1
-"""Time for the last answers to leave; they are short, and only who reads is waited for."""
+"""Seconds for the last answers, which are short, to be sent; only for clients that read."""
 
 
 class OpenRequests:
-    """The requests that a server is answering."""
+    """Registry of the requests that a server is answering."""
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._ending = False
 
     async def answer(self, app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one by `app`, or with 503 when the server stops before the answer begins."""
+        """Answer a request by `app`, or with 503 when the server stops before the answer begins."""
         task = asyncio.current_task()
         assert task is not None
         begun = False
@@ -58,7 +58,7 @@ class OpenRequests:
             self._tasks.discard(task)
 
     async def end(self, seconds: float = ENDING_SECONDS) -> None:
-        """Wait for all of them; those that take longer are ended, and new ones refused."""
+        """Wait for all requests; those that take longer are ended, and new ones refused."""
         self._ending = True
         if waiting := set(self._tasks):
             await asyncio.wait(waiting, timeout=seconds)
@@ -67,14 +67,14 @@ class OpenRequests:
 
 
 class EndsInTime:
-    """Keeps count of the requests that are being answered.
+    """Registers the requests that are being answered.
 
     Parameters
     ----------
     app
         What answers.
     requests
-        Where they are kept.
+        Registry of the requests.
 
     """
 
@@ -90,15 +90,15 @@ class EndsInTime:
 
 
 class StudioServer(uvicorn.Server):
-    """Guards its connections, and cancels jobs and ends open requests before it stops.
+    """Server that guards its connections, and cancels jobs and ends requests before it stops.
 
     Parameters
     ----------
     config
-        How to serve.
+        Configuration of uvicorn.
     app
-        What `config` serves, with its `OpenRequests`, its `ConnectionGuard` and, once it runs, its
-        `Studio`.
+        App that `config` serves, with its `OpenRequests`, its `ConnectionGuard` and, once it runs,
+        its `Studio`.
 
     """
 
@@ -110,14 +110,14 @@ class StudioServer(uvicorn.Server):
         logging.getLogger("uvicorn.error").addFilter(_is_news)
 
     async def on_tick(self, counter: int) -> bool:
-        """Look after the connections once a second."""
+        """Sweep the connections once a second."""
         if time.monotonic() - self._swept >= SWEEP_SECONDS:
             self._swept = time.monotonic()
             self._app.state.connections.sweep()
         return await super().on_tick(counter)
 
     async def shutdown(self, sockets: Any = None) -> None:
-        """Stop what can be stopped, answer what cannot, and close."""
+        """Cancel jobs, end open requests, and close the connections."""
         studio: Studio | None = getattr(self._app.state, "studio", None)
         if studio is not None:
             await studio.stop_soon()
@@ -125,18 +125,18 @@ class StudioServer(uvicorn.Server):
         await requests.end()
         await asyncio.sleep(FLUSH_SECONDS)
         for connection in list(self.server_state.connections):
-            # A client that does not read, as a paused player, would hold the server up.
+            # A client that does not read, such as a paused player, would delay the shutdown.
             if connection.transport.get_write_buffer_size():
                 connection.transport.abort()
         await super().shutdown(sockets)
 
 
 def stopping() -> ProblemError:
-    """Return the refusal of a server that is about to stop."""
+    """Return the problem with which a stopping server refuses requests."""
     detail = "the server is being stopped; try again when it is back"
     return ProblemError(503, "server_stopping", detail, headers={"Retry-After": "5"})
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Filter out errors of answers that the shutdown itself cancelled."""
+    """Return False for errors of answers that the shutdown itself cancelled."""
     return not (record.exc_info and isinstance(record.exc_info[1], asyncio.CancelledError))

@@ -1,7 +1,8 @@
 """ASGI middleware: refuses JSON bodies that programs understand differently.
 
-Python's parser takes the last of two equal keys, others the first, and reads NaN and integers that
-others round. A language file is read as strictly; its import parses it itself.
+Of two equal keys Python's parser takes the last, others the first, and it accepts NaN and exact
+large integers, which others round. The import of a language file parses the file itself, as
+strictly.
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ class StrictBodies:
     Parameters
     ----------
     app
-        What reads the bodies; the refusal is raised in its call of `receive`.
+        App that reads the bodies; the problem is raised in its call of `receive`.
     most_bytes
-        Largest body; what limits them must come before.
+        Size of the largest body, which an outer middleware must enforce.
     exceptions
-        Paths whose bodies are checked by who reads them.
+        Paths whose routes check the bodies themselves.
 
     """
 
@@ -39,7 +40,7 @@ class StrictBodies:
         self._exceptions = frozenset(exceptions)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on, with a copy of a JSON body."""
+        """Pass on the request, and check a copy of a JSON body."""
         if scope["type"] != "http" or scope["path"] in self._exceptions or not _is_json(scope):
             return await self._app(scope, receive, send)
         pieces: list[bytes] = []

@@ -8,28 +8,29 @@ import sys
 from collections.abc import Callable
 
 TRIM_SECONDS = 60.0
-"""Between two trims. One takes milliseconds, and the heap grows by a megabyte a minute at most."""
+"""Seconds between two trims; one takes milliseconds, and the heap grows by at most 1 MB a
+minute."""
 
 
 ARENAS = 2
-"""Arenas of the heap for all threads. glibc makes eight a core, each of which keeps free memory of
-its own; Python's threads compute one at a time, so that they seldom wait for an arena."""
+"""Number of heap arenas for all threads. glibc makes eight a core, each with its own free memory;
+Python's threads compute one at a time, so they seldom wait for an arena."""
 
 _M_ARENA_MAX = -8
 """Number of that option in glibc's ``malloc.h``."""
 
 
 def share_arenas() -> None:
-    """Have all threads share a few arenas; call it before there are threads."""
+    """Limit the heap to a few arenas for all threads; call it before threads are started."""
     if (limit := _find("mallopt")) is not None:
         limit(_M_ARENA_MAX, ARENAS)
 
 
 async def keep_trimmed() -> None:
-    """Trim the heap from time to time until cancelled; return at once where that is not possible.
+    """Trim the heap from time to time until cancelled; return at once if that is not possible.
 
-    glibc keeps freed memory between what is in use, in an arena for each thread that ever waited
-    for another: under steady use resident memory grows while what is in use stays the same
+    glibc keeps freed memory between used blocks, in one arena for each thread that ever waited for
+    another: under steady load resident memory grows while used memory stays the same
     (`python -m benchmarks.soak`, `docs/reliability.md`).
     """
     trim = _find("malloc_trim")
@@ -39,7 +40,7 @@ async def keep_trimmed() -> None:
 
 
 def _find(name: str) -> Callable[..., object] | None:
-    """Return a function of glibc; None where the C library is another one."""
+    """Return a function of glibc; None with another C library."""
     if sys.platform != "linux":
         return None
     library = ctypes.CDLL(None)

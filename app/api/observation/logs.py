@@ -1,4 +1,4 @@
-"""Logs: lines for people, or JSON objects; both name the request or job they are about."""
+"""Logs: lines for people, or JSON objects; both contain the id of the request or job."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FIELDS = "fields"
 
 
 class JsonFormatter(logging.Formatter):
-    """Formats a record as one line of JSON; what a client sent cannot begin another line."""
+    """Formats a record as one line of JSON, so that a client's text cannot begin another line."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return the line."""

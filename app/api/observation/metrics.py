@@ -25,13 +25,14 @@ class Metrics:
     Attributes
     ----------
     requests, request_seconds
-        By method, route (its pattern, so that their number is bounded) and status.
+        Counts and durations by method, route (its pattern, so that the number of series is bounded)
+        and status.
     jobs
         Seconds of jobs by kind and outcome.
     stalls
-        Worker processes that were ended because they said nothing for too long.
+        Worker processes that were ended because they made no progress for too long.
     loop_lag
-        Seconds by which the event loop was late: while it is, nobody is answered.
+        Seconds by which the event loop was late; while it is late, no request is answered.
 
     """
 
@@ -76,7 +77,7 @@ class Metrics:
             (gauge.labels(label) if label else gauge).set(value)
 
     def write(self) -> bytes:
-        """Return all of it as text of Prometheus."""
+        """Return all metrics in the text format of Prometheus."""
         return generate_latest(self._registry)
 
     async def watch_loop(self) -> None:

@@ -10,7 +10,7 @@ from app.store import Clip, ClipWithJob, JobStatus
 
 
 def shows_pictures(clip: Clip) -> bool:
-    """Return whether the clip's video shows the diver; else it shows the keypoints that came."""
+    """Return whether the clip's video shows the diver and not only the received keypoints."""
     used = {topic["name"]: topic["use"] for topic in json.loads(clip.topics)}
     return source_named(clip.source).has_pictures and used.get(clip.topic) != "keypoints"
 

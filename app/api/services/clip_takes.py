@@ -1,4 +1,4 @@
-"""Clip takes: what lies between a language's triggers in a clip, or is spotted there."""
+"""Clip takes: finds the takes of a clip between a language's triggers, or by spotting."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import LanguageState
 
 CACHED_CLIPS = 64
-"""Clips whose takes are kept: spotting gestures takes a fifth of a clip's time, and trimming takes
-some milliseconds each."""
+"""Number of clips whose takes are cached: spotting takes a fifth of a clip's duration, and trimming
+some milliseconds a take."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class TakeRange:
 
 
 def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
-    """Return the trigger of a language's newest revision; of no language, a salute.
+    """Return the trigger of a language's newest revision; without a language, the salute.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
 
 
 def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tuple[TakeRange, ...]:
-    """Return the takes of a clip by a language's trigger; without a trigger, what is spotted.
+    """Return the takes of a clip by a language's trigger; without a trigger, the spotted gestures.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tup
 
 @lru_cache(CACHED_CLIPS)
 def _segment(recording: str, trigger: Trigger) -> tuple[TakeRange, ...]:
-    """Find what lies between held triggers."""
+    """Find the takes between held triggers."""
     return tuple(
         TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
         for take in takes_in(load_recording(recording), trigger=trigger)
@@ -80,7 +80,7 @@ def _segment(recording: str, trigger: Trigger) -> tuple[TakeRange, ...]:
 
 @lru_cache(CACHED_CLIPS)
 def _spot(recording: str, document: str) -> tuple[TakeRange, ...]:
-    """Spot a language's gestures; none where it has none that could be spotted."""
+    """Spot a language's gestures; return none if none of them can be spotted."""
     try:
         spotter = Spotter(Recognizer(Language.from_json(document)))
     except OsgError:

@@ -7,21 +7,21 @@ from app.api.services.salute_ranges import Outline, count_salutes, outline_of
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 CUT_SHARE = 0.2
-"""Share of a stroke that is missing when a demonstration counts as cut short: what is left is
-another gesture, as in `counterfactual_candidates.LEAST_KEPT`."""
+"""Missing share of a stroke from which a demonstration counts as cut short: the rest is another
+gesture, as in `counterfactual_candidates.LEAST_KEPT`."""
 
 REST_SHARE = 1 / 3
-"""Share of a demonstration that is rest before and after the movement when it counts as a fault: a
-third more duration is beyond what divers differ by in tempo."""
+"""Share of rest before and after the movement from which it counts as a fault of a demonstration:
+divers' tempos differ by less than a third of the duration."""
 
 LEAST_REST = 0.5
-"""Seconds of rest that count; a hand stops for less between two strokes."""
+"""Shortest rest that counts, in seconds; a hand stops for less between two strokes."""
 
 
 def describe_fault(
     studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
 ) -> str | None:
-    """Return what is wrong with a range as a demonstration, as a clause; None: nothing known."""
+    """Return the fault of a range as a demonstration, as a clause; None if no fault is known."""
     outline = outline_of(studio, clip_id, trigger)
     return None if outline is None else fault_in(outline, start, end, trigger)
 

@@ -26,14 +26,14 @@ def keep_source(
     *,
     index: int = 0,
 ) -> None:
-    """Keep where a demonstration of a gesture, as it was just saved, comes from."""
+    """Store the source of a gesture's demonstration that was just saved."""
     saved = studio.language(state).gesture(label).single_demonstrations()[index]
     if (key := _key(saved)) is None:
         return
     start = demonstration.start if where.start is None else where.start
     end = demonstration.end if where.end is None else where.end
     if where.start is None and where.end is None:
-        # Who names no range means the clip's only take, from salute to salute.
+        # A request without a range means the clip's only take, from salute to salute.
         trigger = studio.language(state).trigger
         for take in find_brackets(studio.recording(where.clip_id), trigger):
             start, end = take.start, take.end
@@ -48,7 +48,7 @@ def keep_source(
 
 
 def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView | None]]:
-    """Return by label what is known of where demonstrations come from; see `find_sources`."""
+    """Return the known sources of demonstrations by label; see `find_sources`."""
     return {
         label: [
             None if source is None else _view(studio, source, language.trigger) for source in row
@@ -58,7 +58,7 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
 
 
 def find_sources(studio: Studio, language: Language) -> dict[str, list[DemonstrationSource | None]]:
-    """Return by label where every demonstration of a language comes from; None: not known."""
+    """Return the source of every demonstration of a language by label; None if not known."""
     keys = {
         gesture.label: [_key(each) for each in gesture.single_demonstrations()]
         for gesture in language.gestures

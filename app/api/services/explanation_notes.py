@@ -21,13 +21,13 @@ def write_notes(
     Parameters
     ----------
     studio
-        For the clips.
+        Running studio with the clips.
     record
         The recognition.
     language
         The revision used.
     labels
-        The gestures whose demonstrations matter: the expected and the nearest one.
+        Labels of the gestures whose demonstrations matter: the expected and the nearest one.
 
     """
     return [

@@ -21,7 +21,7 @@ from app.recognition.text.joiners import without_joiners
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 WORDS = frozenset({"label", "description", "command", "diver"})
-"""What of a gesture is for people and the robot, and does not change what is recognised."""
+"""Fields of a gesture that are for people and the robot, and do not affect recognition."""
 
 
 def demonstration_at(
@@ -111,7 +111,7 @@ def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language
 
 
 def set_switches(switches: Switches, wanted: GestureDraft | GestureChange) -> Switches:
-    """Return switches of which those are changed that are not None."""
+    """Return the switches, changed to those values of the request that are not None."""
     return replace(
         switches,
         direction=wanted.direction or switches.direction,
@@ -129,13 +129,13 @@ def change_gesture_of(
     Parameters
     ----------
     language
-        Which has it.
+        Language that has the gesture.
     label
-        The gesture's, before the change.
+        Label of the gesture before the change.
     change
-        What is left out stays.
+        The requested change; omitted fields stay.
     demonstration
-        The one that `change` names, if it names one.
+        The demonstration that `change` names, if any.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def change_gesture_of(
     compared = without_joiners(gesture.label)
     if change.label is not None and without_joiners(change.label.strip()) != compared:
         require_free(language, change.label.strip())
-    # The command may be set to null on purpose; all else that is null was left out.
+    # The command may be null on purpose; any other null field was omitted.
     fields = {
         name: getattr(change, name)
         for name in change.model_fields_set & WORDS
@@ -191,7 +191,7 @@ def add_demonstration_to(
 
 
 def remove_demonstration_from(language: Language, label: str, index: int) -> Language:
-    """Return a language in which a gesture has one demonstration less.
+    """Return a language in which a gesture has one demonstration fewer.
 
     Raises
     ------
@@ -241,7 +241,7 @@ def gesture_in(language: Language, label: str) -> Gesture:
 
 
 def require_free(language: Language, label: str, pointer: str = "/label") -> None:
-    """Refuse a label that looks like one of the language's; `pointer` is where it stands.
+    """Refuse a label that looks like one of the language's; `pointer` is its place in the request.
 
     Raises
     ------
@@ -258,7 +258,7 @@ def require_free(language: Language, label: str, pointer: str = "/label") -> Non
 def _remake(
     gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
 ) -> Gesture:
-    """Replace the first demonstration; what the gesture says and what counts stays."""
+    """Replace the first demonstration; texts, command and switches stay."""
     made = Gesture.from_demonstration(
         gesture.label, demonstration.poses, salient=salient, diver=diver
     )
@@ -279,7 +279,7 @@ def _show_further(
 
 
 def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:
-    """Draw and describe a gesture anew with other salient keypoints."""
+    """Draw and describe a gesture again, with other salient keypoints."""
     try:
         return gesture.with_salient(names)
     except GestureError as error:

@@ -9,29 +9,29 @@ from pathlib import Path
 from typing import Final
 
 KEEP_SECONDS: Final = 600.0
-"""Time in which an export is fetched: a browser does so at once, a person may be asked first where
-to save it."""
+"""Seconds for which an export is kept: a browser fetches it at once, but may first ask where to
+save it."""
 
 MOST_KEPT: Final = 8
-"""At the same time, so that nobody fills the disk by having exports written; the oldest goes."""
+"""Most exports kept at the same time, so that they cannot fill the disk; the oldest is removed."""
 
 
 @dataclass(frozen=True)
 class _Kept:
-    """One file, and what removes it in time."""
+    """One file, and the timer that removes it."""
 
     path: Path
     removal: asyncio.TimerHandle
 
 
 class KeptExports:
-    """Files by the name that their client gave them; each can be taken once."""
+    """Files by the ids that their clients chose; each can be taken once."""
 
     def __init__(self) -> None:
         self._kept: dict[tuple[str, str], _Kept] = {}
 
     def keep(self, clip_id: str, export_id: str, path: Path) -> None:
-        """Keep the export of a clip for `KEEP_SECONDS`, instead of an older one of that name."""
+        """Keep the export of a clip for `KEEP_SECONDS`, in place of an older one with that id."""
         place = (clip_id, export_id)
         self._remove(place)
         while len(self._kept) >= MOST_KEPT:
@@ -40,7 +40,7 @@ class KeptExports:
         self._kept[place] = _Kept(path, removal)
 
     def take(self, clip_id: str, export_id: str) -> Path | None:
-        """Return the file of an export, from now on the caller's; None where there is none."""
+        """Return the file of an export, which the caller must remove; None if there is none."""
         kept = self._kept.pop((clip_id, export_id), None)
         if kept is None:
             return None
@@ -55,5 +55,5 @@ class KeptExports:
     def _remove(self, place: tuple[str, str]) -> None:
         path = self.take(*place)
         if path is not None:
-            with suppress(OSError):  # What is left is swept at the next start.
+            with suppress(OSError):  # Leftovers are removed at the next start.
                 path.unlink(missing_ok=True)

@@ -17,7 +17,7 @@ from app.recognition.text.wording import join_words
 Kind = Literal["added", "removed", "changed", "same"]
 
 LONGEST_QUOTE = 60
-"""Characters of a text quoted: a line beside a picture; the texts themselves are on the cards."""
+"""Most characters of a quoted text: a line beside a picture; the cards have the complete texts."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class Change:
     Attributes
     ----------
     before, after
-        None where the revision does not have it.
+        The gesture; None if the revision does not have it.
     words
-        What is different, a sentence each; empty when nothing is, or it is there only once.
+        Differences, one sentence each; empty if there are none or one revision lacks the gesture.
 
     """
 
@@ -39,7 +39,7 @@ class Change:
 
     @property
     def kind(self) -> Kind:
-        """What happened to it."""
+        """Kind of the change."""
         if self.before is None:
             return "added"
         if self.after is None:
@@ -50,7 +50,7 @@ class Change:
 def compare_gestures(older: Language | None, newer: Language) -> list[Change]:
     """Pair the gestures of two revisions.
 
-    One that goes while another with the same demonstration comes was renamed.
+    A removed gesture and an added one with the same demonstration count as a rename.
 
     Returns
     -------
@@ -70,7 +70,7 @@ def compare_gestures(older: Language | None, newer: Language) -> list[Change]:
 
 
 def describe_changes(older: Language, newer: Language) -> list[str]:
-    """Say what changed about a language apart from its gestures."""
+    """Describe the changes of a language apart from its gestures."""
     words = [
         f"{what} was {_quote(old)}, is {_quote(new)}"
         for what, old, new in (
@@ -156,7 +156,7 @@ def _describe_salient(before: Gesture, after: Gesture) -> list[str]:
 
 
 def _describe_further(before: Gesture, after: Gesture) -> list[str]:
-    """Count the demonstrations that come and go, of gestures with several."""
+    """Describe the number of added and removed demonstrations of gestures with several."""
     old, new = before.single_demonstrations(), after.single_demonstrations()
     if len(old) == len(new) == 1:
         return []
@@ -182,7 +182,7 @@ def _are_drawn_otherwise(before: Gesture, after: Gesture) -> bool:
 
 
 def _differ_in_demonstration(before: Gesture, after: Gesture) -> bool:
-    """Whether they come from different demonstrations, or, without any, have different images."""
+    """Return whether two gestures differ in demonstration, or in image if they have none."""
     old, new = before.trajectory, after.trajectory
     if old is None or new is None:
         return old is not new or not np.array_equal(before.image, after.image)

@@ -11,10 +11,10 @@ from app.recognition.language.language import MAX_NAME_LENGTH
 from app.store import Draft, LanguageRevision
 
 LONGEST_NAME = 200
-"""Characters of a language's name in lists."""
+"""Most characters of a language's name in lists."""
 
 LONGEST_CHANGE = 300
-"""Characters of what a revision did."""
+"""Most characters of a revision's change."""
 
 
 def draft_of(language: Language, change: str) -> Draft:
@@ -23,9 +23,9 @@ def draft_of(language: Language, change: str) -> Draft:
     Parameters
     ----------
     language
-        With the number of the revision.
+        The language, with the number of the revision.
     change
-        What this revision does, for the history.
+        Change made by this revision, for the history.
 
     """
     return Draft(
@@ -40,7 +40,7 @@ def draft_of(language: Language, change: str) -> Draft:
 def edit_document(
     change: str, change_language: Callable[[Language], Language]
 ) -> Callable[[LanguageRevision, int], Draft]:
-    """Return what `LanguageStore.edit` wants: how a revision's document becomes the next one's."""
+    """Return the `change` for `LanguageStore.edit`: it makes the next revision's document."""
 
     def draft(head: LanguageRevision, number: int) -> Draft:
         language = change_language(Language.from_json(head.document)).calibrated()
@@ -50,7 +50,7 @@ def edit_document(
 
 
 def name_of_copy(name: str, taken: Container[str]) -> str:
-    """Return a name for a copy of a language that none of those `taken` is called by."""
+    """Return a name for a copy of a language that is not among the `taken` ones."""
     endings = chain([" (copy)"], (f" (copy {number})" for number in count(2)))
     names = (name[: MAX_NAME_LENGTH - len(ending)] + ending for ending in endings)
     return next(proposed for proposed in names if proposed not in taken)

@@ -24,7 +24,7 @@ from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import LanguageState
 
 CACHED_CHECKSUMS = 64
-"""Checksums kept: those of the revisions that pages show."""
+"""Number of checksums cached: those of the revisions that pages show."""
 
 
 def announce(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
@@ -34,7 +34,7 @@ def announce(studio: Studio, state: LanguageState, response: Response) -> Langua
 
 
 def answer(studio: Studio, state: LanguageState, response: Response) -> LanguageView:
-    """Answer with a language, its ETag in the head."""
+    """Answer with a language, and set its ETag header."""
     response.headers["ETag"] = revision_tag(state.revision.revision)
     language = studio.language(state)
     sources = sources_in(studio, language)
@@ -79,7 +79,7 @@ def view_gesture(
     state: LanguageState, gesture: Gesture, sources: Sequence[SourceView | None] = ()
 ) -> GestureView:
     """Return a gesture of a revision; `sources` are the clips of its demonstrations."""
-    # The revision in the address lets browsers keep the picture until the gesture changes.
+    # With the revision in the address, browsers can keep the picture until the gesture changes.
     query = urlencode({"label": gesture.label, "revision": state.revision.revision})
     switches = gesture.switches
     return GestureView(

@@ -53,20 +53,20 @@ from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
 
 CACHED_LANGUAGES = 16
-"""Languages and recognisers kept ready; each takes a few megabytes."""
+"""Number of languages and recognisers cached; each takes a few megabytes."""
 
 CACHED_RECORDINGS = 4
-"""Recordings kept in memory: the clip on screen and those it is compared with."""
+"""Number of recordings cached: the clip on screen and those it is compared with."""
 
 MOST_COMPUTATIONS = 2
-"""Previews and pair differences computed at the same time: of a large language one takes seconds,
-and the threads of all other requests must not be taken."""
+"""Most previews and pair differences computed at the same time: one takes seconds with a large
+language, and threads must be left for all other requests."""
 
 ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
-"""What to do when a second server is started on the file of a first one."""
+"""Advice for a second server that is started on the database file of another one."""
 
 ABANDONED = timedelta(days=1)
-"""Age of a file without a row in a folder that several servers share, before it is removed: longer
+"""Age at which a file without a row is removed from a folder that several servers share: longer
 than an upload or an export takes."""
 
 logger = logging.getLogger(__name__)
@@ -74,12 +74,12 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Studio:
-    """One running server's parts.
+    """Parts of one running server.
 
     Attributes
     ----------
     settings
-        How it was started.
+        Settings of the server.
     clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice
         The store.
     workers
@@ -93,13 +93,13 @@ class Studio:
     samples
         The languages and clips that come with the program.
     stopping
-        Set when the server is about to stop.
+        Event that is set when the server is about to stop.
     metrics
-        Counts what happens, for Prometheus.
+        Metrics for Prometheus.
     computations
-        Places of previews and pair differences, which compute in threads.
+        Limits the previews and pair differences that compute in threads at the same time.
     exports
-        Files that were written and wait to be fetched.
+        Written files that wait to be fetched.
 
     """
 
@@ -133,11 +133,11 @@ class Studio:
         self.broadcast.close()
 
     def recording(self, clip_id: str) -> Recording:
-        """Return what was found in a clip; errors as `recording_file`."""
+        """Return the recording of a clip; errors as in `recording_file`."""
         return load_recording(str(self.recording_file(clip_id)))
 
     def recording_file(self, clip_id: str) -> Path:
-        """Return the file with what was found in a clip.
+        """Return the file of a clip's recording.
 
         Raises
         ------
@@ -177,7 +177,7 @@ class Studio:
 
 @lru_cache(CACHED_RECORDINGS)
 def load_recording(path: str) -> Recording:
-    """Load a recording's file, or return it as it was loaded not long ago."""
+    """Load a recording, or return it from the cache."""
     return Recording.load(path)
 
 
@@ -198,7 +198,7 @@ async def open_studio(settings: Settings, metrics: Metrics | None = None) -> Asy
     Raises
     ------
     StoreUnavailable
-        When the data folder is another server's or cannot be used, or the database is damaged.
+        When another server uses the data folder, or it cannot be used, or the database is damaged.
 
     """
     with _opened(settings) as database:
@@ -239,7 +239,7 @@ async def _studio(
     languages = LanguageStore(database)
 
     def hear(event: BroadcastEvent) -> None:
-        """Note what another server does with a job."""
+        """Store the progress of another server's job."""
         if event.kind == "jobs":
             progress = progress_of(event)
             runner.note(event.data["id"], progress)
@@ -290,7 +290,7 @@ def _prepare(studio: Studio, database: Database) -> None:
     before = now() - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(before) + studio.languages.purge(before)
     purged += studio.uploads.purge(before)
-    # What another server is just writing to the same folder is no orphan.
+    # A file that another server is writing to the same folder is no orphan.
     abandoned = now() - ABANDONED if database.shared else now()
     if (swept := studio.clips.sweep(abandoned)) or purged:
         logger.info("removed %d orphaned files and %d deleted or abandoned objects", swept, purged)

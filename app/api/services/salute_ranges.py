@@ -18,10 +18,11 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import JobStatus
 
 LEAST_OVERLAP = 0.1
-"""Seconds of a salute that count as contained: the ends of a take touch its salutes."""
+"""Least seconds of a salute in a range for it to count as contained, because the ends of a take
+touch its salutes."""
 
 CACHED_CLIPS = 512
-"""Clips whose salutes are kept: the demonstrations of several large languages."""
+"""Number of clips whose salutes are cached: the demonstrations of several large languages."""
 
 WINDOW_SECONDS = 0.2
 """Step at which a wrist's speed is measured to find rests: longer than jitter of the pose model,
@@ -65,11 +66,11 @@ class Outline:
     salutes
         The held salutes, or other triggers.
     strokes
-        By take, the gesture without the hand's way to it and from it.
+        The gesture of each take, without transit.
     start, end
         First and last frame.
     moving
-        From the first to the last moment at which a wrist moves.
+        First and last moment at which a wrist moves.
 
     """
 

@@ -19,16 +19,16 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class SampleClip:
-    """A clip we bring.
+    """A clip that comes with the program.
 
     Attributes
     ----------
     name
-        Its file name, by which it is asked for.
+        File name, by which requests select it.
     size
         Bytes.
     path
-        Where it lies.
+        Path of the file.
 
     """
 
@@ -66,7 +66,7 @@ class Samples:
             try:
                 found[path.stem] = _read_language(path, path.stat().st_mtime_ns)
             except (LanguageError, OSError):
-                # A server without one of its samples is still of use.
+                # A server works without one of its samples.
                 logger.exception("the sample language %s cannot be read", path.name)
         return found
 
@@ -76,16 +76,16 @@ class Samples:
         return languages.create(draft, language.revision, sample=name)
 
     def seed(self, languages: LanguageStore) -> None:
-        """Add the sample languages that were never added before; those deleted stay deleted."""
+        """Add the sample languages that were never added before; deleted ones stay deleted."""
         seeded = languages.seeded()
         for name, language in self.languages().items():
             if name not in seeded:
                 self.add(name, language, languages)
 
 
-# Every page asks for the samples, and reading them takes a second of the processor's time.
+# Cached, because every page requests the samples, and reading them takes a second.
 @lru_cache(maxsize=64)
 def _read_language(path: Path, modified: int) -> Language:
-    """Read a language file; `modified`, in nanoseconds, tells a later version of it."""
+    """Read a language file; `modified`, in nanoseconds, distinguishes its versions in the cache."""
     del modified
     return Language.from_json(path.read_bytes())

@@ -40,7 +40,7 @@ def recognize_range(
     tuning: TuningEntry | None = None,
     trial: GestureTrial | None = None,
 ) -> Recognised:
-    """Recognise a range of a clip by a revision, and keep the answer.
+    """Recognise a range of a clip by a revision, and store the answer.
 
     Raises
     ------
@@ -73,14 +73,14 @@ def recognize_range(
 
 
 def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:
-    """Refuse a clip that came as keypoints without those that a language follows.
+    """Refuse a clip of keypoints that lacks some that the language needs.
 
-    What our models look at may show any landmark, and is judged when it is recognised.
+    Pictures may show any landmark, so their clips are only judged when they are recognised.
 
     Raises
     ------
     LandmarkError
-        Naming the landmark, and the gesture that follows it.
+        When one is missing; the message names the landmark and the gesture that needs it.
 
     """
     if not shows_pictures(clip):
@@ -107,14 +107,15 @@ def make_recognizer(
     tuning: TuningEntry | None,
     trial: GestureTrial | None,
 ) -> Recognizer:
-    """Return a recogniser of a revision, with a tuning and a changed gesture where given.
+    """Return a recogniser of a revision, with a tuning and a changed gesture if given.
 
     The revision is not edited: a changed gesture is in a copy of the language.
 
     Raises
     ------
     ProblemError
-        404 when the language has no gesture of the trial's label, 422 when it cannot be changed so.
+        404 when the language has no gesture of the trial's label, 422 when the change is not
+        possible.
 
     """
     if tuning is None and trial is None:

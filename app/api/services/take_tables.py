@@ -1,4 +1,4 @@
-"""Take tables: the rows of a stored clip, made as the command line makes them."""
+"""Take tables: makes the rows of a stored clip in the same way as the command line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from app.recognition.recording.clip_range import SAME_MOMENT
 from app.store import Clip, LabelledTake, LanguageState, StoreError
 
 SAME_TAKE = 0.5
-"""Share of a take that a labelled one covers when both are the same."""
+"""Share of a take that a labelled take must cover to count as the same."""
 
 
 def recognize_clip_takes(
@@ -28,11 +28,11 @@ def recognize_clip_takes(
     Parameters
     ----------
     studio, state
-        The language's revision, in its studio.
+        Running studio, and the revision of the language.
     clip
         The clip.
     advance
-        Called with the share of the takes that is done; an exception of it ends the work.
+        Called with the share of takes that are done; an exception in it ends the work.
 
     """
     recognizer = studio.recognizer(state)
@@ -54,7 +54,7 @@ def recognize_clip_takes(
 def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
     """Return the takes that the studio shows for a clip, with their strokes."""
     poses = studio.recording(clip.id).poses
-    # What is spotted is a range that a person could have chosen.
+    # Spotted takes get the margin of a range that a person chooses.
     margin = SAME_MOMENT if studio.language(state).trigger.spots else 0.0
     return [
         Take(
@@ -73,7 +73,7 @@ def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
 def _find_expected(
     studio: Studio, state: LanguageState, clip: Clip, takes: list[Take]
 ) -> dict[int, str]:
-    """Return by a take's number the gesture that the language's test set expects."""
+    """Return the gesture that the language's test set expects, by number of the take."""
     labelled = [
         tested.take
         for tested in studio.labelled.of(state.record.id)

@@ -1,4 +1,4 @@
-"""Test sets: which takes they have, how each is recognised, and what that amounts to."""
+"""Test sets: their takes, the results of these, and the rates."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ from app.store import (
 )
 
 SAME_TAKE = 0.5
-"""Share of a take that a demonstration covers when the take is that demonstration."""
+"""Share of a take that a demonstration must cover to count as the same."""
 
 
 def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft]) -> None:
@@ -66,14 +66,14 @@ def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTake
 
 
 def test_run_of(studio: Studio, state: LanguageState) -> TestRunJob:
-    """Return the job that recognises the takes which the revision has not recognised yet.
+    """Return the job that recognises the takes without a result for the revision.
 
-    That the poses of a clip are not there is kept as the result of its takes.
+    For a clip without poses, this fault is stored as the result of its takes.
 
     Raises
     ------
     StoreUnavailable
-        When the files of a clip cannot be had now.
+        When the files of a clip are temporarily not available.
 
     """
     takes, wanted = [], []
@@ -147,7 +147,7 @@ def _request_for(studio: Studio, take: LabelledTake) -> TakeToRecognize:
 
 
 def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: RecognizedTake) -> None:
-    """Keep the answer about a take, also that it cannot be recognised."""
+    """Store the result of a take, also if it cannot be recognised."""
     result = LabelledResult(take_id=take.id, revision=state.revision.revision, fault=found.fault)
     if (answer := found.answer) is not None:
         record = RecognitionRecord(
@@ -169,7 +169,7 @@ def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: Recog
 def _ranges(
     studio: Studio, draft: LabelledTakeDraft, state: LanguageState
 ) -> Iterator[tuple[float, float]]:
-    """Yield start and end of what a draft means."""
+    """Yield start and end of each take that a draft means."""
     recording = studio.recording(draft.clip_id)
     if draft.start is None and draft.end is None:
         takes = find_takes(studio, draft.clip_id, state)
@@ -210,7 +210,7 @@ class _Demonstrations:
         ]
 
     def have(self, take: LabelledTake) -> bool:
-        """Whether one of them covers most of a take."""
+        """Return whether a demonstration covers most of a take."""
         least = SAME_TAKE * (take.end - take.start)
         return any(
             clip_id == take.clip_id and min(take.end, end) - max(take.start, start) > least

@@ -21,7 +21,7 @@ Marks = Annotated[bool, Query(description="With start dot and arrow, for people"
 
 
 def send_trajectory_image(gesture: Gesture, revision: int | None, marks: bool) -> Response:
-    """Return a gesture's trajectory image as PNG; `revision`: which one was asked for, if any."""
+    """Return a gesture's trajectory image as PNG; `revision` is the requested one, if any."""
     image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
     # A revision never changes, so its pictures can be kept.
     headers = {"Cache-Control": "private, max-age=86400"} if revision is not None else {}

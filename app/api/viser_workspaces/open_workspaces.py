@@ -1,4 +1,4 @@
-"""Open workspaces: their registry as a dependency of routes, and how one is found by its id."""
+"""Open workspaces: their registry as a dependency of routes, and the search by id."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ CurrentWorkspaces = Annotated[WorkspaceRegistry, Depends(_registry_of)]
 
 
 def no_workspace() -> ProblemError:
-    """Return the refusal of an id that no open workspace has."""
+    """Return the problem for an id that no open workspace has."""
     detail = "There is no such workspace; reload the page to open one."
     return ProblemError(404, "not_found", detail)
 

@@ -79,7 +79,7 @@ async def follow_playback(
 
 
 class _Newest:
-    """Holds the newest position only: a slow browser skips frames instead of falling behind."""
+    """Holds only the newest position: a slow browser skips frames and does not fall behind."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
         self._loop = loop
@@ -87,7 +87,7 @@ class _Newest:
         self._arrived = asyncio.Event()
 
     def put_from_thread(self, position: Position) -> None:
-        # The loop may be gone when the server stops before the workspace does.
+        # The event loop may be closed when the server stops before the workspace.
         with contextlib.suppress(RuntimeError):
             self._loop.call_soon_threadsafe(self.put, position)
 

@@ -1,8 +1,8 @@
 """Reverse proxy for viser: one public port, viser itself on loopback only.
 
 viser's client is one HTML file whose websocket URL is the page's own without query and trailing
-slash: a page at ``/viser/abc/`` opens ``ws://host/viser/abc``. So two routes are enough. viser
-checks no origin and knows no token; both are checked here, on the way in.
+slash: a page at ``/viser/abc/`` opens ``ws://host/viser/abc``. Therefore two routes are enough.
+viser checks neither origin nor token; both are checked here.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ CONTENT_SECURITY_POLICY: Final = (
     "font-src 'self' data:; connect-src 'self' data: blob:; base-uri 'none'; form-action 'none'; "
     "frame-ancestors 'self'"
 )
-"""For viser's bundle alone: it is one file with inline scripts, and compiles WebAssembly.
+"""Policy of viser's page only, which is one file with inline scripts and compiles WebAssembly.
 
 ``connect-src 'self'`` matters most: without it a link with ``?websocket=ws://...`` would let a
 foreign server draw into our page.
@@ -72,7 +72,7 @@ async def relay_viser(name: str, browser: WebSocket, workspaces: CurrentWorkspac
 
 
 def _connect(port: int, subprotocols: list[str]) -> websockets.connect:
-    """Open the way to viser: no compression and no size limit, both ends are this machine."""
+    """Connect to viser, without compression or size limit, because both ends are this machine."""
     return websockets.connect(
         f"ws://127.0.0.1:{port}",
         subprotocols=[Subprotocol(name) for name in subprotocols] or None,

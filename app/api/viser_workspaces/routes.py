@@ -16,7 +16,7 @@ from app.recognition.errors import OsgError
 from app.ui.workspace_registry import TooManyWorkspacesError
 
 UNSHOWABLE: Final = HTTPStatus(422).name.lower()
-"""Code of the problem when a range holds nothing to show."""
+"""Code of the problem for a range without anything to show."""
 
 WorkspaceId = Annotated[str, Path(max_length=64, pattern="^[A-Za-z0-9_-]+$")]
 

@@ -1,4 +1,4 @@
-"""View requests: what a workspace is asked to show, looked up in the store."""
+"""View requests: looks up the clip and recognition that a workspace must show."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class ViewRequest(BaseModel):
 def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:
     """Return the clip and the recognition that a request names.
 
-    Without a range of its own, the request means the recognition's; without a language, the
-    revision with which was recognised.
+    Without a range, the range of the recognition is taken; without a language, the revision that
+    recognised it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Request for a bag export: what the server passes to the worker that writes MCAP."""
+"""Bag export request: the data that the server passes to the worker that writes MCAP."""
 
 from __future__ import annotations
 

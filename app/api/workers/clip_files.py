@@ -8,12 +8,12 @@ from pathlib import Path
 
 @dataclass(frozen=True)
 class ClipFiles:
-    """Where the parts of a clip lie.
+    """Paths of the parts of a clip.
 
     Attributes
     ----------
     video
-        What players show: there already, or still to be made of a dive recording.
+        Video that players show: it exists already, or is still to be made of a dive recording.
     recording
         The landmarks.
     poster, filmstrip

@@ -20,16 +20,16 @@ CONNECT_SECONDS: Final = 5.0
 """Longest time to reach the scheduler."""
 
 LOOK_SECONDS: Final = 1.0
-"""Between two looks whether a silent task is still known."""
+"""Seconds between two checks whether the scheduler still knows a silent task."""
 
 LAST_LINES_SECONDS: Final = 10.0
-"""How long the last lines of a task may take after it has ended: they come by another way."""
+"""Longest delay in seconds of a task's last lines after its end: they arrive by another channel."""
 
 RESULT_SECONDS: Final = 600.0
-"""How long the files of a task may take to come; a made video of a gigabyte takes a minute."""
+"""Longest transfer of a task's files in seconds; a video of a gigabyte takes a minute."""
 
 Told = tuple[str, Any]
-"""What a task tells: what it is about, and a line or a file."""
+"""Message of a task: its kind, and a line or a file."""
 
 logger = logging.getLogger(__name__)
 
@@ -37,15 +37,15 @@ logger = logging.getLogger(__name__)
 class DaskCluster:
     """Runs worker processes as tasks of a Dask cluster.
 
-    Its machines have the same version installed, and see the clips' folder under the same path or
-    the object store of the clips. Dask runs a task again whose machine vanishes.
+    Its machines must have the same version installed, and access to the clips' folder under the
+    same path or to the object store of the clips. Dask repeats a task whose machine vanishes.
 
     Parameters
     ----------
     address
         The scheduler's ``HOST:PORT``.
     own
-        The server's folders, where its machines do not see them.
+        The server's folders, if the machines of the cluster do not see them.
 
     """
 
@@ -59,7 +59,7 @@ class DaskCluster:
 
     @asynccontextmanager
     async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
-        """Run a process on a machine that has a place; see `Executor`."""
+        """Run a process on a machine with a free place; see `Executor`."""
         from app.api.workers.dask_task import end_worker, run_worker
 
         workspace = None
@@ -75,7 +75,7 @@ class DaskCluster:
             yield lines
         finally:
             del self._lines[task]
-            with contextlib.suppress(Exception):  # The scheduler may be gone, and all with it.
+            with contextlib.suppress(Exception):  # The scheduler may be gone.
                 await asyncio.wait_for(self._end(client, future, end_worker, task), CONNECT_SECONDS)
 
     async def close(self) -> None:
@@ -89,17 +89,17 @@ class DaskCluster:
     ) -> None:
         if not future.done():
             await future.cancel()
-            # Cancelling keeps a task from beginning; one that has begun is ended where it runs.
+            # Cancelling only keeps a task from beginning; a running task is ended where it runs.
             await client.run(end_worker, task, on_error="ignore")
         future.release()
 
     async def _connected(self) -> Client:
-        """Return a client that has a scheduler, a new one after the former was lost."""
+        """Return a client that is connected to the scheduler; a new one after a lost connection."""
         from distributed import Client
 
         async with self._connecting:
             if self._client is not None and self._client.status == "running":
-                # One that has connected again by itself is subscribed to nothing.
+                # A client that has reconnected by itself has lost its subscriptions.
                 self._client.subscribe_topic(self._topic, self._hear)
                 return self._client
             await self.close()
@@ -124,7 +124,7 @@ class DaskCluster:
 
 
 class _TaskLines:
-    """The lines that a task tells."""
+    """The lines that a task sends."""
 
     def __init__(
         self,
@@ -160,7 +160,7 @@ class _TaskLines:
             if kind == LINE and self._own is None:
                 return str(content).encode()
             if kind == LINE:
-                # The last one says that all is written, and what is large comes after it.
+                # The last line says that all is written, but large files arrive after it.
                 held, self._held = self._held, content
                 if held is not None:
                     return held.encode()
@@ -172,12 +172,12 @@ class _TaskLines:
                 self._ended = True
                 if self._own is not None:
                     await self._put((await self._result()).items())
-            # Begun again on another machine: what it tells is told again.
+            # The task was restarted on another machine and repeats its messages.
         held, self._held = self._held, None
         return b"" if held is None else held.encode()
 
     async def _result(self) -> Contents:
-        """Return the files that a task gives back at its end."""
+        """Return the files that a task returns at its end."""
         if self._future.status == "error":
             return {}
         try:
@@ -204,7 +204,7 @@ class _TaskLines:
             if self._client.status != "running" or self._future.status in ("cancelled", "lost"):
                 raise ExecutorLost("the Dask scheduler is gone")
             if self._future.status == "error":
-                # It took several machines with it: what it does to them it does again.
+                # The task has crashed several machines, and would do so again.
                 reason = await self._future.exception()
                 logger.warning("a task of the Dask cluster failed: %r", reason)
                 return ENDED, ""

@@ -1,4 +1,4 @@
-"""Dask task: runs a worker process on a machine of the cluster, and tells the server its lines."""
+"""Dask task: runs a worker process on a machine of the cluster, and sends the server its lines."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from app.api.workers.task_folders import Contents, Workspace, Written
 from app.store.errors import StoreUnavailable
 
 STARTED, LINE, FILE, ENDED, LOST = "started", "line", "file", "ended", "lost"
-"""What a message is about; the last one: the clip cannot be fetched now."""
+"""Kinds of messages; `LOST` means that the clip cannot be fetched now."""
 
 MOST_TOLD = 64 * 1024
-"""Bytes of a file that is told as a message: the scheduler keeps the newest thousand messages."""
+"""Most bytes of a file sent as a message: the scheduler keeps the newest thousand messages."""
 
 _processes: dict[str, subprocess.Popen[bytes]] = {}
-"""The running processes of this Dask worker by task."""
+"""Running processes of this Dask worker, by task."""
 
 
 def run_worker(
     arguments: Sequence[str], task: str, topic: str, workspace: Workspace | None
 ) -> Contents:
-    """Run a worker process to its end; tell each step as ``(task, kind, content)`` under `topic`.
+    """Run a worker process to its end; send each step as ``(task, kind, content)`` under `topic`.
 
-    Where it works in a folder of its own, small files that it has written are told before the line
-    that follows them; the others are returned.
+    If it works in its own folder, small files that it has written are sent before the line that
+    follows them; larger ones are returned.
     """
     tell = partial(_tell, topic, task)
     if workspace is None:

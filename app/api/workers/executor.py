@@ -15,14 +15,15 @@ PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]
 
 
 class ExecutorLost(Exception):
-    """Raised when it is not known any more what became of a process; it may be started again.
+    """Raised when the outcome of a process cannot be known any more; it may be started again.
 
-    A worker's command is a function of its files and arguments alone, and writes each file at once.
+    A restart is safe: a worker depends only on its files and arguments, and writes each file at
+    once.
     """
 
 
 class Lines(Protocol):
-    """The lines that a process writes."""
+    """Protocol of the lines that a process writes."""
 
     async def readline(self) -> bytes:
         """Return the next line; empty at the end of the process.
@@ -30,7 +31,7 @@ class Lines(Protocol):
         Raises
         ------
         ExecutorLost
-            When the process cannot be heard any more.
+            When the connection to the process is lost.
 
         """
         ...
@@ -43,9 +44,9 @@ class TaskFiles:
     Attributes
     ----------
     inputs
-        What it reads.
+        Files that it reads.
     outputs
-        What it writes: files, or folders of files.
+        Files that it writes, or folders of files.
 
     """
 
@@ -54,15 +55,15 @@ class TaskFiles:
 
 
 class Executor(Protocol):
-    """Runs worker processes."""
+    """Protocol of executors, which run worker processes."""
 
     def start(
         self, arguments: Sequence[str], files: TaskFiles
     ) -> AbstractAsyncContextManager[Lines]:
         """Run a worker process with these arguments; it is ended at the end of the context.
 
-        The context begins when the process does, which may have to wait for a place. What the
-        process has written is in the files here before the line is heard that says so.
+        The context begins when the process does, which may have to wait for a place. Files that the
+        process has written are here before the line that reports them.
 
         Raises
         ------
@@ -73,5 +74,5 @@ class Executor(Protocol):
         ...
 
     async def close(self) -> None:
-        """Release what was opened."""
+        """Release all resources."""
         ...

@@ -16,22 +16,22 @@ from app.evaluation.kept_recordings import kept_recording
 from app.recognition.errors import OsgError
 
 THREADS = 1
-"""Threads of the models in each process: as many processes as cores are then faster than fewer
-with more threads, because body and hands take turns within a clip and clips do not."""
+"""Threads of the models in each process: one process per core is faster than fewer processes with
+more threads, because clips run in parallel, but body and hands within a clip take turns."""
 
 
 @dataclass(frozen=True)
 class Extracted:
-    """What became of a clip.
+    """Result of one clip.
 
     Attributes
     ----------
     clip
         The clip's file.
     recording
-        The file of its landmarks; None where there are none, for the reason in `problem`.
+        The file of its landmarks; None if there is none, for the reason in `problem`.
     new
-        Whether the landmarks were looked for now, and not kept from before.
+        Whether the landmarks were extracted now, and not kept from before.
     problem
         One line for a person.
 
@@ -45,7 +45,7 @@ class Extracted:
 
 @dataclass(frozen=True)
 class FootageProgress:
-    """How far the work is: clips that are over, and bytes of all clips read so far."""
+    """Progress: number of finished clips, and bytes of all clips read so far."""
 
     clips: int
     done_bytes: int
@@ -59,11 +59,12 @@ class Footage:
     clips
         Their files.
     keep_in
-        Folder of the recordings, named by the clips' content: what is there is not done again.
+        Folder of the recordings, named by the clips' content; existing ones are not extracted
+        again.
     workers
         Starts the processes.
     progress
-        Called whenever something went on.
+        Called after every progress.
 
     """
 
@@ -90,7 +91,7 @@ class Footage:
         return sum(self._sizes.values())
 
     async def extract(self, count: int) -> list[Extracted]:
-        """Find the landmarks of all clips by `count` processes; return what became of each."""
+        """Find the landmarks of all clips in `count` processes; return the result of each."""
         self._keep_in.mkdir(parents=True, exist_ok=True)
         async with asyncio.TaskGroup() as group:
             for _ in range(min(count, len(self._waiting))):

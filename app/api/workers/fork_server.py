@@ -1,8 +1,8 @@
 """Fork server: ``python -m app.api.workers.fork_server``, a process that forks worker processes.
 
-It has imported what workers use, for which each would take half a second of a laptop's processor: a
-process that is forked begins its command in some milliseconds. Its stdin is a socket by which
-`app.api.workers.forked_worker` asks for one.
+It has imported the modules of the workers, which would take each worker half a second on a laptop,
+so that a forked process begins its command in some milliseconds. Its stdin is a socket by which
+`app.api.workers.forked_worker` requests a process.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from app.api.workers import worker
 
 
 def serve(requests: socket.socket) -> socket.socket:
-    """Fork a process for each connection that `requests` brings; return in that process.
+    """Fork a process for each connection received from `requests`; return in the forked process.
 
     Raises
     ------
     SystemExit
-        When nobody is left who could bring one.
+        When the server has closed the socket.
 
     """
     while True:
@@ -35,7 +35,7 @@ def serve(requests: socket.socket) -> socket.socket:
             if os.fork() == 0:
                 return connection
         except OSError as error:
-            # No process or memory is left. The connection ends without a word.
+            # No process or memory is left; the connection ends without an answer.
             print(f"osg-studio: a job cannot be started: {error.strerror}", file=sys.stderr)
         connection.close()
 
@@ -43,7 +43,7 @@ def serve(requests: socket.socket) -> socket.socket:
 def become_worker(connection: socket.socket) -> list[str]:
     """Take a forked process's command from its connection, which becomes its stdin and stdout.
 
-    It says its process id first, and ends when no command follows.
+    It sends its process id first, and ends if no command follows.
 
     Returns
     -------
@@ -71,9 +71,9 @@ def become_worker(connection: socket.socket) -> list[str]:
 def main() -> None:
     """Fork workers until the server is gone."""
     worker.show_command("fork server")
-    # The system takes leave of those that end: nobody waits for them here.
+    # The system removes ended processes, because nobody waits for them here.
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
-    # What is imported stays in memory that all workers share.
+    # The imported modules stay in memory that all workers share.
     gc.freeze()
     with socket.socket(fileno=os.dup(sys.stdin.fileno())) as requests:
         connection = serve(requests)

@@ -22,12 +22,12 @@ FORK_SERVER: Final = ("-m", "app.api.workers.fork_server")
 """Arguments of Python that start a fork server."""
 
 END_SECONDS: Final = 5.0
-"""What the fork server may take for its end; it takes some milliseconds."""
+"""Longest wait in seconds for the end of the fork server, which takes some milliseconds."""
 
 
 @functools.cache
 def can_fork() -> bool:
-    """Tell whether this system has file descriptors of processes, as Linux since 5.3."""
+    """Return whether this system has file descriptors of processes, as Linux since 5.3."""
     try:
         os.close(os.pidfd_open(os.getpid()))
     except (AttributeError, OSError):
@@ -41,9 +41,9 @@ class ForkedWorker:
     Parameters
     ----------
     process
-        Its file descriptor (pidfd): unlike its id, it is never that of another process.
+        Its file descriptor (pidfd), which unlike a process id is never reused for another process.
     lines, connection
-        What it writes, and what it ends without.
+        Its output, and the connection without which it ends.
 
     """
 
@@ -56,7 +56,7 @@ class ForkedWorker:
 
     @classmethod
     async def begin(cls, arguments: Sequence[str]) -> Self | None:
-        """Begin a worker; return None when none can be forked now, which stderr tells."""
+        """Begin a worker; return None if none can be forked now, with the reason on stderr."""
         lines, connection = await asyncio.open_unix_connection(sock=_fork_server.connect())
         process = None
         try:
@@ -74,7 +74,7 @@ class ForkedWorker:
         """Return the next line; empty at the end of the process."""
         try:
             return await self._lines.readline()
-        except ConnectionResetError:  # It has ended before it had read its command.
+        except ConnectionResetError:  # The process ended before it had read its command.
             return b""
 
     async def end(self) -> None:
@@ -93,9 +93,9 @@ class ForkedWorker:
 
 
 async def _open_process(lines: asyncio.StreamReader) -> int | None:
-    """Return the file descriptor of the process that says its id; None when it is gone."""
+    """Return the file descriptor of the process that sends its id; None if it is gone."""
     try:
-        # Having said its id it waits for its command, so the id is still its own.
+        # The process waits for its command after sending its id, so the id is still its own.
         said = await lines.readline()
         return os.pidfd_open(int(said)) if said else None
     except (ConnectionResetError, ProcessLookupError):
@@ -103,7 +103,7 @@ async def _open_process(lines: asyncio.StreamReader) -> int | None:
 
 
 class _ForkServer:
-    """The fork server of this process, which is started when the first worker is."""
+    """Fork server of this process, started with the first worker."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -120,7 +120,7 @@ class _ForkServer:
         return ours
 
     def end(self) -> None:
-        """End it, where it runs; a later connection starts another one."""
+        """End the fork server if it runs; a later connection starts another one."""
         with self._lock:
             if self._process is not None and self._requests is not None:
                 self._requests.close()
@@ -148,7 +148,7 @@ class _ForkServer:
 
 
 def _give(requests: socket.socket, connection: socket.socket) -> bool:
-    """Give the fork server a connection; return False when it is gone."""
+    """Send a connection to the fork server; return False if it is gone."""
     try:
         socket.send_fds(requests, [b"+"], [connection.fileno()])
     except OSError:

@@ -15,8 +15,8 @@ from app.recognition.language.osg_reference import from_reference, is_reference
 from app.resources import known_signs_file
 
 REPORT_EVERY = 8
-"""Pieces of work, each a take or a movement of some ten milliseconds, between two reports: ten a
-second are as smooth as a progress bar need be."""
+"""Number of steps between two reports, each a take or movement of some ten milliseconds: ten
+reports a second are enough for a smooth progress bar."""
 
 Report = Callable[[Message], None]
 
@@ -27,11 +27,11 @@ class ImportedLanguage(BaseModel):
     Attributes
     ----------
     name, author, labels, revision
-        As the file says.
+        Values in the file.
     change
-        What the import does, for the history.
+        Description of the import, for the history.
     document
-        The same language as our own file.
+        The same language in our own format.
 
     """
 
@@ -44,12 +44,12 @@ class ImportedLanguage(BaseModel):
 
 
 def read_language(content: bytes, name: str) -> ImportedLanguage:
-    """Read a language file: ours, or the published implementation's, then under `name`.
+    """Read a language file in our format, or in the published implementation's, then named `name`.
 
     Raises
     ------
     LanguageError
-        When it is neither.
+        When the file is neither.
 
     """
     if is_reference(content):
@@ -67,7 +67,7 @@ def read_language(content: bytes, name: str) -> ImportedLanguage:
 
 
 def import_language(file: Path, target: Path, name: str, report: Report) -> None:
-    """Read a language file, and write what it holds to `target` as JSON."""
+    """Read a language file, and write the `ImportedLanguage` to `target` as JSON."""
     target.write_text(read_language(file.read_bytes(), name).model_dump_json(), encoding="utf-8")
     report(Finished(frames=0, warnings=()))
 

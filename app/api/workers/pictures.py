@@ -13,7 +13,8 @@ from app.recognition.recording import video
 Image = npt.NDArray[np.uint8]
 
 POSTER_SECONDS = 1.0
-"""Where in the clip its still picture is taken: recordings often begin black or shaking."""
+"""Second of the clip from which its still picture is taken: recordings often begin black or
+shaking."""
 
 POSTER_WIDTH = 320
 """Pixels; a card of the page at twice the usual screen density."""
@@ -22,7 +23,8 @@ THUMBNAIL_HEIGHT = 72
 """Pixels; the timeline's track at twice the usual screen density."""
 
 FEWEST_THUMBNAILS = 32
-"""A timeline 1400 wide has room for about thirty of 4:3; twice as many at most are kept."""
+"""Fewest thumbnails of a long clip: a timeline 1400 wide shows about thirty of 4:3. At most twice
+as many are kept."""
 
 
 def write_poster(clip: Path, poster: Path) -> None:
@@ -69,9 +71,9 @@ class Poster:
 
 
 class Thumbnails:
-    """Keeps small pictures at even distances, however long the clip turns out to be.
+    """Keeps small pictures at even distances, for a clip of unknown length.
 
-    Every frame at first; whenever there are too many, every other one is dropped.
+    It keeps every frame at first; whenever there are too many, every other one is dropped.
     """
 
     def __init__(self) -> None:
@@ -90,7 +92,7 @@ class Thumbnails:
             self._stride *= 2
 
     def write(self, path: Path) -> None:
-        """Write all of them side by side as one JPEG; nothing when there is none."""
+        """Write all thumbnails side by side as one JPEG; do nothing if there are none."""
         if self._images:
             _write(np.concatenate(self._images, axis=1), path)
 

@@ -1,8 +1,8 @@
 """Task folders: copies of the server's files on another machine, for one process.
 
-Where the clips are in an object store, the machines of a cluster share no folder with the server.
-A task then makes a folder of its own, puts into it what its process reads, lets the process work
-there as if it were the server's folder, and gives what it wrote back to the server.
+Where the clips are in an object store, the machines of a cluster share no folder with the server. A
+task then creates its own folder, copies the input files of its process into it, runs the process
+there as if it were the server's folder, and returns the output files to the server.
 """
 
 from __future__ import annotations
@@ -29,18 +29,18 @@ Contents = dict[str, bytes]
 
 @dataclass(frozen=True)
 class Workspace:
-    """What a task needs to work in a folder of its own; it is sent to another machine.
+    """Description of a task's own folder, which is sent to another machine.
 
     Attributes
     ----------
     root
-        The server's folder, for which the task's stands.
+        The server's folder, which the task's folder replaces.
     storage
         Address of the object store.
     fetched
-        By path the names of the files that the task fetches from there.
+        Names, by path, of the files that the task fetches from the object store.
     sent
-        The other files that its process reads.
+        Contents of the other files that its process reads.
     outputs
         Paths of the files and folders that the process writes.
 
@@ -86,7 +86,7 @@ class Written:
     folder
         The task's folder.
     workspace
-        Says where it writes.
+        Describes the output paths.
 
     """
 
@@ -96,7 +96,7 @@ class Written:
         self._given: dict[Path, tuple[int, int]] = {}
 
     def take(self, most: int | None = None) -> Iterator[tuple[str, bytes]]:
-        """Yield what is new or changed since the last time, files of at most so many bytes."""
+        """Yield files that are new or changed since the last call, of at most `most` bytes."""
         for path in self._list():
             status = path.stat()
             state = status.st_mtime_ns, status.st_size
@@ -114,7 +114,7 @@ class Written:
 
 
 class OwnFolders:
-    """The folders of a server that no other machine sees.
+    """Folders of a server that no other machine sees.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ class OwnFolders:
         self._storage = storage
 
     def describe(self, files: TaskFiles) -> Workspace:
-        """Return what a task needs that works with these files; reads those to be sent."""
+        """Return the workspace of a task with these files; read the files to be sent."""
         fetched: dict[str, str] = {}
         sent: Contents = {}
         for path in files.inputs:
@@ -144,15 +144,15 @@ class OwnFolders:
         outputs = tuple(self._relative(path) for path in files.outputs)
         for name, place in zip(outputs, files.outputs, strict=True):
             if place.is_dir():
-                # The process finds the folders that it writes into.
+                # An empty file, so that the output folders exist for the process.
                 sent[f"{name}/.folder"] = b""
         return Workspace(str(self._root), self._storage, fetched, sent, outputs)
 
     def put(self, path: str, content: bytes) -> None:
-        """Write a file that a task gave back, in place of an earlier one."""
+        """Write a file that a task returned, in place of an earlier one."""
         target = self._root / path
         if not target.parent.is_dir():
-            return  # The clip, or whoever waited for it, is gone.
+            return  # The clip or the waiting request is gone.
         partial = target.with_name(f".{target.name}.{new_id()}{PARTIAL_SUFFIX}")
         try:
             partial.write_bytes(content)
@@ -172,12 +172,12 @@ class OwnFolders:
 
 
 def _made(folder: Path, path: str) -> Path:
-    """Return a path under a folder, whose own folder is there."""
+    """Return a path under a folder, and create its parent folder."""
     target = folder / path
     target.parent.mkdir(parents=True, exist_ok=True)
     return target
 
 
 def _quoted(path: str) -> bytes:
-    """Return a path as it stands within a JSON document."""
+    """Return a path as it is written in a JSON document."""
     return json.dumps(path, ensure_ascii=False)[1:-1].encode()

@@ -27,7 +27,7 @@ class TakeToRecognize(BaseModel):
     start, end
         Seconds in the clip.
     keypoints_of
-        Name of a clip that came as keypoints, which may lack some; None where models found them.
+        Name of a clip of received keypoints, which may lack some; None if models found them.
 
     """
 
@@ -52,7 +52,7 @@ class RecognizedTake(BaseModel):
     Attributes
     ----------
     start, end
-        Seconds of what was recognised, without the hand's way to it and from it.
+        Seconds of the recognised part, without transit.
 
     """
 
@@ -63,7 +63,7 @@ class RecognizedTake(BaseModel):
 
 
 def answer_file(folder: Path, index: int) -> Path:
-    """Return where the answer about a take is written."""
+    """Return the path of the answer about a take."""
     return folder / f"{index}.json"
 
 

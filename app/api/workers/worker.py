@@ -46,13 +46,13 @@ from app.recognition.recording.video import VideoFrame
 from app.recognition.recording.video import probe as probe_video
 
 PROGRESS_SECONDS = 0.1
-"""Shortest time between two reports: what an eye follows on a progress bar."""
+"""Shortest time in seconds between two reports: as fast as an eye follows a progress bar."""
 
 Report = Callable[[Message], None]
 
 
 def probe(source: ClipSource, file: Path, options: ReadOptions, report: Report) -> None:
-    """Report what a received file says about itself."""
+    """Report the facts that a received file states about itself."""
     facts = source.probe(file, options)
     report(
         Probed(
@@ -73,7 +73,7 @@ def record(
     if source.makes_video:
         partial = files.video.with_suffix(".part")
     else:
-        # First of all: a card with a picture says more than one without.
+        # First, so that the clip's card has a picture early.
         write_poster(file, files.poster)
     steps = _Steps(report)
     pictures = _Pictures(files, poster=source.makes_video)
@@ -99,7 +99,7 @@ def find_landmarks(
     threads: int,
     report: Report,
 ) -> None:
-    """Write a clip's recording alone, with so many threads for the models."""
+    """Write only a clip's recording, with a number of threads for the models."""
     steps = _Steps(report)
     cv2.setNumThreads(threads)
     with closing(create_estimator(threads=threads)) as estimator:
@@ -137,7 +137,7 @@ def write_bag(request: Path, bag: Path, files: ClipFiles, report: Report) -> Non
 
 
 class _Steps:
-    """Takes the frames of a clip one by one, and calls `report` with how far the work is."""
+    """Receives the frames of a clip one by one, and calls `report` with the progress."""
 
     def __init__(self, report: Report) -> None:
         self._report = report
@@ -186,7 +186,7 @@ class _Pictures:
 
 
 def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> None:
-    """Have the system hold this process to these limits; 0 is none, as where POSIX is absent."""
+    """Set the system's limits for this process; 0 sets none. Without POSIX do nothing."""
     if os.name != "posix":
         return
     import resource
@@ -194,7 +194,7 @@ def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> Non
     limits = (
         (resource.RLIMIT_AS, memory_bytes),
         (resource.RLIMIT_CPU, cpu_seconds),
-        # Of one file that is written: what was packed by a million to one must not fill the disk.
+        # Limits each written file: an archive packed a million to one must not fill the disk.
         (resource.RLIMIT_FSIZE, file_bytes),
     )
     for kind, limit in limits:
@@ -202,10 +202,10 @@ def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> Non
             _, hard = resource.getrlimit(kind)
             soft = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
             resource.setrlimit(kind, (soft, hard))
-    # A crash is expected here, and a core dump of a video is of no use to anybody.
+    # Crashes are expected here, and core dumps of videos are useless.
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(OSError):
-        os.nice(5)  # The page stays quick while a clip is read.
+        os.nice(5)  # The page stays responsive while a clip is read.
 
 
 def end_with_server() -> None:
@@ -227,14 +227,14 @@ def show_command(command: str) -> None:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run one command, by default that of the command line, and report how it went."""
+    """Run one command, by default that of the command line, and report the outcome."""
     chosen = _read(arguments)
     show_command(chosen.command)
     # Libraries that print must not write into the messages.
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "w", buffering=1, encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     tempfile.tempdir = chosen.scratch
-    # First: where memory is short already, a thread may wait for ever for its start.
+    # First, because the start of a thread may hang once memory is short.
     end_with_server()
     limit_resources(chosen.memory_bytes, chosen.cpu_seconds, chosen.file_bytes)
 

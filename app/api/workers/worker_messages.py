@@ -11,9 +11,9 @@ if TYPE_CHECKING:
     from app.recognition.poses.sequence import FloatArray
 
 Pose = tuple[tuple[float, float] | None, ...]
-"""A body in one frame, to be drawn: of each of `POSE_LANDMARKS` how far right and how far down it
-is, as fractions of the upright picture's width and height; outside of 0 to 1 where the model places
-it beyond the picture's edge, None where it was not seen."""
+"""A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
+fractions of the upright picture's width and height; outside 0 to 1 beyond the picture's edge, None
+if not seen."""
 
 POSE_DIGITS = 4
 """Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
@@ -37,7 +37,7 @@ class TopicSeen(BaseModel):
 
 
 class Probed(BaseModel):
-    """What a file says about the clip that it would be (`app.clip_sources.ClipFacts`)."""
+    """Facts that a file states about its clip (`app.clip_sources.ClipFacts`)."""
 
     kind: Literal["probed"] = "probed"
     width: int
@@ -48,18 +48,18 @@ class Probed(BaseModel):
 
 
 class Progressed(BaseModel):
-    """How far the work is, and the newest pose.
+    """Progress of the work, and the newest pose.
 
     Attributes
     ----------
     stage
         ``poses`` or ``saving``.
     done, total
-        Frames; `total` is an estimate where the container does not count them.
+        Frames; `total` is an estimate if the container does not count them.
     time
-        Seconds after the first frame, of the newest frame; None where no frame is shown.
+        Time of the newest frame, in seconds after the first; None if no frame is shown.
     pose
-        The body in that frame; None where nobody is in it.
+        The body in that frame; None if it shows nobody.
 
     """
 
@@ -80,7 +80,7 @@ class Finished(BaseModel):
 
 
 class Failed(BaseModel):
-    """The clip or language file cannot be used; `pointer` says where the fault of a file is."""
+    """The clip or language file cannot be used; `pointer` is the place of the fault in the file."""
 
     kind: Literal["failed"] = "failed"
     code: str
@@ -104,7 +104,7 @@ def pose_in(xy: FloatArray, width: int, height: int) -> Pose:
 
 
 def dump(message: Message) -> str:
-    """Return the line for `message`, without its end."""
+    """Return the line for `message`, without a line break."""
     return message.model_dump_json()
 
 
@@ -114,7 +114,7 @@ def parse(line: bytes) -> Message:
     Raises
     ------
     ValueError
-        When it is none.
+        When the line is no message.
 
     """
     return _MESSAGE.validate_json(line)

@@ -1,4 +1,4 @@
-"""Workers: one process per clip that is probed, recorded or exported, by an executor."""
+"""Workers: runs one process for each clip to probe, record or export, in an executor."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ from app.settings import DASK, Settings
 Step = Progressed | Finished | Failed
 
 MOST_SHORT_WORKERS = 2
-"""Processes that probe files or write bags at the same time: a hundred uploads must not be as
-many processes."""
+"""Most processes that probe files or write bags at the same time: a hundred uploads must not start
+a hundred processes."""
 
 MOST_CHECKS = 2
-"""Health checks and test runs at the same time; further ones wait."""
+"""Most health checks and test runs at the same time; further ones wait."""
 
 IMPORT_SECONDS = 120
 """Most processor time for reading a language file: the largest one allowed takes a minute."""
@@ -39,7 +39,7 @@ CHECK_SILENCE_SECONDS = 600.0
 """Most seconds between two reports of a check: its recogniser is prepared without one."""
 
 AGAIN_SECONDS = 2.0
-"""Before a job whose executor was lost is run again."""
+"""Wait in seconds before a job whose executor was lost is repeated."""
 
 logger = logging.getLogger(__name__)
 
@@ -76,7 +76,7 @@ class Workers:
     settings
         Limits of memory, time and file size, and whether colours are corrected.
     metrics
-        Counts the processes that are ended for their silence.
+        Counts the processes that are ended because they report no progress.
     hold
         Keeps files on this machine for processes that wait for their turn.
 
@@ -103,7 +103,7 @@ class Workers:
     async def probe(self, source: ClipSource, file: Path, options: ReadOptions) -> Probed | Failed:
         """Probe a received file; see `ClipSource.probe`."""
         command = ["probe", source.name, str(file)]
-        # Here: the sender waits for it, and the file may be on this machine alone.
+        # On this machine: the sender waits for the result, and the file may be only here.
         messages = self._run(
             command,
             file.parent,
@@ -121,7 +121,7 @@ class Workers:
     async def record(
         self, source: ClipSource, file: Path, options: ReadOptions, files: ClipFiles
     ) -> AsyncGenerator[Step, None]:
-        """Record a clip; the last message says how it ended. See `ClipSource.record`."""
+        """Record a clip; the last message is the outcome. See `ClipSource.record`."""
         options = options.model_copy(update={"water": self._settings.water})
         command = ["record", source.name, str(file), *files.arguments]
         silence = self._settings.worker_silence_seconds
@@ -135,9 +135,9 @@ class Workers:
     async def find_landmarks(
         self, source: ClipSource, file: Path, options: ReadOptions, recording: Path, threads: int
     ) -> AsyncGenerator[Step, None]:
-        """Write a clip's recording alone; the last message says how it ended.
+        """Write only a clip's recording; the last message is the outcome.
 
-        `threads` bounds those of the models, where several processes share a machine.
+        `threads` limits the threads of the models if several processes share a machine.
         """
         command = ["landmarks", source.name, str(file), str(recording), f"--threads={threads}"]
         silence = self._settings.worker_silence_seconds
@@ -186,7 +186,7 @@ class Workers:
     async def check_language(
         self, document: str, folder: Path
     ) -> AsyncGenerator[Progressed | Failed | str, None]:
-        """Check a language; the last item is the health report as JSON, or why there is none."""
+        """Check a language; the last item is the health report as JSON, or the failure."""
         with _scratch_folder(folder) as scratch:
             file, target = scratch / "language.json", scratch / "report.json"
             await asyncio.to_thread(file.write_text, document, "utf-8")
@@ -212,7 +212,7 @@ class Workers:
     async def recognize_takes(
         self, request: TestRunRequest, folder: Path
     ) -> AsyncGenerator[RecognizedTake | Failed, None]:
-        """Recognise takes; yield the answers in order, and last why not all of them are there."""
+        """Recognise takes; yield the answers in order, and last the failure if some are missing."""
         recordings = tuple(dict.fromkeys(take.recording for take in request.takes))
         with _scratch_folder(folder) as scratch, self._hold(recordings):
             wanted, answers = scratch / "request.json", scratch / "answers"
@@ -227,7 +227,7 @@ class Workers:
                     if isinstance(message, Failed):
                         yield message
                         return
-                    # One that is run again reports again what it has done.
+                    # A repeated process reports its earlier answers again.
                     while isinstance(message, Progressed) and done < message.done:
                         file = answer_file(answers, done)
                         content = await asyncio.to_thread(file.read_bytes)
@@ -250,7 +250,7 @@ class Workers:
     ) -> AsyncGenerator[Message, None]:
         """Run a worker, which unpacks archives in `folder`, and yield its messages.
 
-        One whose executor is lost is run again, from its beginning.
+        A worker whose executor is lost is repeated from the beginning.
         """
         given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
         limits = {
@@ -279,7 +279,7 @@ class Workers:
 
 
 async def _messages(lines: Lines, silence_seconds: float) -> AsyncGenerator[Message, None]:
-    """Yield the messages of a process to its end; raise TimeoutError when it says nothing."""
+    """Yield the messages of a process to its end; raise TimeoutError after a long silence."""
     while line := await asyncio.wait_for(lines.readline(), silence_seconds):
         try:
             message = parse(line)
@@ -289,7 +289,7 @@ async def _messages(lines: Lines, silence_seconds: float) -> AsyncGenerator[Mess
 
 
 async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step, None]:
-    """Yield progress and the end; a process that dies without a word has failed."""
+    """Yield progress and the outcome; a process that dies without an outcome has failed."""
     async with aclosing(messages):
         async for message in messages:
             if isinstance(message, Progressed):
@@ -297,7 +297,7 @@ async def _steps(messages: AsyncGenerator[Message, None]) -> AsyncGenerator[Step
             elif isinstance(message, Finished | Failed):
                 yield message
                 return
-    # Also of other files: what breaks off while landmarks are looked for is the decoder.
+    # For every kind of file: while landmarks are found, the part that crashes is the decoder.
     yield _failure(VIDEO.broken_off)
 
 
@@ -319,7 +319,7 @@ def _executor_of(settings: Settings, here: LocalProcesses) -> Executor:
 
 @contextlib.contextmanager
 def _scratch_folder(folder: Path) -> Iterator[Path]:
-    """Make a folder that is removed even when the worker is killed."""
-    # Beside the clip: on the same disk, and swept at the next start if this process dies.
+    """Create a folder that is removed even if the worker is killed."""
+    # Beside the clip, so that it is on the same disk, and removed at the next start after a crash.
     with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=folder) as made:
         yield Path(made)

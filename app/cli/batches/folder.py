@@ -9,9 +9,9 @@ from app.clip_sources import SOURCES, VIDEO, is_take
 
 
 def is_folder_of_clips(path: Path) -> bool:
-    """Return whether a path is a folder that is no clip itself, as a bag is.
+    """Return whether a path is a folder that is not itself a clip, unlike a bag.
 
-    A folder with JSON files is one of OpenPose, unless videos lie in it too.
+    A folder with JSON files is a clip of OpenPose, unless it also holds videos.
     """
     if not path.is_dir():
         return False
@@ -19,7 +19,7 @@ def is_folder_of_clips(path: Path) -> bool:
 
 
 def list_clips(folder: Path) -> list[Path]:
-    """Return the clips in a folder and the folders in it, in the order of their names."""
+    """Return the clips in a folder and its subfolders, in the order of their names."""
     return list(_walk(folder))
 
 

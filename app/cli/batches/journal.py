@@ -1,4 +1,4 @@
-"""Journal of a batch: what is known of each clip, so that an interrupted batch goes on."""
+"""Batch journal: stores the rows of each finished clip, so that an interrupted batch can go on."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from app.evaluation.take_table import Row
 
 
 class Journal:
-    """File of one JSON line a clip, beside the table; a clip is in it once it is done.
+    """File with one JSON line a clip, beside the table; a clip is in it once it is done.
 
     Parameters
     ----------
     path
-        The file; made anew when it was written with other settings.
+        The file; started again if it was written with other settings.
     settings
-        Whatever changes a result: language, profile, estimator.
+        All settings that affect a result: language, profile, estimator.
 
     Attributes
     ----------
     restarted
-        Whether there was a journal of other settings.
+        Whether a journal with other settings existed.
 
     """
 
@@ -37,19 +37,19 @@ class Journal:
             self._clips = {line["clip"]: line for line in lines[1:]}
 
     def find(self, name: str, state: str) -> list[Row] | None:
-        """Return the rows of a clip; None where it is not done, or has changed since."""
+        """Return the rows of a clip; None if it is not done, or has changed since."""
         line = self._clips.get(name)
         return line["rows"] if line is not None and line["state"] == state else None
 
     def add(self, name: str, state: str, rows: list[Row]) -> None:
-        """Note the rows of a clip.
+        """Add the rows of a clip.
 
         Parameters
         ----------
         name
             The clip's name in the folder.
         state
-            What changes when the clip does.
+            State of the clip's file; see `describe_state`.
         rows
             Its rows.
 
@@ -61,7 +61,7 @@ class Journal:
 
 
 def _read_lines(path: Path) -> list[dict[str, Any]]:
-    """Return the lines up to the first that is not whole: a crash can cut the last one."""
+    """Return the lines up to the first incomplete one, because a crash can cut the last line."""
     lines = []
     try:
         for text in path.read_text(encoding="utf-8").splitlines():
@@ -72,7 +72,7 @@ def _read_lines(path: Path) -> list[dict[str, Any]]:
 
 
 def describe_state(path: Path) -> str:
-    """Return what changes when a file does, or any file of a folder."""
+    """Return a text that changes whenever a file does, or any file of a folder."""
     files = sorted(each for each in path.rglob("*") if each.is_file()) if path.is_dir() else [path]
     stats = [file.stat() for file in files]
     last = max((stat.st_mtime_ns for stat in stats), default=0)

@@ -26,8 +26,8 @@ from app.recognition.spotting import Spotter
 class FolderBatch:
     """Batch of all clips of a folder, into one table.
 
-    Clips that an earlier run has done, with the same settings, are taken from its journal beside
-    the table. A clip that cannot be read is a row with its fault.
+    Clips that an earlier run with the same settings has done are taken from its journal beside the
+    table. A clip that cannot be read becomes a row with its fault.
 
     Attributes
     ----------
@@ -40,9 +40,9 @@ class FolderBatch:
     reading
         How clips are read.
     spotter
-        Finds gestures without salutes; None: with them.
+        Finds gestures without salutes; None for recognition with salutes.
     excluded
-        Files of the folder that are no clips, such as the language.
+        Files of the folder to leave out, such as the language.
 
     """
 
@@ -54,11 +54,11 @@ class FolderBatch:
     excluded: Sequence[Path] = ()
 
     def run(self) -> int:
-        """Recognise the clips that are left and write the table.
+        """Recognise the remaining clips and write the table.
 
         Returns
         -------
-        Number of recognised takes, of earlier runs too.
+        Number of recognised takes, including those of earlier runs.
 
         Raises
         ------
@@ -100,7 +100,7 @@ class FolderBatch:
         others = {path.resolve() for path in (*self.excluded, self.table, self._journal_file)}
         clips = [clip for clip in list_clips(self.folder) if clip.resolve() not in others]
         if not clips:
-            # Of another folder it is said what would be a clip.
+            # For a folder without clips, the error names the kinds of clips.
             try:
                 source_of(self.folder)
             except VideoError as error:
@@ -108,7 +108,7 @@ class FolderBatch:
         return clips
 
     def _settings(self) -> dict[str, Any]:
-        """Return whatever changes a result, as plain JSON types."""
+        """Return all settings that affect a result, as plain JSON types."""
         return {
             "version": __version__,
             "columns": list(COLUMNS),
@@ -117,7 +117,7 @@ class FolderBatch:
             "salutes": self.spotter is None,
             "reading": {
                 name: value for name, value in asdict(self.reading).items() if name != "trigger"
-            },  # the language has its own
+            },  # the language has its own trigger
         }
 
     def _name(self, clip: Path) -> str:

@@ -39,7 +39,7 @@ def check_table(path: Path) -> None:
 
 
 def write_table(path: Path, rows: Sequence[Row]) -> None:
-    """Write a table in one step, over the one that is there."""
+    """Write a table in one step, in place of an existing one."""
     content = (
         _to_parquet(rows) if path.suffix.lower() == PARQUET else write_csv(rows).encode("utf-8")
     )

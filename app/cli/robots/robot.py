@@ -161,7 +161,7 @@ def open_page(address: str) -> Publisher:
     Raises
     ------
     PublishError
-        When that is no address, or cannot be listened on.
+        When the text is no address, or the address cannot be listened on.
 
     """
     from app.robot.publishing.status_page import StatusPage

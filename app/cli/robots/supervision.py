@@ -1,4 +1,4 @@
-"""Supervision: tells the service manager what a robot's events mean for it."""
+"""Supervision: reports a robot's state to the service manager, by its events."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from app.system.service_manager import ServiceManager
 
 
 def report_event(manager: ServiceManager, event: Event) -> None:
-    """Tell that the robot is ready, works or ends, and in words what it does.
+    """Report that the robot is ready, works or ends, with a description of its activity.
 
-    A live source gives a heartbeat at least every 5 seconds, so a watchdog of 30 seconds starts a
-    robot again that hangs.
+    A live source gives a heartbeat at least every 5 seconds, so a watchdog of 30 seconds restarts a
+    robot that hangs.
     """
     match event:
         case SourceOpened():

@@ -19,8 +19,8 @@ def open_bridge(
     Raises
     ------
     VehicleError
-        When its library is missing, the table is invalid or names what the language does not have,
-        or the vehicle's address cannot be used.
+        When its library is missing, the table is invalid or names a label or phrase that the
+        language lacks, or the vehicle's address cannot be used.
     OSError
         When the table cannot be read.
 

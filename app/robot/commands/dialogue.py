@@ -23,7 +23,7 @@ STALE_SECONDS = 3.0
 robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
 
 MOST_BODIES = 32
-"""Bodies of which the last gesture is kept: more than divers work near one robot."""
+"""Number of bodies whose last event is kept: more than the divers near one robot."""
 
 
 @dataclass(frozen=True)
@@ -35,13 +35,13 @@ class Rules:
     confirmed
         Whether a gesture or a message must be repeated before its command is given.
     confirm_seconds
-        Longest time from a gesture to the end of its repetition; for a message, to each next
-        gesture of its repetition and to the end of the repetition.
+        Longest time from a gesture to the end of its repetition. For a message: longest time to
+        each next gesture of its repetition, and from the last one to its end.
     stale_seconds
         Largest difference between a gesture's stamp and the current time, in either direction;
         labels in `cancel` and `emergency` may be older.
     least_confidence
-        A gesture below it counts as rejected, a message as not understood.
+        Lowest confidence that counts: a gesture below it is rejected, a message not understood.
     cancel
         Labels that cancel a pending gesture or message. Their own commands are not given.
     emergency
@@ -126,7 +126,7 @@ class RecognizedPhrase:
     start, stamp
         Time of the first gesture, and of the picture after which the message was known, in seconds.
     label
-        Label of the gesture that caused it; None for a rejected gesture and for a pause.
+        Label of the gesture that caused the event; None for a rejected gesture and for a pause.
     language_id
         Id of its language.
     body_id
@@ -218,15 +218,15 @@ class Pending:
 
 @dataclass(frozen=True)
 class Shown:
-    """The last that one body showed, to tell it from its repetition.
+    """Last event of one body, kept to distinguish it from its repetition.
 
     Attributes
     ----------
     stamp, started
         Stamp and beginning of the last event, in seconds: later events are newer.
     middle
-        Middle of the last gesture or message that was understood. What began before it is another
-        recognition of the same one, by another camera or recogniser.
+        Middle of the last gesture or message that was understood. An event that began before it is
+        the same gesture or message, recognised by another camera or recogniser.
 
     """
 
@@ -362,7 +362,7 @@ class CommandDialogue:
         return Decision(f"{pending.label!r} was not repeated in time; show it twice")
 
     def _follow_clock(self, now: float) -> None:
-        """Note the time; when the clock was set back, move what was noted back with it."""
+        """Store the time; when the clock was set back, shift all stored times with it."""
         step = now - self._now
         if math.isfinite(step) and step < 0:
             if self.pending is not None:
@@ -380,9 +380,9 @@ class CommandDialogue:
         *,
         understood: bool,
     ) -> None:
-        """Note the last that a body showed."""
+        """Store the last event of a body."""
         last = shown.pop(input_.body_id, Shown())
-        # A stamp from the future must not keep back what follows.
+        # A stamp in the future must not make later events count as old.
         stamp = min(input_.stamp, now)
         middle = (input_.began + stamp) / 2 if understood else last.middle
         shown[input_.body_id] = Shown(

@@ -24,9 +24,9 @@ class PhraseListener(WrappingListener):
     listener
         Recognises the gestures.
     lag
-        Seconds by which `listener` may report a gesture after its end, or what returns them, where
-        they depend on the language. A pause is too long only when no gesture within it can be
-        reported any more.
+        Longest delay in seconds from the end of a gesture to its report by `listener`, or a
+        function that returns it if it depends on the language. A pause counts as too long only
+        after this delay, when no gesture within it can be reported any more.
 
     """
 
@@ -98,7 +98,7 @@ class PhraseListener(WrappingListener):
         )
 
     def _take_confidence(self, phrase: PhraseEvent) -> float:
-        """Return the message's lowest confidence, and drop the takes before the message."""
+        """Return the lowest confidence of the message's takes; drop the takes before it."""
         self._takes = [take for take in self._takes if take.start >= phrase.start]
         # The event of a pause may follow the gesture after the pause, which belongs to the next
         # message.

@@ -42,7 +42,7 @@ class LandmarkListener(Protocol):
         ...
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
-        """Process the next frame and return its events; none of a frame that is late."""
+        """Process the next frame and return its events; a late frame has none."""
         ...
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
@@ -100,8 +100,8 @@ class Listener:
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame.
 
-        A late or repeated frame is dropped. Frames of another clock or another size are those of
-        another camera, so the memory is cleared.
+        A late or repeated frame is dropped. A frame with another clock or size comes from another
+        camera, so the memory is cleared.
 
         Parameters
         ----------
@@ -149,9 +149,9 @@ class Listener:
         return (judge_take(self._language, take, time, unclosed),)
 
     def set_language(self, language: ActiveLanguage) -> None:
-        """Recognise the takes that end from now on by another language.
+        """Recognise the takes that end from now on with another language.
 
-        Where its trigger is another one, an open take is rejected with the next frame.
+        If its trigger differs, an open take is rejected with the next frame.
         """
         self._language = language
 

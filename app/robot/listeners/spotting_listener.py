@@ -19,7 +19,8 @@ class SpottingListener:
     language
         The language to recognise.
     triggered
-        Whether a trigger that is a gesture counts: only what two of them bracket is reported.
+        Whether a trigger gesture is respected: only gestures between two triggers are then
+        reported.
 
     Raises
     ------

@@ -5,12 +5,12 @@ from __future__ import annotations
 from app.recognition import PoseSequence
 
 LATE_SECONDS = 1.0
-"""Seconds by which a frame may be late: networks reorder within less, and a clock that was set back
-by less has caught up before anybody notices."""
+"""Seconds by which a frame may be late. Networks reorder frames within less time, and a clock that
+was set back by less catches up before anybody notices."""
 
 MOST_LATE = 8
-"""Frames in a row, in order and later than `LATE_SECONDS`, after which the clock was set back or
-another stream has begun: a third of a second of a camera."""
+"""Number of consecutive frames, in order and later than `LATE_SECONDS`, that show that the clock
+was set back or another stream has begun: a third of a second of a camera."""
 
 SaluteFrame = tuple[PoseSequence, float]
 """The poses of one frame, and its salute score."""
@@ -24,8 +24,8 @@ class StreamOrder:
     late
         Number of frames dropped.
     reason
-        Why the memory of earlier frames must be cleared before the frames of the last call; empty
-        where they continue the stream.
+        Reason to clear the memory before the frames of the last call are processed; empty if these
+        continue the stream.
 
     """
 
@@ -43,8 +43,8 @@ class StreamOrder:
     def admit(self, moment: PoseSequence, salute: float) -> list[SaluteFrame]:
         """Return the frames to process when this one arrives.
 
-        None where it is older than the last one, or the same. Frames of another stream are kept
-        back until they cannot be late ones, and then returned together.
+        The list is empty for a frame that is older than the last one, or the same. Frames of
+        another stream are held until they cannot be late frames, and then returned together.
         """
         last, self.reason = self._last, ""
         behind = 0.0 if last is None else self.time - float(moment.time[0])

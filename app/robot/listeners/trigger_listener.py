@@ -1,4 +1,4 @@
-"""Trigger listener: listens between triggers or without, as the active language asks."""
+"""Trigger listener: listens with or without triggers, as the active language specifies."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class TriggerListener(WrappingListener):
         self._always_spots = without_salutes
         self._hands = hands
         super().__init__(self._create(language))
-        self._left: tuple[Event, ...] = ()  # of the listener before a change
+        self._left: tuple[Event, ...] = ()  # events of the previous listener, at a change
 
     @property
     def lag(self) -> float:
@@ -63,12 +63,12 @@ class TriggerListener(WrappingListener):
     def set_language(self, language: ActiveLanguage) -> None:
         """Recognise another language from the next frame on.
 
-        Where one of the two languages has no trigger, the memory is cleared.
+        If one of the two languages has no trigger, the memory is cleared.
 
         Raises
         ------
         OsgError
-            As for a new one; the previous language stays active.
+            As for a new listener; the previous language stays active.
 
         """
         self._require_hands(language)

@@ -9,12 +9,12 @@ from app.robot.listeners.stream_order import StreamOrder
 
 
 class WrappingListener:
-    """Listener whose language, state and order are those of the one that it wraps.
+    """Listener whose language, state and order are those of the wrapped listener.
 
     Parameters
     ----------
     listener
-        The wrapped one.
+        The wrapped listener.
 
     """
 

@@ -1,8 +1,9 @@
-"""Vehicle actions as MAVLink: the messages that ask for an action, and what proves it done.
+"""Vehicle actions as MAVLink: the messages that request an action, and the proof that it is done.
 
-A mode counts as taken when it is acknowledged and the vehicle's heartbeat shows it: the one alone
-could be of an earlier command, the other of before a restart. ArduSub acknowledges no depth, which
-counts when its target shows it. Lights and camera are acknowledged only.
+A mode counts as set when it is acknowledged and the heartbeat shows it: an acknowledgement alone
+could belong to an earlier command, a heartbeat alone could date from before a restart. ArduSub does
+not acknowledge a depth, which counts as set when the reported target is that depth. Lights and
+camera are only acknowledged.
 """
 
 from __future__ import annotations
@@ -30,11 +31,11 @@ OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 """MAVLink component id of this computer, which is a part of the vehicle's system."""
 
 LEAST_PWM, MOST_PWM = 1100, 1900
-"""Microseconds of the pulse at which the lights are off, and at their brightest."""
+"""Pulse lengths in microseconds at which the lights are off, and brightest."""
 
 TARGET_TOLERANCE: Final = 0.3
-"""Metres between the depth asked for and the target that the vehicle reports: pressure and waves
-move its own depth, from which the target is computed, by about as much."""
+"""Largest difference in metres between the requested depth and the target that the vehicle reports.
+The target is computed from the measured depth, which pressure and waves change by about as much."""
 
 IGNORE_ALL_BUT_DEPTH: Final = (
     mavlink.POSITION_TARGET_TYPEMASK_X_IGNORE
@@ -52,14 +53,14 @@ IGNORE_ALL_BUT_DEPTH: Final = (
 
 @dataclass
 class Reported:
-    """What the vehicle has last said of itself.
+    """Last reported state of the vehicle.
 
     Attributes
     ----------
     accepted
-        Number of the command that it accepted.
+        Number of the command that the vehicle accepted.
     mode
-        Number of its mode.
+        Number of the vehicle's mode.
     altitude
         Metres, negative below the surface.
     altitude_error
@@ -73,7 +74,7 @@ class Reported:
     altitude_error: float | None = None
 
     def hear(self, message: Message) -> None:
-        """Note what a message of the vehicle says."""
+        """Update the state from a message of the vehicle."""
         match message.get_type():
             case "COMMAND_ACK" if message.result == mavlink.MAV_RESULT_ACCEPTED:
                 self.accepted = message.command
@@ -86,11 +87,11 @@ class Reported:
 
 
 class Step(Protocol):
-    """Protocol of one thing to ask of a vehicle."""
+    """Protocol of one request to a vehicle."""
 
     @property
     def command(self) -> int | None:
-        """Number of the command whose acknowledgement answers it; None: it has none."""
+        """Number of the command whose acknowledgement answers it; None for no answer."""
         ...
 
     def build(self, repetition: int) -> Message:
@@ -98,20 +99,20 @@ class Step(Protocol):
         ...
 
     def is_done(self, reported: Reported) -> bool:
-        """Return whether what the vehicle reported since the message was first sent proves it."""
+        """Return whether the vehicle's reports since the first sending prove the step done."""
         ...
 
 
 @dataclass(frozen=True)
 class CommandStep:
-    """A command that is acknowledged, of at most seven numbers.
+    """A command with at most seven parameters, which the vehicle acknowledges.
 
     Attributes
     ----------
     command
         Number of the command.
     parameters
-        Its numbers; those left out are 0.
+        Its parameters; those left out are 0.
     system, component
         Who should obey.
 
@@ -196,7 +197,7 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     vehicle
         Who should obey.
     picture
-        Number of the next picture: a camera takes none twice that is asked for repeatedly.
+        Number of the next picture; a repeated request with the same number takes no second picture.
 
     """
     address = (vehicle.system, vehicle.component)
@@ -216,7 +217,7 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
             camera = (vehicle.system, vehicle.camera_component)
             return (CommandStep(command, (0.0, 0.0, 1.0, float(picture)), *camera),)
         case Depth(metres=float() as metres):
-            # ArduSub takes a depth in ALT_HOLD alone.
+            # ArduSub accepts a target depth only in ALT_HOLD.
             return (
                 ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),
                 DepthStep(metres, *address),

@@ -26,16 +26,16 @@ from app.robot.mavlink.orders import Order, OrderDesk, Outcome
 from app.robot.mavlink.table import Action, VehicleTable
 
 TEXT_BYTES: Final = 50
-"""Bytes of a STATUSTEXT, which many displays cut a longer message to."""
+"""Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
 
 TICK_SECONDS: Final = 0.05
 """Longest wait for a message: shorter than what a diver or a vehicle notices."""
 
 HEARTBEAT_SECONDS: Final = 1.0
-"""Between two of our heartbeats, as MAVLink asks for."""
+"""Seconds between two of our heartbeats, as MAVLink requires."""
 
 SILENT_SECONDS: Final = 5.0
-"""Without a heartbeat of the vehicle for so long, it counts as lost."""
+"""Seconds without a heartbeat after which the vehicle counts as lost."""
 
 SEVERITIES: Final = {
     "done": mavlink.MAV_SEVERITY_NOTICE,
@@ -48,13 +48,13 @@ SEVERITIES: Final = {
 class MavlinkBridge:
     """Bridge from a robot's events to a vehicle; a `Publisher`.
 
-    `publish` decides in the caller's thread, by the same dialogue as the ROS 2 command node; a
-    thread of its own talks to the vehicle, so that no picture waits for it.
+    `publish` decides in the caller's thread, by the same dialogue as the ROS 2 command node. A
+    separate thread communicates with the vehicle, so that no picture waits for it.
 
     Parameters
     ----------
     table
-        What gestures and phrases mean.
+        Actions of the gestures and phrases.
     link
         Connection to the vehicle; closed with the bridge.
     language
@@ -62,8 +62,8 @@ class MavlinkBridge:
     tell
         Called with every line for people, from either thread.
     now
-        Returns the current time in seconds of the source's clock; None: that of the last event,
-        for recordings.
+        Returns the current time in seconds of the source's clock; None takes the time of the last
+        event, for recordings.
 
     """
 
@@ -100,7 +100,7 @@ class MavlinkBridge:
         Raises
         ------
         Exception
-            What ended the thread that talks to the vehicle: a robot that seems to obey must not go
+            The error that ended the vehicle's thread: a robot that only seems to obey must not go
             on.
 
         """
@@ -117,9 +117,9 @@ class MavlinkBridge:
                     self._decide_phrase(event)
 
     def close(self) -> None:
-        """Finish the order on its way, for at most as long as it may take, and disconnect.
+        """Wait for the active order, at most until its own deadline, and disconnect.
 
-        What was told before is sent to the vehicle's displays first.
+        Texts that were announced before are sent to the vehicle's displays first.
         """
         self._closing.set()
         self._thread.join()
@@ -179,7 +179,7 @@ class MavlinkBridge:
         self._act(decision, self._table.resolve_mission(meant))
 
     def _act(self, decision: Decision, actions: Sequence[Action]) -> None:
-        """Tell the decision and give its actions to the vehicle."""
+        """Announce the decision and send its actions to the vehicle."""
         if not actions:
             self._say(decision.reason)
             return
@@ -199,7 +199,7 @@ class MavlinkBridge:
         return self._time if self._now is None else self._now()
 
     def _work(self) -> None:
-        """Talk to the vehicle until the bridge is closed; the thread's work."""
+        """Exchange messages with the vehicle until the bridge is closed; runs in the thread."""
         try:
             self._talk()
         except Exception as error:  # passed on to the thread that publishes
@@ -221,7 +221,7 @@ class MavlinkBridge:
                     self._step([])
 
     def _step(self, messages: Sequence[Message]) -> list[Message]:
-        """Process what arrived and return what is to be sent."""
+        """Process the received messages and return the messages to send."""
         now = clock.monotonic()
         outcomes = [self._desk.hear(message, now) for message in messages]
         outcomes.append(self._desk.check_deadline(now))
@@ -240,7 +240,7 @@ class MavlinkBridge:
         return due
 
     def _watch_vehicle(self, messages: Sequence[Message], now: float) -> None:
-        """Tell when the vehicle falls silent, is back, or has started again."""
+        """Announce that the vehicle is silent, is back, or has restarted."""
         vehicle = self._table.vehicle
         if any(
             message.get_type() == "HEARTBEAT"
@@ -270,7 +270,7 @@ class MavlinkBridge:
         self._say(text, SEVERITIES[outcome.kind])
 
     def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
-        """Tell people here, and on the displays of the vehicle's network."""
+        """Announce a text here and on the displays of the vehicle's network."""
         self._tell_people(text)
         self._texts.append(mavlink.MAVLink_statustext_message(severity, fit_text(text)))
 
@@ -281,7 +281,7 @@ class MavlinkBridge:
 
 
 def build_heartbeat() -> Message:
-    """Build our heartbeat: a computer on board that flies nothing."""
+    """Build our heartbeat: that of an on-board computer, not of an autopilot."""
     return mavlink.MAVLink_heartbeat_message(
         mavlink.MAV_TYPE_ONBOARD_CONTROLLER,
         mavlink.MAV_AUTOPILOT_INVALID,
@@ -293,5 +293,5 @@ def build_heartbeat() -> Message:
 
 
 def fit_text(text: str) -> bytes:
-    """Return a text in UTF-8, cut to what a STATUSTEXT holds and at the end of a character."""
+    """Return a text in UTF-8, cut after the last whole character that fits a STATUSTEXT."""
     return text.encode()[:TEXT_BYTES].decode("utf-8", "ignore").encode()

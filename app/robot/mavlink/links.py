@@ -23,7 +23,7 @@ CONNECT_SECONDS: Final = 3.0
 """Time to connect over TCP; a vehicle on the same boat answers within milliseconds."""
 
 RECONNECT_SECONDS: Final = 1.0
-"""Between two attempts to connect again."""
+"""Seconds between two attempts to reconnect."""
 
 FORMS: Final = "udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or http://HOST[:PORT][/PATH]"
 
@@ -36,7 +36,7 @@ class VehicleLink(Protocol):
         ...
 
     def receive(self, seconds: float) -> list[Message]:
-        """Return the messages that arrived, after waiting at most so long for the first."""
+        """Return the messages that arrived; wait at most `seconds` for the first."""
         ...
 
     def close(self) -> None:
@@ -50,11 +50,11 @@ class DatagramLink:
     Parameters
     ----------
     host, port
-        Where to send to, or with `listens` where to listen.
+        Address to send to, or to listen on with `listens`.
     system
         Our MAVLink system id: that of the vehicle, of which this computer is a part.
     listens
-        Whether the vehicle sends first, to us; it is answered where its packets come from.
+        Whether the vehicle sends first; replies go to the address that its packets come from.
 
     """
 
@@ -93,12 +93,12 @@ class DatagramLink:
 
 
 class StreamLink:
-    """TCP to a vehicle or its router, connected again when it breaks; a `VehicleLink`.
+    """TCP to a vehicle or its router, which reconnects after a failure; a `VehicleLink`.
 
     Parameters
     ----------
     host, port
-        Where to connect to.
+        Address to connect to.
     system
         Our MAVLink system id.
 

@@ -1,7 +1,7 @@
 """Vehicle orders: sends the steps of one mission until each is proven done, without a network.
 
-There is no queue: a newer mission replaces the one on its way, so that nothing is done long after
-it was asked for.
+There is no queue: a newer mission replaces the active one, so that no action is done long after its
+request.
 """
 
 from __future__ import annotations
@@ -16,17 +16,18 @@ from app.robot.mavlink.actions import OUR_COMPONENT, Message, Reported, Step
 from app.robot.mavlink.table import Vehicle
 
 EMERGENCY_SECONDS: Final = 60.0
-"""Time in which an emergency is repeated; afterwards somebody else has the vehicle, or nobody."""
+"""Seconds for which an emergency is repeated; after that the vehicle has another pilot or is
+lost."""
 
 REBOOT_MS: Final = 1000
-"""Milliseconds by which the vehicle's time since boot may go back through packets out of order."""
+"""Milliseconds by which packets out of order may set back the vehicle's time since boot."""
 
 GO_ON: Final = (
     mavlink.MAV_RESULT_ACCEPTED,
     mavlink.MAV_RESULT_IN_PROGRESS,
     mavlink.MAV_RESULT_TEMPORARILY_REJECTED,
 )
-"""Answers that are no refusal: the command is repeated until it is done."""
+"""Results after which a command is repeated until it is done; all others refuse it."""
 
 OutcomeKind = Literal["done", "refused", "unanswered", "replaced"]
 
@@ -38,11 +39,11 @@ class Order:
     Attributes
     ----------
     words
-        What it does, in words.
+        Description for people.
     steps
-        What to ask of the vehicle, in order.
+        Requests to the vehicle, in order.
     emergency
-        Whether it is repeated also after a refusal.
+        Whether the order is repeated even after a refusal.
 
     """
 
@@ -60,10 +61,10 @@ class Outcome:
     order
         The order.
     kind
-        ``done``: the vehicle proved it. ``refused``: it said no. ``unanswered``: no proof in time.
-        ``replaced``: by a newer order.
+        ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
+        time. ``replaced``: by a newer order.
     answer
-        The vehicle's answer where it refused, such as ``DENIED``.
+        Result of a refusal, such as ``DENIED``.
 
     """
 
@@ -73,20 +74,20 @@ class Outcome:
 
 
 class OrderDesk:
-    """State of the order that is on its way to the vehicle.
+    """State of the order that the vehicle is to carry out.
 
     Parameters
     ----------
     vehicle
-        Who obeys, and how long to try. The time is given to every method, in seconds of a steady
-        clock.
+        Address of the vehicle, and how long to try. Every method takes the time in seconds of a
+        steady clock.
 
     Attributes
     ----------
     order
-        The order on its way; None for none.
+        The active order, or None.
     reboots
-        How often the vehicle has started again.
+        Number of restarts of the vehicle.
 
     """
 
@@ -132,7 +133,7 @@ class OrderDesk:
 
         Returns
         -------
-        The outcome of the order that it ends; for an emergency also its first refusal.
+        The outcome of the order that the message ends; for an emergency also its first refusal.
 
         """
         if not self._is_from_vehicle(message):
@@ -151,7 +152,7 @@ class OrderDesk:
         return self._refuse(message.result)
 
     def _refuse(self, result: int) -> Outcome | None:
-        """End an order that was refused; an emergency goes on, and its refusal is told once."""
+        """End a refused order; an emergency goes on, and only its first refusal is reported."""
         assert self.order is not None
         names = mavlink.enums["MAV_RESULT"]
         answer = names[result].name if result in names else str(result)
@@ -166,7 +167,7 @@ class OrderDesk:
         sender = (message.get_srcSystem(), message.get_srcComponent())
         if message.get_type() != "COMMAND_ACK":
             return sender == (vehicle.system, vehicle.component)
-        # An answer to a ground station passes here too; older vehicles leave the address out.
+        # Answers to a ground station arrive here too; older vehicles send no address.
         ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
         answering = (
             (vehicle.system, part) for part in (vehicle.component, vehicle.camera_component)
@@ -174,7 +175,7 @@ class OrderDesk:
         return sender in answering and (message.target_system, message.target_component) in ours
 
     def _note_uptime(self, uptime: int, now: float) -> None:
-        """Notice a vehicle that has started again: it forgot what it was told."""
+        """Detect a restart of the vehicle, which has then lost its orders."""
         if uptime + REBOOT_MS < self._uptime:
             self.reboots += 1
             self._reported = Reported()
@@ -190,7 +191,7 @@ class OrderDesk:
         return None
 
     def _begin(self, position: int, now: float) -> None:
-        """Begin a step; what the vehicle reported before does not prove it."""
+        """Begin a step; earlier reports of the vehicle do not prove it."""
         self._position, self._sent, self._next = position, 0, now
         self._reported = Reported()
 

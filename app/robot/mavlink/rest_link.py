@@ -15,28 +15,27 @@ from app.recognition.errors import VehicleError
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
 
 ANSWER_SECONDS: Final = 2.0
-"""Time for the server to answer; it is on the vehicle, and answers from memory."""
+"""Seconds for the server to answer; it runs on the vehicle and answers from memory."""
 
 POLL_SECONDS: Final = 0.1
-"""Between two questions for news: well below the vehicle's own rate of one heartbeat a second."""
+"""Seconds between two polls: well below the vehicle's heartbeat period of one second."""
 
 WANTED: Final = ("HEARTBEAT", "COMMAND_ACK", "SYSTEM_TIME", "VFR_HUD", "NAV_CONTROLLER_OUTPUT")
-"""Messages that prove what the vehicle does."""
+"""Messages that report the state of the vehicle."""
 
 RENAMED: Final = {"type": "mavtype"}
-"""Fields that have another name there, because ``type`` names the message."""
+"""Fields with another name in mavlink2rest, where ``type`` names the message."""
 
 
 class RestLink:
     """HTTP to mavlink2rest; a `VehicleLink`.
 
-    Its last message of each kind is asked for again and again, and is news when its counter is
-    another one.
+    The server's last message of each kind is polled, and is new when its counter has changed.
 
     Parameters
     ----------
     address
-        Of the server, such as ``http://192.168.2.2/mavlink2rest``.
+        Address of the server, such as ``http://192.168.2.2/mavlink2rest``.
     system, component
         MAVLink ids of the vehicle.
 
@@ -45,7 +44,7 @@ class RestLink:
     OSError
         When nothing answers.
     VehicleError
-        When what answers is not mavlink2rest.
+        When the server is not mavlink2rest.
 
     """
 
@@ -61,7 +60,7 @@ class RestLink:
         self._system = system
         self._messages = f"{self._path}/vehicles/{system}/components/{component}/messages"
         self._codec = mavlink.MAVLink(None, system, component)
-        # What was said before we came is no answer to us.
+        # Messages from before the connection answer no request of ours.
         self._counters = {name: count for name, (count, _) in self._fetch_all().items()}
 
     def send(self, message: Message) -> None:
@@ -71,7 +70,7 @@ class RestLink:
         self._request("POST", self._path, body)
 
     def receive(self, seconds: float) -> list[Message]:
-        """Return the messages that are news."""
+        """Return the new messages."""
         clock.sleep(min(seconds, POLL_SECONDS))
         news = []
         for name, (count, message) in self._fetch_all().items():
@@ -105,7 +104,7 @@ class RestLink:
         return counter, message
 
     def _request(self, method: str, path: str, body: str | None = None) -> str | None:
-        """Return the answer's text; None where there is nothing."""
+        """Return the text of the answer; None if the server has nothing at that path."""
         heads = {"Content-Type": "application/json"} if body else {}
         try:
             self._connection.request(method, path, body, heads)
@@ -128,7 +127,7 @@ def to_json(message: Message) -> dict[str, Any]:
     for name in message.fieldnames:
         value = getattr(message, name)
         if isinstance(value, str):
-            # One character is one byte there, and pymavlink gives others as replacements.
+            # mavlink2rest takes one character a byte; pymavlink gives other bytes as replacements.
             text = value.replace("\N{REPLACEMENT CHARACTER}", "?")
             value = [*text.ljust(lengths[name], "\0")]
         elif message.fielddisplays_by_name.get(name) == "bitmask":
@@ -145,7 +144,7 @@ def from_json(content: Mapping[str, Any]) -> Message:
     Raises
     ------
     KeyError, TypeError, AttributeError
-        When it is not one.
+        When the object is no message.
 
     """
     kind = getattr(mavlink, f"MAVLink_{content['type'].lower()}_message")

@@ -1,7 +1,7 @@
 """Vehicle table: which gesture or phrase becomes which action of the vehicle; a closed list.
 
-Whatever the table does not name does nothing. The actions are those of this module, each with its
-limits, so that no file can make the bridge send anything else.
+A gesture or phrase outside the table does nothing. The only actions are those of this module, each
+with its limits, so that no file can make the bridge send anything else.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ else:
 FORMAT: Final = "osg-studio/vehicle-table"
 
 GIVE_UP_SECONDS: Final = 10.0
-"""Time for the vehicle to do as it is told: with a fifth of all packets lost, ten heartbeats and
-twenty repetitions; longer, and the diver has given up too."""
+"""Seconds for the vehicle to carry out an action: ten heartbeats and twenty repetitions, enough
+when a fifth of all packets is lost. After that the diver has given up too."""
 
 DEEPEST: Final = 30.0
-"""Metres that a table may ask for unless it sets its own limit: below the depths of sport divers a
-number is more likely misread than meant."""
+"""Largest depth in metres, unless a table sets its own limit: a number below the depths of sport
+divers is more likely misread than meant."""
 
 ModeName = Literal[
     "STABILIZE",
@@ -45,8 +45,8 @@ ModeName = Literal[
     "MANUAL",
     "SURFTRAK",
 ]
-"""ArduSub's modes that a gesture may choose; neither ACRO, in which nobody holds the vehicle level,
-nor the detection of motors."""
+"""ArduSub's modes that a gesture may choose: all but ACRO, in which nothing keeps the vehicle
+level, and the detection of motors."""
 
 
 class _Entry(BaseModel):
@@ -143,9 +143,10 @@ class Vehicle(_Entry):
     system, component
         MAVLink ids of the autopilot.
     camera_component
-        MAVLink id of what takes pictures; by default the autopilot, which triggers a camera.
+        MAVLink id of the component that takes pictures; by default the autopilot, which triggers a
+        camera.
     lights_servo
-        Output that dims the lights, 13 on a BlueROV2 with a Navigator.
+        Servo output that dims the lights: 13 on a BlueROV2 with a Navigator.
     deepest
         Largest depth that an action may ask for, in metres.
     repeat_seconds
@@ -176,11 +177,11 @@ class VehicleTable(_Entry):
     emergency
         Labels of gestures that are obeyed at once: ``surface`` or ``hold``, nothing else.
     cancel
-        Labels of gestures that withdraw what waits for its repetition.
+        Labels of gestures that cancel a gesture or message that waits for its repetition.
     confirm_seconds, stale_seconds, least_confidence
         As in `app.robot.commands.dialogue.Rules`.
     vehicle
-        Where the vehicle is, and its limits.
+        Address of the vehicle, and its limits.
 
     """
 
@@ -197,7 +198,7 @@ class VehicleTable(_Entry):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        """Refuse contradictions, which would move the vehicle at the wrong moment."""
+        """Refuse contradictory values, which would move the vehicle at the wrong moment."""
         if not (self.gestures or self.phrases or self.emergency):
             raise ValueError("it has no action: add one under [gestures], [phrases] or [emergency]")
         roles = [*self.gestures, *self.emergency, *self.cancel]
@@ -266,7 +267,7 @@ class VehicleTable(_Entry):
         return Depth(do="depth", metres=metres)
 
     def list_unknown(self, language: Language) -> Iterator[str]:
-        """Yield, in words, what the table names and the language does not have."""
+        """Yield, in words, the labels and phrases of the table that the language lacks."""
         for role, names in (("gestures", self.gestures), ("emergency", self.emergency)):
             yield from (f"{role}.{label}" for label in names if label not in language.labels)
         yield from (f"cancel {label}" for label in self.cancel if label not in language.labels)
@@ -281,7 +282,7 @@ def read_vehicle_table(path: str | Path) -> VehicleTable:
     Raises
     ------
     VehicleError
-        When the file is not valid; names the key.
+        When the file is not valid; the message names the key.
     OSError
         When the file cannot be read.
 

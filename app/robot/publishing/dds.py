@@ -1,7 +1,7 @@
 """DDS publisher: publishes to ROS 2 nodes without ROS 2, through Eclipse Cyclone DDS.
 
-The topics have the names that ROS 2 gives its own, so any node of the same domain can subscribe.
-Topics of type ``std_msgs/String`` need no package of this project there.
+The topics are named as ROS 2 names its own, so any node of the same domain can subscribe. A
+subscriber to a topic of type ``std_msgs/String`` needs no package of this project.
 """
 
 import json
@@ -38,7 +38,7 @@ LAST_DOMAIN: Final = 232
 """Highest domain number with valid ports (OMG DDSI-RTPS 2.5, 9.6.2.3)."""
 
 KEPT: Final = 10
-"""Messages kept while a subscriber is slow, as ROS does by default."""
+"""Messages kept for a slow subscriber, the default of ROS."""
 
 NANOSECONDS: Final = 1_000_000_000
 
@@ -55,7 +55,7 @@ LOCALHOST_CONFIGURATION: Final = """
   </Discovery>
 </Domain></CycloneDDS>
 """
-"""Configuration of Cyclone for this machine alone, as ROS 2 itself sets it."""
+"""Cyclone configuration that restricts it to this machine, as ROS 2 itself sets it."""
 
 RELIABLE: Final = Qos(
     Policy.Reliability.Reliable(duration(milliseconds=100)),

@@ -8,7 +8,7 @@ from app.recognition.errors import PublishError
 from app.robot.events import Event
 
 Network = Literal["dds"]
-"""Networks to publish to: DDS with the topic names of ROS 2."""
+"""Networks to publish to: ``dds`` is DDS with the topic names of ROS 2."""
 
 
 class Publisher(Protocol):

@@ -1,4 +1,4 @@
-"""Status page: shows in a browser what the robot sees and says, and whether it works."""
+"""Status page: shows the robot's events, and whether it works, in a browser."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ MOST_EVENTS: Final = 50
 """Events that the page shows; older ones are in the log."""
 
 SILENT_SECONDS: Final = 30.0
-"""Without an event of a live source for so long, the robot counts as hung: six heartbeats."""
+"""Seconds without an event of a live source after which the robot counts as hung: six
+heartbeats."""
 
 POLL_SECONDS: Final = 0.1
-"""Longest wait until the server notices that it is closed."""
+"""Longest time in seconds until the server notices that it is closed."""
 
 SERVICE: Final = {
     "name": "Diver gestures",
@@ -43,19 +44,19 @@ SERVICE: Final = {
     "new_page": False,
     "works_in_relative_paths": True,
 }
-"""What BlueOS asks of a service to show it in its menu (``/register_service``)."""
+"""Data that BlueOS requires to show a service in its menu (``/register_service``)."""
 
 
 class StatusPage:
     """Web server with one page; a `Publisher`.
 
-    It only tells: nothing can be changed through it. ``/`` is the page, ``/status.json`` what it
-    shows, ``/healthz`` answers 200 or 503, ``/register_service`` names it to BlueOS.
+    The server is read-only. ``/`` is the page and ``/status.json`` its data, ``/healthz`` answers
+    200 or 503, and ``/register_service`` registers the page in BlueOS.
 
     Parameters
     ----------
     host, port
-        Where it listens; port 0 finds a free one.
+        Address to listen on; port 0 finds a free one.
     describe
         Describes an event in one sentence; empty for events that need none.
 
@@ -89,11 +90,11 @@ class StatusPage:
 
     @property
     def port(self) -> int:
-        """Where it listens."""
+        """Port that the server listens on."""
         return int(self._server.server_address[1])
 
     def publish(self, event: Event) -> None:
-        """Note one event."""
+        """Add one event to the page."""
         with self._lock:
             self._heard = clock.monotonic()
             match event:
@@ -120,7 +121,7 @@ class StatusPage:
         self._server.server_close()
 
     def read_status(self) -> dict[str, Any]:
-        """Return what the page shows, as plain JSON types."""
+        """Return the data of the page as plain JSON types."""
         with self._lock:
             seconds = clock.monotonic() - self._heard
             works = not self._live or seconds < SILENT_SECONDS

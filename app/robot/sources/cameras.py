@@ -22,24 +22,25 @@ from app.robot.sources.rtp import (
 )
 
 OPEN_SECONDS: Final = 10.0
-"""For a stream to say what it holds: RTSP cameras send a picture that can be decoded alone every
-few seconds."""
+"""Longest wait in seconds for the first decodable picture of a stream: RTSP cameras send a key
+frame every few seconds."""
 
 SILENT_SECONDS: Final = 5.0
-"""Without a frame for so long, a stream counts as lost. The slowest that a gesture could be seen in
-gives two frames a second (`app.recognition.poses.gaps.MAX_GAP_SECONDS`)."""
+"""Seconds without a frame after which a stream counts as lost. The slowest stream in which a
+gesture could be seen gives two frames a second (`app.recognition.poses.gaps.MAX_GAP_SECONDS`)."""
 
 MOST_PIXELS: Final = 16_000_000
-"""Of one frame, as for clips (`VideoLimits`)."""
+"""Largest number of pixels of one frame, as for clips (`VideoLimits`)."""
 
 SCHEMES: Final = ("rtsp", "rtsps", "http", "https", "udp", "rtp", "tcp", "srt")
-"""Of addresses that are opened as streams."""
+"""Schemes of addresses that are opened as streams."""
 
 DATAGRAM_PROTOCOLS: Final = "rtp,srtp,udp"
-"""What a session description may make FFmpeg open."""
+"""Protocols that a session description may make FFmpeg open."""
 
 PROTOCOLS: Final = "rtsp,rtsps,rtp,srtp,udp,tcp,tls,http,https,httpproxy,crypto,srt"
-"""What FFmpeg may open for them; not files, which a playlist from the network could name."""
+"""Protocols that FFmpeg may open for streams; not files, which a playlist from the network could
+name."""
 
 
 class CameraDevice:
@@ -48,7 +49,7 @@ class CameraDevice:
     Parameters
     ----------
     device
-        Its number, from 0, or its device file.
+        Number of the camera, from 0, or its device file.
 
     Raises
     ------
@@ -59,7 +60,7 @@ class CameraDevice:
 
     def __init__(self, device: int | str) -> None:
         self._name = f"camera {device}"
-        # OpenCV would repeat its warnings at every attempt; the source reports the fault once.
+        # OpenCV would repeat its warnings at every attempt; the source reports a fault once.
         cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_ERROR)
         self._capture = cv2.VideoCapture(device)
         if not self._capture.isOpened():
@@ -67,7 +68,7 @@ class CameraDevice:
                 f"{self._name} cannot be opened: there is none, another program uses it, or this "
                 "user may not; see which there are (on Linux: ls /dev/video*) and try again"
             )
-        # A queue in the driver would make every frame an old one; not every driver obeys.
+        # A queue in the driver would delay every frame; not every driver supports this setting.
         self._capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
 
     def read(self) -> Image:
@@ -88,12 +89,12 @@ class NetworkStream:
     Parameters
     ----------
     address
-        With its scheme, one of `SCHEMES`; or the path of a session description.
+        Address with one of the `SCHEMES`, or the path of a session description.
 
     Raises
     ------
     SourceError
-        When nothing answers, or what answers is no video.
+        When nothing answers, or the stream is no video.
 
     """
 
@@ -111,7 +112,7 @@ class NetworkStream:
                 f"{self._name} sends something, but no picture could be decoded in "
                 f"{OPEN_SECONDS:g} s; for RTP it is taken for H.264 unless an .sdp file says more"
             )
-        stream.thread_type = "SLICE"  # threads over frames would hold several back
+        stream.thread_type = "SLICE"  # threads by frame would delay several frames
         self._frames = self._container.decode(stream)
 
     def read(self) -> Image:
@@ -122,7 +123,7 @@ class NetworkStream:
             except StopIteration as error:
                 raise SourceError(f"{self._name} ended: the sender closed the stream") from error
             except av.error.InvalidDataError:
-                continue  # a damaged frame is one that was dropped
+                continue  # a damaged frame counts as dropped
             except (av.error.FFmpegError, OSError) as error:
                 raise SourceError(
                     f"{self._name} broke off ({error.strerror or error}): no frame for "

@@ -15,25 +15,27 @@ from app.robot.events import SourceLost, SourceRestored
 from app.robot.sources.source import Frame, NoFrame, Notice
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 15.0
-"""Seconds before a lost camera is opened again, doubled with every attempt that fails: a loose plug
-is back within a second, a camera that reboots within a minute, and opening costs a robot power."""
+"""Shortest and longest wait in seconds before a lost camera is reopened, doubled after every failed
+attempt: a loose plug is back within a second, a camera that reboots within a minute, and opening
+uses a robot's power."""
 
 STEADY_SECONDS: Final = 30.0
-"""A camera that lasted so long starts with the first wait again; one that dies sooner would come
-and go twice a second for days."""
+"""Seconds for which a camera must work before the first wait applies again; otherwise a camera that
+fails at once would be reopened twice a second for days."""
 
 LONGEST_CLOSING: Final = 3.0
-"""Seconds that closing waits for a read that goes on; a camera gives a frame in less."""
+"""Seconds that closing waits for the current read; a camera gives a frame in less."""
 
 SHORTEST_STEP: Final = 1e-6
-"""Seconds between two frames, at least: steady clocks of some systems tick only every 16 ms."""
+"""Smallest difference in seconds between two frames: some steady clocks tick only every 16 ms."""
 
 QUIET_SECONDS: Final = 0.5
-"""Without a frame for so long a `NoFrame` is given, so that the caller can handle a signal."""
+"""Seconds without a frame after which a `NoFrame` is given, so that the caller can handle a
+signal."""
 
 MOST_NOTICES: Final = 64
-"""That wait to be taken; the oldest are forgotten first. A camera that flaps must not fill memory
-while nobody listens."""
+"""Number of unread notices kept, the newest; an unstable camera must not fill memory while nobody
+reads them."""
 
 
 class Camera(Protocol):
@@ -49,37 +51,38 @@ class Camera(Protocol):
         Raises
         ------
         SourceError
-            When none comes, or none will come any more.
+            When no frame comes, or none will come any more.
 
         """
         ...
 
     def close(self) -> None:
-        """Release it."""
+        """Release the camera."""
         ...
 
 
 class LiveSource:
-    """A `Source` that gives the newest frame and drops those that nobody asked for in time.
+    """A `Source` that gives the newest frame and drops frames that were not requested in time.
 
-    A thread of its own reads the camera. A failure of the camera is reported once; it is then
-    opened again, after ever longer waits, until it gives frames. A frame's time is when it
-    arrived here, in seconds of this machine's steady clock since the source was opened: clocks of
-    cameras restart when they do, and some streams have none.
+    A separate thread reads the camera. A failure is reported once; the camera is then reopened,
+    after ever longer waits, until it gives frames. A frame's time is its arrival, in seconds of
+    this machine's steady clock since the source was opened: a camera's clock restarts with the
+    camera, and some streams have none.
 
     Parameters
     ----------
     name
-        For people, without passwords.
+        Name for people, without passwords.
     opened
-        Opens the camera; called again after it was lost.
+        Opens the camera; called again after the camera is lost.
     first_wait
-        Seconds before it is opened again for the first time.
+        Seconds before the first attempt to reopen it.
 
     Raises
     ------
     SourceError
-        When it cannot be opened now, or gives no first frame: most likely the name is wrong.
+        When the camera cannot be opened now, or gives no first frame: most likely the name is
+        wrong.
 
     """
 
@@ -109,7 +112,7 @@ class LiveSource:
         self._thread.start()
 
     def __iter__(self) -> Iterator[Frame | Notice]:
-        """Give the newest frame, and what happened to the camera, until the source is closed."""
+        """Yield the newest frames and the notices about the camera until the source is closed."""
         while not self._closing.is_set():
             yield self._next()
 
@@ -138,7 +141,7 @@ class LiveSource:
         return clock.monotonic() - self._began
 
     def _read(self, camera: Camera) -> None:
-        """Read until the source is closed; the thread's work."""
+        """Read until the source is closed; runs in the thread."""
         current: Camera | None = camera
         try:
             while current is not None:
@@ -164,7 +167,7 @@ class LiveSource:
         return None
 
     def _reopen(self, reason: str) -> Camera | None:
-        """Open the camera again, as often as it takes; None when the source is closed meanwhile."""
+        """Reopen the camera, however many attempts it takes; None once the source is closed."""
         self._tell(SourceLost(self.now(), reason))
         attempts = 0
         while not self._closing.wait(self._wait):
@@ -189,7 +192,7 @@ class LiveSource:
             self._news.notify_all()
 
     def _tell(self, notice: SourceLost | SourceRestored) -> None:
-        """Queue a notice, and drop the frame before it that nobody has taken."""
+        """Queue a notice, and drop an earlier frame that nobody has taken."""
         with self._news:
             if self._newest is not None:
                 self._newest = None
@@ -199,7 +202,7 @@ class LiveSource:
 
 
 def _first_frame(opened: Callable[[], Camera]) -> tuple[Camera, Image]:
-    """Open a camera and prove that it gives frames."""
+    """Open a camera and read its first frame, to verify that it gives frames."""
     camera = opened()
     try:
         return camera, camera.read()

@@ -15,11 +15,11 @@ class RecordedSource:
     Parameters
     ----------
     name
-        For people.
+        Name for people.
     frames
-        Its frames, open.
+        Open iterator over the frames.
     release
-        Closes what they are read from; may be called twice.
+        Closes the file that they are read from; may be called twice.
 
     """
 
@@ -37,12 +37,12 @@ class RecordedSource:
         return self._frames.info.width, self._frames.info.height
 
     def __iter__(self) -> Iterator[Frame | Notice]:
-        """Give every frame, then what was wrong with the recording.
+        """Yield every frame, then the warnings about the recording.
 
         Raises
         ------
         VideoError
-            When it breaks a limit after all.
+            When the recording exceeds a limit that its header did not show.
 
         """
         time = 0.0

@@ -70,7 +70,7 @@ KINDS: tuple[SourceKind, ...] = (
 
 
 def open_source(text: str) -> Source:
-    """Open what a user calls a source.
+    """Open the source that a user names.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def open_source(text: str) -> Source:
     SourceError
         When a camera or stream cannot be opened.
     VideoError
-        When a file is no clip.
+        When the file is no clip.
     BagError
         When a dive recording cannot be read, or has no such topic of pictures.
 

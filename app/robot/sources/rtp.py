@@ -1,7 +1,8 @@
-"""RTP streams over UDP: finds out what arrives on a port, and describes it as FFmpeg needs it.
+"""RTP streams over UDP: inspects the packets on a port, and describes them for FFmpeg.
 
-RTP packets do not say what they carry. A session description (SDP, RFC 8866) does, from a file or
-made here for what cameras of vehicles send: H.264 to a port, 5600 on a BlueROV2.
+RTP packets do not state their content. A session description (SDP, RFC 8866) does: it is read from
+a file, or made here for the usual cameras of vehicles, which send H.264 to a port, 5600 on a
+BlueROV2.
 """
 
 from __future__ import annotations
@@ -17,23 +18,22 @@ from urllib.parse import urlsplit
 from app.recognition.errors import SourceError
 
 SCHEMES: Final = ("udp", "rtp")
-"""Of addresses on which packets arrive by themselves."""
+"""Schemes of addresses on which packets arrive without a request."""
 
 ENDING: Final = ".sdp"
-"""Of session description files."""
+"""Ending of session description files."""
 
 MOST_BYTES: Final = 65536
-"""Of a session description, and of a packet."""
+"""Largest size of a session description, and of a packet."""
 
 RTP_VERSION: Final = 2
-"""In the first two bits of a packet (RFC 3550, 5.1)."""
+"""Version number in the first two bits of a packet (RFC 3550, 5.1)."""
 
 LEAST_HEAD: Final = 12
-"""Bytes of an RTP packet's head."""
+"""Smallest header of an RTP packet, in bytes."""
 
 FIXED_TYPES: Final = {26: "JPEG/90000", 32: "MPV/90000", 33: "MP2T/90000"}
-"""Payload types of video with a meaning of their own (RFC 3551, table 5); others are taken
-for H.264."""
+"""Payload types with a fixed video format (RFC 3551, table 5); all others are taken for H.264."""
 
 DESCRIPTION: Final = """v=0
 o=- 0 0 IN IP4 127.0.0.1
@@ -56,12 +56,12 @@ def is_description_file(text: str) -> bool:
 
 
 def describe_address(address: str, seconds: float) -> str | None:
-    """Return the session description of what arrives at an address; None where it is no RTP.
+    """Return the session description of the stream at an address; None if it is no RTP.
 
     Parameters
     ----------
     address
-        Such as ``udp://0.0.0.0:5600``. The host matters for multicast alone.
+        Address such as ``udp://0.0.0.0:5600``. The host matters only for multicast.
     seconds
         How long to wait for the first packet.
 
@@ -150,7 +150,7 @@ def wait_for_packet(port: int, group: str | None, seconds: float) -> bytes:
 
 
 def _find_group(host: str | None) -> str | None:
-    """Return a host that is a multicast group; None for any other."""
+    """Return the host if it is a multicast group, otherwise None."""
     try:
         return host if host and ip_address(host).is_multicast else None
     except ValueError:

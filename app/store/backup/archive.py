@@ -1,8 +1,8 @@
 """Archive of a library: one file with the database, the clips and a manifest of both.
 
 It may be written while a server works. The database is copied first, as one consistent state; every
-file that a row of it refers to is on disk by then, and stays until the next start of the server.
-Whatever database the library has, the archive's is SQLite, so that it goes into any other.
+file that a row refers to is on disk by then, and stays until the next start of the server. The
+archive's database is always SQLite, so that it can be restored into any other kind.
 """
 
 from __future__ import annotations
@@ -52,19 +52,19 @@ def write_backup(
     Parameters
     ----------
     data_dir
-        Its folder.
+        Data folder of the library.
     target
-        The file to write; one that exists is replaced once the new one is complete.
+        The file to write; an existing file is replaced once the new one is complete.
     clips
         Folder of the clips' files, by default the one in `data_dir`.
     objects
-        Has the files that are not in that folder.
+        Object store of the files that are not in that folder.
     url
         SQLAlchemy URL of the database, by default SQLite's file in `data_dir`.
 
     Returns
     -------
-    The number of clips in it.
+    Number of clips in the backup.
 
     Raises
     ------
@@ -112,9 +112,9 @@ def restore_backup(
 ) -> int:
     """Restore a backup into a data folder that holds no database, or into an empty PostgreSQL.
 
-    Every file is verified before the database appears, so that a restore that is broken off leaves
-    an empty library to a server, and can be repeated. `clips`, `objects` and `url` are as of a
-    backup; what an object store has is replaced.
+    Every file is verified before the database is written, so that an interrupted restore leaves an
+    empty library and can be repeated. `clips`, `objects` and `url` are as in `write_backup`; files
+    of the same name in the object store are replaced.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def restore_backup(
     Raises
     ------
     OsgError
-        When the file is no backup, is damaged, or the database is there and holds something.
+        When the file is no backup, is damaged, or the database exists and is not empty.
     StoreUnavailable
         When the object store or the database does not answer.
 
@@ -154,7 +154,7 @@ def restore_backup(
                     objects.upload(folder / name, name.removeprefix("clips/"))
             if (folder / "clips").is_dir():
                 shutil.rmtree(clips, ignore_errors=True)
-                # Perhaps to another disk: a rename alone would not do.
+                # The target may be on another disk, where a rename is not possible.
                 shutil.move(folder / "clips", clips)
 
         if url is None:
@@ -172,9 +172,9 @@ class _ClipFiles:
     Parameters
     ----------
     folder
-        Of the clips' files on this machine.
+        Folder of the clips' files on this machine.
     objects
-        Has those that are not in it.
+        Object store of the files that are not in the folder.
 
     """
 
@@ -184,7 +184,7 @@ class _ClipFiles:
 
     @contextmanager
     def open(self, clip_id: str, name: str, scratch: Path) -> Iterator[Path]:
-        """Yield where a file is; in `scratch` for so long if it is not on this machine."""
+        """Yield the path of a file; a file of the object store is in `scratch` meanwhile."""
         here, fetched = self._folder / clip_id / name, scratch / name
         if here.is_file() or not self._objects.download(f"{clip_id}/{name}", fetched):
             yield here
@@ -224,7 +224,7 @@ def _copy_rows(source: Database, target: Path) -> None:
 
 
 def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None:
-    """Copy the rows of a restored file into another database, and then place the clips."""
+    """Copy the rows of a restored file into another database, and place the clips."""
     with _opened(f"sqlite:///{file}") as source, _opened(url) as target:
         if not target.shared:
             raise OsgError("OSG_DATABASE_URL names SQLite; restore into a data folder instead")
@@ -232,7 +232,7 @@ def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None
             database.migrate()
         with source.reading() as rows, target.writing() as written:
             copy_rows(rows, written)
-            # Before the rows are there for good: none refers to what is not kept.
+            # Before the rows are committed, because no row may refer to a missing file.
             place_clips()
 
 
@@ -251,7 +251,7 @@ def _copy_file(database: Path, target: Path) -> None:
             source.backup(copy)
         except sqlite3.Error as error:
             raise OsgError(f"the database cannot be copied now: {error}; try again") from error
-        # One file, whatever the server's journal is.
+        # No journal beside the file, whatever mode the server uses.
         copy.execute("PRAGMA journal_mode=DELETE")
     _check_database(target)
 
@@ -274,7 +274,7 @@ def _files_by_clip(database: Path) -> dict[str, list[str]]:
             "AND job.status = ?) FROM clip",
             [JobStatus.DONE.value],
         ).fetchall()
-    # What an unfinished job has written so far, it writes again.
+    # The files of an unfinished job are left out: the job writes them again.
     made = (VIDEO, RECORDING, POSTER, FILMSTRIP)
     return {
         clip_id: list(dict.fromkeys([source, *(made if done else ())]))
@@ -308,7 +308,7 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
                 raise OsgError(f"{source.name} is a backup of another version of this program")
             digests = {name: digest for name, digest in manifest["files"].items() if digest}
             for name in digests:
-                # Only names that a backup of ours has become paths.
+                # Only names that our backups contain become paths.
                 if name != DATABASE and not _CLIP_FILE.fullmatch(name):
                     raise OsgError(f"{source.name} holds {name[:80]!r}, which no backup does")
             yield archive, digests
@@ -317,7 +317,7 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
     except (zipfile.BadZipFile, KeyError, ValueError, AttributeError) as error:
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
     except OSError as error:
-        # A damaged directory of the archive points before its beginning.
+        # A damaged archive directory points before the beginning of the file.
         if error.errno != errno.EINVAL:
             raise
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error

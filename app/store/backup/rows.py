@@ -1,4 +1,4 @@
-"""Rows of a whole database, copied to one of another kind."""
+"""Row copy: copies all rows of a database to a database of another kind."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ AT_ONCE: Final = 100
 """Rows read and written at a time: the document of a language has up to 64 MB, most have 100 kB."""
 
 OF_A_SERVER: Final = (ChangeCount, UploadReservation)
-"""Tables that say nothing about the library: what runs now, and what was read before."""
+"""Tables that belong to the running servers and not to the library."""
 
 
 def copy_rows(source: Session, target: Session) -> None:
-    """Copy the rows of all tables; both databases have the tables of this version.
+    """Copy the rows of all tables; both databases must have the tables of this version.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def copy_rows(source: Session, target: Session) -> None:
                 "name an empty one, which no server has used"
             )
     reading, writing = source.connection(), target.connection()
-    # Others refer to the first ones.
+    # Sorted, because later tables refer to earlier ones.
     for table in SQLModel.metadata.sorted_tables:
         if table.name in {each.__tablename__ for each in OF_A_SERVER}:
             continue
@@ -53,7 +53,7 @@ def snapshot(database: Database, target: Database) -> None:
 
 
 def _continue_numbers(connection: Connection) -> None:
-    """Have PostgreSQL number further entries after those that were copied."""
+    """Continue PostgreSQL's sequences after the numbers of the copied entries."""
     table = AuditEntry.__tablename__
     connection.execute(
         text(

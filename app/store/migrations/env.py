@@ -5,7 +5,7 @@ from sqlmodel import SQLModel
 
 from app.store import models
 
-# Importing the models is what fills the metadata.
+# Importing the models fills the metadata.
 assert models.Clip.__tablename__ in SQLModel.metadata.tables
 
 context.configure(

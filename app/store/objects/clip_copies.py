@@ -15,10 +15,11 @@ from app.store.errors import StoreError
 from app.store.objects.object_store import ObjectStore
 
 RECENT_SECONDS = 600.0
-"""Age of the last use before a copy may go: whoever was told where it is has opened it by then."""
+"""Seconds after its last use before a copy may be removed; who got its path has opened it by
+then."""
 
 LEFT_SHARE = 0.9
-"""Of the limit, left when room has been made: each time the whole folder is looked through."""
+"""Share of the limit to which copies are reduced; each reduction searches the whole folder."""
 
 AT_ONCE = 500
 """Clips whose jobs are looked up in one query."""
@@ -27,22 +28,22 @@ logger = logging.getLogger(__name__)
 
 
 class ClipCopies:
-    """Removes the copies that were not used for longest when they are too large together.
+    """Removes the least recently used copies when all copies together are too large.
 
-    One goes only if the object store has a file of that size under its name, its clip has no job
-    that waits or runs, nobody holds it, and it was not used of late. A copy's time of access is
-    when it was used last, also by an earlier run of the server.
+    A copy is removed only if the object store has a file of that name and size, its clip has no
+    waiting or running job, nobody holds it, and it was not used recently. A copy's access time is
+    the time of its last use, also in an earlier run of the server.
 
     Parameters
     ----------
     folder
-        Of the copies: ``<folder>/<clip id>/<file>``.
+        Folder of the copies: ``<folder>/<clip id>/<file>``.
     objects
-        What they are copies of.
+        Object store of the originals.
     limit
-        Bytes of all copies together; 0 is any number.
+        Most bytes of all copies together; 0 is no limit.
     at_rest
-        Returns which of some clips have a row, and no job that waits or runs.
+        Returns those of the given clips that have a row, and no waiting or running job.
 
     """
 
@@ -59,12 +60,12 @@ class ClipCopies:
         self._at_rest = at_rest
         self._size: int | None = None
         self._held: Counter[Path] = Counter()
-        # Between looking when a copy was used and removing it, nobody may begin to use it.
+        # A copy must not be used between the check of its last use and its removal.
         self._using = Lock()
         self._making_room = Lock()
 
     def use(self, file: Path) -> bool:
-        """Note that a file is used now; return whether it is there."""
+        """Record that a file is used now; return whether it exists."""
         if not self._limit:
             return file.is_file()
         with self._using:
@@ -77,7 +78,7 @@ class ClipCopies:
 
     @contextmanager
     def hold(self, files: Collection[Path]) -> Iterator[None]:
-        """Keep copies while the context lasts, as a process does that opens them later."""
+        """Keep copies while the context is open, for a process that opens them later."""
         with self._using:
             self._held.update(files)
         try:
@@ -90,7 +91,7 @@ class ClipCopies:
                 self.use(file)
 
     def add(self, file: Path) -> None:
-        """Count a copy that has come; where they are too large now, make room beside the caller."""
+        """Count a new copy; if all are too large now, make room in another thread."""
         if not self._limit:
             return
         if self._size is not None:
@@ -100,7 +101,7 @@ class ClipCopies:
             Thread(target=self.make_room, daemon=True, name="copies of clips").start()
 
     def make_room(self) -> int:
-        """Remove copies until they are within the limit; return how many went."""
+        """Remove copies until they are within the limit; return the number removed."""
         if not self._limit or not self._making_room.acquire(blocking=False):
             return 0
         try:
@@ -144,6 +145,6 @@ class ClipCopies:
             recent = time() - now.st_atime < RECENT_SECONDS
             changed = (now.st_mtime_ns, now.st_size) != (seen.st_mtime_ns, seen.st_size)
             if not (recent or changed or path in self._held):
-                path.unlink()  # Who has it open reads on.
+                path.unlink()  # A reader that has it open can read on.
                 return True
         return False

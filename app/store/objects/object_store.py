@@ -10,29 +10,29 @@ class ObjectStore(Protocol):
     """Keeps the files of clips, named ``<clip id>/<file>`` as in the clips' folder."""
 
     def upload(self, file: Path, name: str) -> None:
-        """Keep a complete file under `name`, in place of an earlier one.
+        """Store a complete file under `name`, in place of an earlier one.
 
         Raises
         ------
         StoreUnavailable
-            When it cannot be kept now.
+            When it cannot be stored now.
 
         """
         ...
 
     def download(self, name: str, target: Path) -> bool:
-        """Write what is kept under `name` to `target`; return False when there is nothing.
+        """Write the file stored under `name` to `target`; return False if there is none.
 
         Raises
         ------
         StoreUnavailable
-            When the store does not answer; what is at `target` then is of no use.
+            When the store does not answer; `target` may then be incomplete.
 
         """
         ...
 
     def size(self, name: str) -> int | None:
-        """Return the bytes of what is kept under `name`; None when there is nothing.
+        """Return the bytes of the file stored under `name`; None if there is none.
 
         Raises
         ------
@@ -43,12 +43,12 @@ class ObjectStore(Protocol):
         ...
 
     def remove(self, clip_id: str) -> None:
-        """Remove all that is kept of a clip; nothing happens when that is nothing.
+        """Remove all files of a clip; do nothing if there are none.
 
         Raises
         ------
         StoreUnavailable
-            When some of it may still be there.
+            When some files may be left.
 
         """
         ...

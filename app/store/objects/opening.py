@@ -12,12 +12,12 @@ def open_object_store(address: str | None) -> ObjectStore:
     Raises
     ------
     StoreUnavailable
-        When what the environment says about the object store cannot be used.
+        When the object store's settings in the environment cannot be used.
 
     """
     if address is None:
         return SharedFolder()
-    # Its library is an extra, and takes a third of a second to load.
+    # The S3 library is an extra, and takes a third of a second to load.
     from app.store.objects.s3 import S3Objects
 
     bucket, _, prefix = address.removeprefix("s3://").partition("/")

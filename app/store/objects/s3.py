@@ -15,13 +15,13 @@ from botocore.exceptions import BotoCoreError, ClientError
 from app.store.errors import StoreUnavailable
 
 CONNECT_SECONDS: Final = 5
-"""Longest time to reach the server: somebody waits for the answer."""
+"""Longest time in seconds to reach the server; a user waits for the answer."""
 
 READ_SECONDS: Final = 60
-"""Longest pause within an answer."""
+"""Longest pause in seconds within an answer."""
 
 TRIES: Final = 2
-"""Of one request, before it is given up with an error; uploads and jobs are tried again anyhow."""
+"""Attempts at one request before an error; uploads and jobs are repeated by their callers."""
 
 _NOTHING: Final = ("404", "NoSuchKey", "NotFound")
 
@@ -35,7 +35,7 @@ class S3Objects:
     Parameters
     ----------
     bucket
-        Its name; it must exist.
+        Name of the bucket, which must exist.
     prefix
         Beginning of all names in it, without slashes around it; may be empty.
 
@@ -55,7 +55,7 @@ class S3Objects:
             )
 
     def upload(self, file: Path, name: str) -> None:
-        """Keep a file; a large one goes in parts and appears when all of them are there."""
+        """Store a file; a large one is sent in parts and appears when all have arrived."""
         with self._errors():
             self._client.upload_file(str(file), self._bucket, self._prefix + name)
 

@@ -6,13 +6,13 @@ from pathlib import Path
 
 
 class SharedFolder:
-    """Keeps what is in the clips' folder; see `ObjectStore`."""
+    """Object store that consists of the clips' folder itself; see `ObjectStore`."""
 
     def upload(self, file: Path, name: str) -> None:
         """Do nothing: the file is where all servers look."""
 
     def download(self, name: str, target: Path) -> bool:
-        """Return False: what is not in the folder is nowhere."""
+        """Return False: a file that is not in the folder does not exist."""
         return False
 
     def size(self, name: str) -> int | None:

@@ -68,7 +68,7 @@ Part = Path | Shape | Disc | Words
 
 @dataclass(frozen=True)
 class Page:
-    """A page with its parts, those behind first."""
+    """A page with its parts, from back to front."""
 
     title: str
     width: float
@@ -81,7 +81,7 @@ BOLD = 1.2
 
 
 def estimate_width(text: str, size: float, *, bold: bool = False) -> float:
-    """Return about how wide a line of text is."""
+    """Return the estimated width of a line of text."""
     units = sum(
         1.0
         if unicodedata.east_asian_width(letter) in WIDE
@@ -100,7 +100,7 @@ def fit_size(text: str, size: float, width: float, *, bold: bool = False) -> flo
 
 
 def wrap(text: str, size: float, width: float, most: int) -> list[str]:
-    """Break a text into at most so many lines; what does not fit ends in an ellipsis."""
+    """Break a text into at most `most` lines; a longer text ends in an ellipsis."""
     lines: list[str] = []
     line = ""
     for word in _split(text, size, width):

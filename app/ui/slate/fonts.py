@@ -1,4 +1,4 @@
-"""Fonts of printed texts: the one that comes with the studio, or one of the system's."""
+"""Fonts of printed texts: finds the studio's own font, or one of the system."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from app.recognition.errors import OsgError
 FOLDER = Path(__file__).parent / "fonts"
 
 MOST_FONTS = 3000
-"""Font files that are looked at; a system with all of Noto has half of that."""
+"""Most font files that are searched; a system with all of Noto has half as many."""
 
 CACHED_FONTS = 64
-"""Fonts whose letters are remembered."""
+"""Number of fonts whose letters are cached."""
 
 
 @lru_cache(CACHED_FONTS)
@@ -29,7 +29,7 @@ def find_font(letters: frozenset[str], *, bold: bool = False) -> Path:
     Raises
     ------
     OsgError
-        When no font has them.
+        When no font has all letters.
 
     """
     needed = {ord(letter) for letter in letters if not letter.isspace()}
@@ -46,8 +46,8 @@ def find_font(letters: frozenset[str], *, bold: bool = False) -> Path:
 
 @lru_cache(CACHED_FONTS)
 def _letters_of(path: Path) -> frozenset[int]:
-    """Return the code points of a font; none where it cannot be read."""
-    # With the library that writes the PDF: it takes as long to import.
+    """Return the code points of a font; none if it cannot be read."""
+    # Imported here, like the library that writes the PDF, because it takes as long.
     from fontTools.ttLib import TTFont, TTLibError
 
     try:

@@ -24,12 +24,12 @@ from app.ui.slate.drawing import Disc, Page, Part, Path, Point, Shape, Words, fi
 
 A4: Final = (210.0, 297.0)
 MARGIN = 12.0
-"""Millimetres that every printer leaves white, and a slate's frame covers."""
+"""Margin in millimetres, which every printer leaves white and a slate's frame covers."""
 
 HEAD = 34.0
 FOOT = 12.0
 GAP = 6.0
-"""Between two gestures: a finger's nail, so that nobody reads the neighbour's name."""
+"""Millimetres between two gestures, a finger's nail, so that nobody reads the neighbour's name."""
 
 MOST_COLUMNS = 8
 
@@ -38,7 +38,7 @@ MEANING_SIZE = 3.6
 """Font sizes of the largest cells: readable through a mask at an arm's length and at half of it."""
 
 LARGEST_FIGURE = 62.0
-"""Beyond it a figure gets no clearer."""
+"""Largest side of a figure in millimetres; larger ones are no clearer."""
 
 SMALLEST_MOVE = 0.15
 """Share of the figure's extent below which a landmark is drawn as a dot: it is held still."""
@@ -47,7 +47,7 @@ ARROWS = (0.22, 0.55, 0.88)
 """Shares of a path's length with an arrow: soon after the start, midway, and near the end."""
 
 SHIFTS = (0.0, -0.06, 0.06)
-"""By how much an arrow may move along its path to where that is straightest, off corners."""
+"""Shares of the length by which an arrow may move along its path to the straightest place."""
 
 HAND: Final[tuple[tuple[Point, Point], ...]] = (
     ((0.33, 0.60), (0.14, 0.20)),
@@ -107,7 +107,7 @@ def _head(language: Language) -> Iterator[Part]:
 
 
 def _trigger(trigger: Trigger, left: float, top: float, width: float) -> Iterator[Part]:
-    """Draw what a diver holds before and after a gesture, and name it."""
+    """Draw the trigger that a diver holds before and after a gesture, with its name."""
     name, rule = "Vulcan salute", "Hold it for half a second before and after every gesture."
     if trigger.kind == "none":
         name, rule = "Without a trigger", "Rest for a second before and after every gesture."
@@ -146,7 +146,7 @@ def _arms(pose: ArmPose, left: float, top: float, size: float) -> Iterator[Part]
 
 
 def _roles(language: Language) -> str | None:
-    """Return what begins, ends and cancels a message of several gestures."""
+    """Return, in words, the gestures that begin, end and cancel a message of several gestures."""
     grammar = language.grammar
     if grammar is None:
         return None
@@ -200,7 +200,7 @@ def _gestures(language: Language) -> Iterator[Part]:
 
 
 def _side(columns: int, count: int, width: float, height: float) -> float:
-    """Return the side of a figure when there are so many columns."""
+    """Return the side of a figure on a page with that many columns."""
     cell = (width - GAP * (columns - 1)) / columns
     row = height / ceil(count / columns) - GAP
     # The text below a figure grows with it.
@@ -227,7 +227,7 @@ def _cell(gesture: Gesture, left: float, top: float, cell: float, side: float) -
 
 
 def _meaning(gesture: Gesture) -> str:
-    """Return what the robot does, or what the gesture looks like."""
+    """Return the robot's action, or else a description of the gesture."""
     if isinstance(gesture.command, str) and gesture.command:
         return gesture.command
     if isinstance(gesture.command, dict):
@@ -261,7 +261,7 @@ def _figure(gesture: Gesture, left: float, top: float, side: float) -> Iterator[
 
 
 def _hands(placed: PlacedHands, left: float, top: float, side: float) -> Iterator[Part]:
-    """Yield held hands, palm, fingers and initial; and the arrow from one shape to the next."""
+    """Yield held hands (palm, fingers and initial) and the arrow from one shape to the next."""
     every = np.concatenate([place for _, place in placed.hands])
     low, high = every.min(axis=0), every.max(axis=0)
     scale = HAND_SHARE * side / float((high - low).max())
@@ -281,7 +281,7 @@ def _hands(placed: PlacedHands, left: float, top: float, side: float) -> Iterato
 
 
 def _outline(gesture: Gesture, left: float, top: float, side: float) -> Iterator[Part]:
-    """Yield the outline of a trajectory image, of a gesture whose movement is not known."""
+    """Yield the outline of the trajectory image, for a gesture whose movement is not known."""
     found, _ = cv2.findContours(gesture.image, cv2.RETR_LIST, cv2.CHAIN_APPROX_SIMPLE)
     for contour in found:
         points = [(left + side * x / SIZE, top + side * y / SIZE) for x, y in contour[:, 0]]

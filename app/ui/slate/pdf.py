@@ -1,4 +1,4 @@
-"""Slate as PDF, with the letters that it needs inside."""
+"""Slate as PDF: writes a page with the letters that it needs embedded."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ BLACK = 0
 WHITE = 255
 
 BASELINE = 0.3
-"""Of a letter's size, from the middle of a cell of fpdf2 down to the baseline of its text."""
+"""Distance from the middle of a cell of fpdf2 down to the text's baseline, in font sizes."""
 
 
 def to_pdf(page: Page) -> bytes:
     """Return a page as a PDF document.
 
-    Letters are shaped and ordered as their script asks: Arabic ones are joined, and it and Hebrew
-    run from right to left.
+    Letters are shaped and ordered as their script requires: Arabic letters are joined, and Arabic
+    and Hebrew run from right to left.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def to_pdf(page: Page) -> bytes:
         When no font has the letters of a text.
 
     """
-    # It takes a quarter of a second to import, which nothing but a printed slate needs.
+    # The import takes a quarter of a second, and only a printed slate needs it.
     from fpdf import FPDF
 
     pdf = FPDF(unit="mm", format=(page.width, page.height))
@@ -46,7 +46,7 @@ def to_pdf(page: Page) -> bytes:
     pdf.set_auto_page_break(auto=False)
     pdf.set_text_shaping(True)
     pdf.add_page()
-    pdf.c_margin = 0  # of a cell, between its edge and its text
+    pdf.c_margin = 0  # space between a cell's edge and its text
     for part in page.parts:
         _draw(pdf, part)
     return bytes(pdf.output())
@@ -80,6 +80,6 @@ def _write(pdf: FPDF, words: Words) -> None:
     x, y = words.at
     shift = {"start": 0.0, "middle": 0.5, "end": 1.0}[words.align]
     width = pdf.get_string_width(text)
-    # Of fpdf2's ways to write, only cells shape their text.
+    # Only cells of fpdf2 shape their text.
     pdf.set_xy(x - shift * width, y - BASELINE * words.size)
     pdf.cell(w=width, h=0, text=text)

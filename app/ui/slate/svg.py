@@ -1,4 +1,4 @@
-"""Slate as SVG: its texts stay text, in the fonts of whoever opens it."""
+"""Slate as SVG: writes a page whose texts stay text, in the fonts of the reader's machine."""
 
 from __future__ import annotations
 

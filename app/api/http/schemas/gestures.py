@@ -49,7 +49,7 @@ class GestureDraft(NewDemonstration):
 
 
 MOST_GESTURES_AT_ONCE = 64
-"""Gestures of one request: more than any language for divers has."""
+"""Most gestures of one request: more than any language for divers has."""
 
 
 class GesturesDraft(Body):

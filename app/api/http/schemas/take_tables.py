@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 from app.api.http.schemas.values import Body, Identifier
 
 MOST_CLIPS = 500
-"""In one table."""
+"""Most clips of one table."""
 
 
 class TakeTableRequest(Body):

@@ -12,7 +12,7 @@ from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
 
 MOST_SECONDS = 24 * 60 * 60
-"""No clip is a day long; beyond it a number of seconds is a mistake."""
+"""Largest number of seconds in a request: no clip is a day long, so more is a mistake."""
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_LENGTH, pattern=r"\S")]
 Author = Annotated[str, Field(max_length=MAX_AUTHOR_LENGTH)]

@@ -16,13 +16,14 @@ from app.api.services.running_studio import CurrentStudio
 from app.store import ClipQuery, ClipStore, JobStatus
 
 MOST_LISTED: Final = 1000
-"""Clips of a page; a statement of SQLite has more values than that."""
+"""Most clips of a page, fewer than the values that a statement of SQLite can have."""
 
 LONGEST_NAME: Final = 200
-"""Characters of a clip's name."""
+"""Most characters of a clip's name."""
 
 KEPT_PAGES: Final = 16
-"""Pages that are kept written: open pages begin with the same one, and each has half a megabyte."""
+"""Number of serialised pages kept: browsers begin with the same one, and each has half a
+megabyte."""
 
 PAGE_HEADERS: Final = {
     "Link": {
@@ -79,7 +80,7 @@ def _read_all(clips: ClipStore) -> list[ClipView]:
 
 
 def read_page(clips: ClipStore, query: ClipQuery) -> tuple[list[ClipView], dict[str, str]]:
-    """Return the clips of a page, and the headers that say where it stands."""
+    """Return the clips of a page, and the headers that state its position."""
     page, headers = clips.page(query), {}
     if page.more:
         headers["Link"] = f'<?{_write_query(query, page.clips[-1].clip.id)}>; rel="next"'

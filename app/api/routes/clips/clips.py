@@ -102,7 +102,7 @@ async def upload_clip(
 
 async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> ClipAccepted:
     """Answer an upload whose key was used before; its file must be the same."""
-    # Read to the end: answering in the middle of a body would reach no browser.
+    # The body is read to its end, because a browser receives no answer in the middle of a body.
     partial = studio.clips.new_partial()
     try:
         await receive_file(request, partial, studio.settings)
@@ -229,7 +229,7 @@ def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileRes
 def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the landmarks in every frame."""
     poses = studio.recording(clip_id).poses
-    # Built and written at once: pydantic would walk a million numbers again to check them.
+    # Built and serialised here, because pydantic would validate a million numbers again.
     return Response(_poses_json(poses), media_type="application/json")
 
 

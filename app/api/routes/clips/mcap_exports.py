@@ -31,7 +31,7 @@ MEDIA_TYPE = "application/octet-stream"
 """MCAP has no registered media type."""
 
 MOST_RECOGNITIONS = 500
-"""In one bag, the newest: as many as `GET /recognitions` lists."""
+"""Most recognitions in one bag, the newest: as many as `GET /recognitions` lists."""
 
 ExportName = Annotated[
     str | None,
@@ -106,8 +106,8 @@ async def get_session(
 async def _write(
     request: Request, studio: Studio, clip_id: str, export_id: str, content: BagExportRequest
 ) -> Path:
-    """Write an export while its client waits, and return the file, which is then the caller's."""
-    # The name of a file that is still being written: what a crash leaves is swept at the start.
+    """Write an export while its client waits, and return the file, which the caller must remove."""
+    # The name marks a partial file, so that after a crash the next start removes it.
     target = studio.clips.new_partial()
     try:
         files = await run_in_threadpool(files_of, studio.clips, clip_id)
@@ -134,7 +134,7 @@ def _request(studio: Studio, clip_id: str) -> BagExportRequest:
     studio.recording(clip_id)  # raises while its poses are not found
     clip = studio.clips.get(clip_id).clip
     records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
-    # Takes are cut as the language does that was asked last.
+    # Takes are cut by the trigger of the language used last.
     last = records[0] if records else None
     trigger = (
         SALUTE

@@ -1,8 +1,8 @@
 """Resumable uploads by the tus protocol 1.0.0 (https://tus.io).
 
-Core, creation and termination, which every tus client knows. Not by a library: the kept one for
-FastAPI answers with files of its own that anybody may fetch, and knows neither our limits of rate,
-disk and queue nor how an upload becomes a clip.
+It implements core, creation and termination, which every tus client supports. No library is used:
+the maintained one for FastAPI serves the files to anybody, and has neither our limits of rate, disk
+and queue nor a way to make clips of uploads.
 """
 
 from __future__ import annotations
@@ -85,10 +85,12 @@ async def begin_upload(
         raise too_large(studio.settings.max_clip_bytes)
     given = _metadata(upload_metadata)
     name = display_name(given.get("filename", ""))
-    # Before the bytes come: a malformed field is refused without sending a gigabyte.
+    # Checked before the bytes arrive, so that a malformed field does not cost a gigabyte of
+    # traffic.
     fields = UploadFields.read(given).model_dump(exclude_none=True, mode="json")
     texts = {key: str(value) for key, value in fields.items()}
-    # One at a time: between the check and the file that reserves the space nobody else may begin.
+    # One at a time: no other upload may begin between the check and the file that reserves the
+    # space.
     beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
     async with beginning:
         reserved = await require_place_in_queue(request, studio)
@@ -152,7 +154,7 @@ async def append_part(
     try:
         upload = await run_in_threadpool(studio.uploads.get, upload_id)
     except NotFound:
-        # The answer to the last part was lost, and the part is sent again.
+        # The answer to the last part was lost, so the client sends the part again.
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
         if clip is None or upload_offset not in _ends(clip.clip.size):
             raise
@@ -217,14 +219,14 @@ def _metadata(header: str) -> dict[str, str]:
 
 
 def _ends(size: int) -> tuple[int, ...]:
-    """Return the offsets at which the last part of a whole file may be sent again."""
+    """Return the offsets at which the last part of a complete file may be sent again."""
     return (size, size - 1)
 
 
 async def _write(request: Request, upload: Upload, offset: int, studio: Studio) -> int:
-    """Write what comes from `offset` on to the disk; return the offset after it.
+    """Write the received bytes from `offset` on to the disk; return the offset after them.
 
-    What came before the connection was lost stays, so that the next part goes on after it.
+    Bytes received before a lost connection are kept, so that the next part continues after them.
     """
     with await run_in_threadpool(upload.path.open, "r+b") as file:
         file.seek(offset)
@@ -248,10 +250,10 @@ def _sync(file: BinaryIO) -> None:
 
 
 async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
-    """Make a clip of a file that is whole; of two who finish it the second gets the same one.
+    """Make a clip of a complete file; if two requests complete it, the second gets the same clip.
 
-    The upload is forgotten once it is a clip, or is refused for what it is. It stays when the
-    store cannot take it now.
+    The upload is removed once it is a clip, or is refused for its content. It stays when the store
+    is temporarily unavailable.
     """
     async with _finishing.setdefault(upload.id, asyncio.Lock()):
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)

@@ -24,10 +24,10 @@ router = APIRouter(prefix="/clips", tags=["clips"])
 WRISTS = ("left_wrist", "right_wrist")
 
 TIME_DIGITS = 6
-"""Microseconds: the finest that containers count in."""
+"""Decimals of a second: containers count in microseconds at the finest."""
 
 CURVE_DIGITS = 3
-"""More than a curve forty pixels high can show."""
+"""Decimals of a curve's value: more than a curve forty pixels high can show."""
 
 
 class TimelineView(BaseModel):
@@ -81,7 +81,7 @@ def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> File
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
     """Return each wrist's speed ``(T,)``, and the unit of its lengths.
 
-    NaN where a wrist was not seen, throughout where nobody is in view or it is not given.
+    NaN where a wrist was not seen, and throughout if nobody is in view or the wrist is missing.
     """
     count = len(recording.poses)
     try:

@@ -47,17 +47,17 @@ from app.ui.direction_marks import mark_gesture
 SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
 
 UNNAMED = "this gesture"
-"""What messages call a gesture that has no label yet."""
+"""Name in messages for a gesture that has no label yet."""
 
 DISPLACEMENT_DIGITS = 3
-"""Millimetres of a diver, in torso lengths."""
+"""Decimals of a displacement in torso lengths: about a millimetre on a diver."""
 
 TORSO_PIXELS = 160
-"""Height of a torso where a demonstration is drawn without its clip: the picture of a diver from
-the head to the knees is then about 640 high, as a clip's."""
+"""Height in pixels of the torso in a demonstration drawn without its clip: the picture of a diver
+from the head to the knees is then about 640 pixels high, as a clip's picture."""
 
 BORDER = 40
-"""Pixels around it: a head, of which only the middle is followed, is half as high."""
+"""Pixels around the drawing: room for the half of the head beyond its middle, which is followed."""
 
 HELD_WORDS = "it is a held hand shape, in which nothing moves"
 
@@ -213,7 +213,7 @@ class _Draft:
 
     @property
     def label(self) -> str:
-        """Its label, or what takes the place of one."""
+        """Label of the gesture, or `UNNAMED`."""
         label = self.request.label or UNNAMED
         while self.request.label is None and label in self.of.labels:
             label += "'"
@@ -237,7 +237,7 @@ class _Draft:
         return self.language().gesture(self.label)
 
     def trajectory(self) -> Trajectory | None:
-        """Return all that is known of the movement; None where that is nothing."""
+        """Return the trajectory with all known landmarks; None if none is known."""
         if self.demonstration is None:
             return gesture_in(self.of, self.label).trajectory
         try:
@@ -330,7 +330,7 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
 
 
 def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, str]:
-    """Say what each switch comes to in this language."""
+    """Describe the effect of each switch in this language."""
     if gesture.is_held:
         words = {"mirror": _held_mirror_words(gesture), "hand_shape": HELD_SHAPE_WORDS}
         return {**dict.fromkeys(SWITCHES, HELD_WORDS), **words}
@@ -389,10 +389,10 @@ def _held_mirror_words(gesture: Gesture) -> str:
 
 
 def _lay_out(trajectory: Trajectory) -> PosesView:
-    """Place a trajectory in a picture that it fills, x right, y down."""
+    """Scale a trajectory to fill a picture, x right, y down."""
     known = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
     low, high = known.min(axis=0), known.max(axis=0)
-    # Without a torso the unit is the largest extent, which then is as high as two torsos.
+    # Without a torso the unit is the largest extent, which is drawn as high as two torsos.
     scale = TORSO_PIXELS * (1 if trajectory.unit == "torso_length" else 2)
     xy = (trajectory.xy - low) * scale + BORDER
     size = np.ceil((high - low) * scale) + 2 * BORDER

@@ -46,7 +46,7 @@ async def check_language(
     who asked for it has left.
     """
     state = await run_in_threadpool(studio.languages.get, language_id, revision)
-    # Another version of the recogniser may judge the same revision otherwise.
+    # Another version of the recogniser may give another report for the same revision.
     tag = f'"{state.revision.revision}-{__version__}"'
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})

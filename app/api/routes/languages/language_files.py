@@ -27,7 +27,7 @@ from app.recognition.language.schema import FORMAT, VERSION
 from app.store import Draft, LanguageState
 
 SMALL_BYTES = 512 * 1024
-"""Size up to which a file is read in a thread, within half a second: thirty gestures of ours."""
+"""Largest file that is read in a thread, within half a second: thirty gestures in our format."""
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -50,7 +50,7 @@ async def import_language(
     name: Annotated[Name, Query()] = "imported",
 ) -> LanguageView:
     """Add the language of a file: ours, or the published implementation's (then under `name`)."""
-    # On disk first: many that are sent slowly must not fill the memory.
+    # Stored on disk first, because many slow uploads must not fill the memory.
     partial = studio.clips.new_partial()
     try:
         size = await receive_body(request, partial, studio.settings)
@@ -148,7 +148,7 @@ def _content(studio: Studio, state: LanguageState, format: FileFormat) -> str:
 
 
 async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLanguage:
-    """Read a language file; a large one in a process of its own, with limits."""
+    """Read a language file; a large one in a separate process, with limits."""
     if size <= SMALL_BYTES:
         content = await run_in_threadpool(file.read_bytes)
         return await run_in_threadpool(read_language, content, name)

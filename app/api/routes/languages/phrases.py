@@ -19,10 +19,10 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
 
 CACHED_GRAMMARS = 64
-"""Revisions whose ambiguities are kept ready: a few sentences each."""
+"""Number of revisions whose ambiguities are cached: a few sentences each."""
 
 MOST_SHOWN = 100
-"""Gestures of one simulation: longer than any message may be."""
+"""Most gestures of one simulation: more than any message may have."""
 
 Shown = Annotated[
     list[Annotated[str, Field(max_length=MAX_LABEL_LENGTH)]],

@@ -51,6 +51,6 @@ def get_slate_as_pdf(
 
 
 def _file(content: bytes, media_type: str, name: str) -> Response:
-    # Never shown in the page's own origin: a label is a stranger's text.
+    # Sent as a download and not shown in our origin, because labels may be a stranger's text.
     disposition = f"attachment; filename*=utf-8''{quote(name, safe='')}"
     return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})

@@ -83,7 +83,7 @@ def remove_labelled_take(language_id: str, take_id: str, studio: CurrentStudio) 
 
 
 def _changed(studio: Studio, state: LanguageState) -> TestSetView:
-    """Tell the open pages, and return the test set."""
+    """Publish the change to the open pages, and return the test set."""
     studio.broadcast.publish("test-sets", id=state.record.id)
     return view_test_set(studio, state)
 

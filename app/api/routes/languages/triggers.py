@@ -48,7 +48,7 @@ def change_trigger(
 
 
 def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
-    """Return the pose that is held in a range of a clip; it is refused with its place."""
+    """Return the pose held in a range of a clip; a problem names its place in the request."""
     poses = studio.recording(where.clip_id).poses
     first = float(poses.time[0]) if where.start is None else where.start
     last = float(poses.time[-1]) if where.end is None else where.end

@@ -19,7 +19,7 @@ from app.api.services.stored_recognitions import (
 from app.recognition.explanation.explanation import explain
 
 MOST_LISTED = 500
-"""Recognitions in one answer; the page shows the newest of one clip or language."""
+"""Most recognitions in one answer; the page shows the newest of one clip or language."""
 
 router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 

@@ -10,18 +10,18 @@ depends_on = None
 
 
 def upgrade() -> None:
-    """Name the source of every clip; what was kept of keypoint files is kept of any file."""
+    """Add the source of every clip; rename the column of keypoint options to one for any file."""
     op.add_column(
         "clip", sa.Column("source", sa.String(16), nullable=False, server_default="video")
     )
-    # Not in a batch: SQLite would make the table anew, and the jobs refer to it.
+    # Not in a batch: SQLite would recreate the table, and the jobs refer to it.
     op.execute("ALTER TABLE clip RENAME COLUMN keypoints TO options")
     op.execute("UPDATE clip SET source = 'bag' WHERE topics <> '[]'")
     op.execute("UPDATE clip SET source = 'keypoints' WHERE options IS NOT NULL")
 
 
 def downgrade() -> None:
-    """Take the name away again."""
+    """Drop the source and restore the column of keypoint options."""
     op.execute("ALTER TABLE clip RENAME COLUMN options TO keypoints")
     with op.batch_alter_table("clip") as table:
         table.drop_column("source")

@@ -10,7 +10,7 @@ depends_on = None
 
 
 def upgrade() -> None:
-    """Make the table; of gestures saved before nobody knows."""
+    """Create the table; the sources of gestures saved before are unknown."""
     op.create_table(
         "demonstration_source",
         sa.Column("trajectory", sa.String(64), nullable=False),

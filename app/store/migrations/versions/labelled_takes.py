@@ -24,7 +24,7 @@ _recognitions = sa.table(
 
 
 def upgrade() -> None:
-    """Make the tables; fill the first from the recognitions that were the test until now."""
+    """Create the tables; fill the first from the recognitions that served as the test until now."""
     takes = op.create_table(
         "labelled_take",
         sa.Column("id", sa.String(32), nullable=False),

@@ -1,4 +1,4 @@
-"""Migration: practice, which is the gestures asked of divers and their recognitions."""
+"""Migration: practice takes, the gestures that divers were asked to show and their recognitions."""
 
 import sqlalchemy as sa
 from alembic import op

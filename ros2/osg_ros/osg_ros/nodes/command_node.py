@@ -149,7 +149,7 @@ class CommandNode(ManagedNode):
     def _hear(self, recognition: GestureRecognition) -> None:
         self.count_input()
         stamp = to_nanoseconds(recognition.header.stamp)
-        # `rejected` wins where the message has a label too.
+        # `rejected` takes precedence over a label in the same message.
         label = None if recognition.rejected else recognition.label or None
         start = to_nanoseconds(recognition.start)
         gesture = RecognizedGesture(
@@ -157,7 +157,7 @@ class CommandNode(ManagedNode):
             recognition.confidence,
             stamp / NANOSECONDS,
             recognition.language_id,
-            # Publishers that are not ours may leave it out.
+            # Publishers of other projects may leave it out.
             start=start / NANOSECONDS if start else None,
             body_id=recognition.body_id,
         )

@@ -96,12 +96,12 @@ class GestureNode(ManagedNode):
             self._estimator = None
 
     def facts(self) -> Mapping[str, str]:
-        """Return the language for diagnostics, and how the recogniser is."""
+        """Return the language and the state of the recogniser, for diagnostics."""
         worker = self._worker.facts() if self._worker else {}
         return {**(self._service.facts() if self._service else {}), **worker}
 
     def watch(self) -> None:
-        """End the process where the recogniser does not go on."""
+        """End the process if the recogniser has stopped for good."""
         if self._worker is not None and (fault := self._worker.find_fault()):
             self.fail(fault)
 

@@ -20,11 +20,11 @@ MOST_FAILURES = 3
 """Failures within `FAILURE_SECONDS` after which the recogniser is not started again."""
 
 FAILURE_SECONDS = 60.0
-"""Seconds after which a failure no longer counts; an error in every picture is found before."""
+"""Seconds after which a failure no longer counts; an error in every picture is found sooner."""
 
 STUCK_SECONDS = 120.0
-"""Seconds without progress after which the thread hangs. The first picture takes longest: some
-providers compile the models for up to a minute."""
+"""Seconds without progress after which the thread counts as hanging. The first picture takes
+longest: some providers compile the models for up to a minute."""
 
 LONGEST_FRAME = 10.0
 """Seconds to wait for the last frame when the thread is stopped; a slow robot needs one second."""
@@ -49,8 +49,8 @@ class FrameHandler(Protocol):
 class GestureWorker:
     """Thread that runs `app.robot.Runtime` until it is stopped.
 
-    After a failure the recogniser is started again with an empty memory. One that fails again and
-    again, or hangs, is a fault (`find_fault`) on which the process should end.
+    After a failure the recogniser is restarted with an empty memory. Repeated failures, or a hang,
+    are a fault (`find_fault`) on which the process should end.
 
     Parameters
     ----------
@@ -95,12 +95,12 @@ class GestureWorker:
         self._next = language
 
     def facts(self) -> Mapping[str, str]:
-        """Return for diagnostics how the recogniser is."""
+        """Return the state of the recogniser, for diagnostics."""
         state = self.find_fault() or "working"
         return {"recogniser": state, "recogniser failures": str(self._failed)}
 
     def find_fault(self) -> str:
-        """Return why the recogniser does not go on; empty where it does."""
+        """Return why the recogniser has stopped; empty while it works."""
         if self._fault or self._stopping:
             return self._fault
         if not self._thread.is_alive():
@@ -139,7 +139,7 @@ class GestureWorker:
             self._handler.handle_event(self._source, event, self._listener.language)
 
     def _note_failure(self, error: Exception) -> None:
-        """Report a failure, and start again with an empty memory where it is not the last."""
+        """Report a failure, and restart with an empty memory unless it is the last one."""
         now = time.monotonic()
         self._failed += 1
         self._failures.append(now)

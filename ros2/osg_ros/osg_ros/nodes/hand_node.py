@@ -23,12 +23,12 @@ from osg_ros.topics.synchronization import StampPairs
 
 
 class ReceivedBody:
-    """The body that the pose node found in the picture at hand; a `BodyFinder`.
+    """The body that the pose node found in the current picture; a `BodyFinder`.
 
     Attributes
     ----------
     body
-        It, or None where none was seen.
+        The body, or None if none was seen.
 
     """
 
@@ -50,7 +50,7 @@ class ReceivedBody:
 class HandNode(ManagedNode):
     """Node that publishes the hands in pictures, with the bodies of the pose node.
 
-    It needs the body because it searches a distant diver's hands at the end of the arms.
+    It needs the body to search a distant diver's hands at the ends of the arms.
     """
 
     def __init__(self, **options: Any) -> None:

@@ -130,7 +130,7 @@ class ManagedNode(LifecycleNode):  # type: ignore[misc]  # rclpy brings no types
         """Release what `prepare` acquired, also after it failed half way."""
 
     def watch(self) -> None:
-        """Call `fail` where the node does not work any more; called before every report."""
+        """Call `fail` if the node no longer works; called before every report."""
 
     def fail(self, reason: str) -> None:
         """Let the process end, so that its supervisor starts it again."""

@@ -20,7 +20,7 @@ NOT_STARTED = 1
 """Exit code when a node with autostart does not start; the log has the reason."""
 
 FAILED = 3
-"""Exit code when a node does not work any more; a supervisor such as systemd starts it again."""
+"""Exit code when a node no longer works; a supervisor such as systemd restarts the process."""
 
 LONGEST_WAIT: Final = 0.5
 """Longest delay until a signal is handled while no messages arrive, in seconds."""

@@ -110,7 +110,7 @@ class RecognitionNode(ManagedNode):
             self._service = None
 
     def facts(self) -> Mapping[str, str]:
-        """Return the language for diagnostics, and how many keypoints came too late."""
+        """Return the language and the number of late keypoints, for diagnostics."""
         listener = self._listener
         late = {"late or repeated": str(listener.order.late)} if listener else {}
         return {**(self._service.facts() if self._service else {}), **late}

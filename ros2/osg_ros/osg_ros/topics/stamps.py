@@ -47,7 +47,7 @@ class Stopwatch:
 
 
 class StampOrArrival:
-    """Gives messages without a stamp, which is 0, the time of their arrival.
+    """Gives messages without a stamp (a stamp of 0) the time of their arrival.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class StampOrArrival:
         self._told = False
 
     def __call__(self, stamp: Time) -> int:
-        """Return nanoseconds: the stamp, or now where there is none."""
+        """Return the stamp in nanoseconds, or the present time if there is none."""
         if nanoseconds := to_nanoseconds(stamp):
             return nanoseconds
         if not self._told:

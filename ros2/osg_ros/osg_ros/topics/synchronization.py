@@ -9,8 +9,8 @@ First = TypeVar("First")
 Second = TypeVar("Second")
 
 MOST_WAITING = 15
-"""Messages kept until their partner arrives: half a second of a camera at 30 frames a second, as
-long as pose estimation takes on a slow robot. Raw pictures limit it, as they fill memory."""
+"""Most messages kept until their partners arrive: half a second of a camera at 30 frames a second,
+the time of pose estimation on a slow robot. More raw pictures would fill the memory."""
 
 
 class StampPairs(Generic[First, Second]):

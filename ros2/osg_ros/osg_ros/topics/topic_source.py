@@ -68,7 +68,7 @@ class TopicSource:
 
     @property
     def frame_size(self) -> tuple[int, int]:
-        """Width and height of the first picture; waits for it, and is 0, 0 when closed before."""
+        """Width and height of the first picture, which it waits for; 0, 0 if closed before."""
         while self._first is None and not self._closed:
             self._first = self._take_frame(None)
         if self._first is None:
@@ -98,7 +98,7 @@ class TopicSource:
             self._news.notify_all()
 
     def _take_frame(self, seconds: float | None) -> Frame | None:
-        """Wait for the next picture and decode it; None where none came or it is unreadable."""
+        """Wait for the next picture and decode it; None if none came or it is unreadable."""
         with self._news:
             if self._newest is None and not self._closed:
                 self._news.wait(seconds)
@@ -110,7 +110,7 @@ class TopicSource:
             image = self._decoder.decode(message)
         except OsgError as error:
             self.unreadable += 1
-            reason = str(error).partition(";")[0]  # what to do next is about recordings
+            reason = str(error).partition(";")[0]  # the rest is advice about recordings
             self._report_problem(
                 f"the pictures on {self.name} arrive and cannot be decoded "
                 f"({self.unreadable} so far): {reason}"
