@@ -98,15 +98,15 @@ class Recognizer:
         rejected where it is beyond its thresholds, see `rejection`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
-        still of insufficient quality get no label, and `fault` gives the reason. So do poses in
-        which no hand is seen though the hand shape of the nearest gesture counts.
-        Three hand shapes in sequence, more than a gesture has, are a finding; none of them is
-        compared.
+        still of insufficient quality get no label, and `fault` gives the reason. The same applies
+        to poses in which no hand is seen although the hand shape of the nearest gesture counts.
+        Three hand shapes in sequence, more than a gesture has, are reported as a finding; none of
+        them is compared.
 
         Raises
         ------
         PoseError
-            When no landmark is seen, or none that a gesture needs moves and no hand is seen that
+            When no landmark is seen, or when no landmark that a gesture needs moves and no hand
             holds a shape.
 
         """
@@ -160,7 +160,7 @@ class Recognizer:
         return poor
 
     def _find_unseen_shape(self, table: ScoreTable, nearest: str) -> str | None:
-        """Return that the hand is not seen whose shape counts, in words; None where it is."""
+        """Return a message if the hand whose shape counts is not seen, else None."""
         counting = self.sensitivity(nearest)
         if counting is None or not counting.hand_shape:
             return None
@@ -178,7 +178,7 @@ class Recognizer:
         return f"the hand shape of {nearest!r} counts, and {unseen}: show the hand"
 
     def _list_twins(self, gesture: int) -> list[str]:
-        """Return the labels of the gestures that only the hand shape tells from one."""
+        """Return the labels of the gestures that differ from the given one in hand shape only."""
         pairs = sorted(pair for pair in self.vote.shape_twins if gesture in pair)
         others = [other for pair in pairs for other in pair if other != gesture]
         return [self.language.labels[other] for other in others]
@@ -205,7 +205,7 @@ class Recognizer:
     def _condense(
         self, poses: PoseSequence, trajectory: Trajectory, holds: Sequence[Hold]
     ) -> Trajectory:
-        """Condense a query, with the hands that the language needs: held ones, moving ones."""
+        """Condense a query, and add the held and moving hands that the language needs."""
         trajectory = keep_holds(trajectory, holds)
         if self._reads_moving_hands:
             trajectory = replace(trajectory, moving_hands=find_moving_hands(poses))
@@ -252,7 +252,7 @@ class Recognizer:
         return self.vote.landmarks
 
     def sensitivity(self, label: str) -> Sensitivity | None:
-        """Return what counts of a gesture in this language: direction, tempo, sides, hand shape.
+        """Return which properties of a gesture count: direction, tempo, sides, hand shape.
 
         None in profile ``paper`` and for gestures imported without demonstration: there only
         drawings are compared, whatever the switches are.

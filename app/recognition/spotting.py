@@ -66,7 +66,7 @@ RANK_PER_SECOND = 2.0
 """Gain in rank, in log-odds, per second of a stretch's duration."""
 
 LONGEST_BETWEEN = 60.0
-"""Most seconds from a trigger gesture to the end of the one that closes, as of takes."""
+"""Most seconds from the start trigger gesture to the end of the stop one, as for takes."""
 
 BEAT = 1e-6
 """Tolerance in seconds when times are compared."""
@@ -109,7 +109,7 @@ class TriggerGate:
     Parameters
     ----------
     trigger
-        Of kind ``gesture``; any other lets all through.
+        The trigger, of kind ``gesture``; with any other kind all gestures pass.
 
     """
 
@@ -143,12 +143,12 @@ class Spotter:
     Parameters
     ----------
     recognizer
-        Of profile ``full``. Where the trigger of its language is a gesture, only what lies between
-        two trigger gestures is reported, once the second is seen.
+        A recogniser of profile ``full``. Where the trigger of its language is a gesture, only
+        gestures between two trigger gestures are reported, once the second is seen.
     confident
-        Least confidence of what is reported.
+        Least confidence of a reported gesture.
     triggered
-        False: the language's trigger does not matter.
+        False: the language's trigger is ignored.
 
     Raises
     ------

@@ -1,9 +1,9 @@
 """Calibration: computes each gesture's rejection thresholds from its demonstration alone.
 
 The threshold of a voter is a multiple (`REACH`) of the geometric mean of its distances to simulated
-takes (`variation`) and of its within-class distance, since the logarithms of distances spread alike
-for all gestures. Other people's takes are about twice as far as the demonstrator's own. Simulated
-out-of-vocabulary movements that would be accepted lower the thresholds a little.
+takes (`variation`) and of its within-class distance, because the logarithms of distances have about
+the same spread for all gestures. Other people's takes are about twice as far as the demonstrator's
+own. Simulated out-of-vocabulary movements that would be accepted lower the thresholds a little.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ OWN = 0.5
 geometric mean of both."""
 
 REACH = 5.0
-"""A threshold in typical distances of the demonstrator's own further takes.
+"""Ratio of a threshold to the typical distance of the demonstrator's own further takes.
 
-The median over seven recorded sets of what one in twenty of other people's takes exceeds
+Median over seven recorded sets of the ratio that one in twenty of other people's takes exceeds
 (`benchmarks/studies/people.md`)."""
 
 CUES: Final = tuple(voter.name for voter in VOTERS if voter.cue is not None)
@@ -58,8 +58,8 @@ LEAST_DISTANCE = 0.1
 hardly differ."""
 
 HAND_REACH = 4.8
-"""A threshold of a hand voter in typical distances of the demonstrator's own further takes
-(`Voter.within`), for a hand of `TYPICAL_PALM`: one in seventy foreign shapes is accepted
+"""Ratio of a hand voter's threshold to the typical distance of the demonstrator's own further takes
+(`Voter.within`), for a hand of `TYPICAL_PALM`: one in seventy out-of-vocabulary shapes is accepted
 (`benchmarks/studies/hand-shapes.md`)."""
 
 TYPICAL_PALM = 1.9
@@ -74,8 +74,8 @@ LEAST_SHARE = 0.9
 accepts one in a hundred more of them (`benchmarks/studies/rejection.md`)."""
 
 PLAUSIBLE = 0.2
-"""Novelty below which an out-of-vocabulary movement is in fact the gesture: about that of a typical
-take, 1 / `REACH`."""
+"""Novelty below which a simulated out-of-vocabulary movement counts as the gesture itself: about
+the novelty of a typical take, 1 / `REACH`."""
 
 DIGITS = 4
 """Significant digits of a threshold, far more than its accuracy."""
@@ -83,13 +83,14 @@ DIGITS = 4
 HAND_RULE = repr(
     (HAND_REACH, TYPICAL_PALM, PALM_EXPONENT, *(voter.within for voter in HAND_VOTERS))
 )
-"""What thresholds of held hand shapes depend on beside the hands."""
+"""Settings that thresholds of held hand shapes depend on, beside the hands."""
 
 MOVING_HAND_RULE = repr((HAND_RULE, SAME_MOVEMENT, OTHER_SHAPE))
-"""What thresholds of moving hands depend on beside the hands."""
+"""Settings that thresholds of moving hands depend on, beside the hands."""
 
 RULE = repr((*CUES, REACH, OWN, LEAST_SHARE, SPREADS["same"], CLEAR_SHARE))
-"""What thresholds depend on beside the gestures; those of another rule are computed again."""
+"""Settings that thresholds depend on, beside the gestures; thresholds of other settings are
+computed again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ def calibrate(gestures: Sequence[Gesture]) -> tuple[Gesture, ...]:
 
 
 def _add_hand_thresholds(gesture: Gesture, hands: Sequence[HandShape]) -> Gesture:
-    """Return a movement with thresholds for its hand shape; as it is where that does not count."""
+    """Return a movement with thresholds for its hand shape; unchanged where that does not count."""
     if not hands:
         return gesture
     thresholds = {**gesture.thresholds, **_choose_hand_thresholds([hands])}
@@ -212,8 +213,8 @@ def _measure_clearness(
 ) -> FloatArray:
     """Compute the clearness of takes ``(N,)`` by their ``(V, N)`` distances to their gesture.
 
-    The other gestures are as far from a take as from the demonstration: comparing every take with
-    all of them would take G times as long.
+    The other gestures are taken to be as far from a take as from the demonstration, because
+    comparing every take with all of them would take G times as long.
     """
     assert gesture.trajectory is not None  # it has a row
     others = np.delete(vote.compare(gesture.trajectory, drawn=False).scores, index)

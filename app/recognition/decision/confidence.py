@@ -14,12 +14,13 @@ CONFIDENCE_AT_ONE = -1.15
 CONFIDENCE_PER_NOVELTY = -0.9
 CONFIDENCE_PER_SHARE = -0.95
 """Coefficients of `estimate_confidence`, fitted on eleven sets, in languages of half of the
-classes; fitted on ten, they are within 0.2 of these but without `utkinect`
-(`benchmarks/studies/people.md`)."""
+classes. Coefficients fitted on ten of the sets differ by at most 0.2, except those fitted without
+`utkinect` (`benchmarks/studies/people.md`)."""
 
 TIE_EXPONENT = 5.0
 """Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
-seven recorded sets. With a runner-up 1.2 times as far it is 0.71, twice as far 0.97."""
+seven recorded sets. The probability is 0.71 with a runner-up 1.2 times as far, and 0.97 with one
+twice as far."""
 
 
 def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
@@ -29,17 +30,17 @@ def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     nearest and t of the second gesture, 0.02 added to each: novelty separates gestures from
     out-of-vocabulary movements, the ratio separates the two gestures. The coefficients are a
     logistic regression on other people's recordings, half of them out-of-vocabulary; the
-    reliability table is in `docs/results.md`. At most ``1 / (1 + (s / t)^5)``: two gestures
-    equally near have probability 0.5, however near.
+    reliability table is in `docs/results.md`. The result is at most ``1 / (1 + (s / t)^5)``: of two
+    equally near gestures, each has probability 0.5, however near they are.
 
     Parameters
     ----------
     novelty
-        Of the nearest gesture. NaN where it has no thresholds: the score is used instead, which is
-        about 1 for another gesture.
+        Novelty of the nearest gesture. NaN for a gesture without thresholds: then the score is
+        used, which is about 1 for another gesture.
     nearest, second
-        Scores of `fusion.fuse`; without a second gesture infinite, which counts as the typical
-        distance 1.
+        Scores by `fusion.fuse`. Without a second gesture `second` is infinite and counts as the
+        typical distance 1.
 
     """
     far = math.log((novelty if math.isfinite(novelty) else nearest) + SCORE_FLOOR)

@@ -93,7 +93,8 @@ class FusedVote:
         )
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         self._calibrate(sides)
-        # Last: weight factors must not change which directions and tempos the language needs.
+        # Set last, because weight factors must not change which directions and tempos the language
+        # needs.
         self._factors = tuning.weights_of(VOTER_NAMES)
         self._weights: FloatArray = self._weights * self._factors
         self._draws = self._needs_drawings()
@@ -137,7 +138,7 @@ class FusedVote:
         self._motions = self._motions.take(kept)
 
     def _compare_movements_of(self, own: FloatArray) -> FloatArray:
-        """Return the scores of the references' movements as shown, ``(S, S)``; infinite: none."""
+        """Return the scores of the references' movements as shown, ``(S, S)``; infinite if none."""
         rows = self._motions.as_shown
         scores = np.full((len(self._owners), len(self._owners)), np.inf)
         members = self._motions.gestures[rows]
@@ -151,7 +152,7 @@ class FusedVote:
         return bool(raised) or not with_movement.issuperset(self._shapes.members)
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return what counts of a gesture; None without movement."""
+        """Return which properties of a gesture count; None for a gesture without movement."""
         rows = np.flatnonzero(self._motions.gestures == gesture)
         if not len(rows):
             return None
@@ -169,9 +170,9 @@ class FusedVote:
         return self._moving_shapes.twins
 
     def find_counting_hands(self, gesture: int) -> tuple[HandShape, ...]:
-        """Return the hands of a gesture's movement whose shape counts, of one demonstration.
+        """Return the hands whose shape counts in a gesture's movement, of one demonstration.
 
-        The first one in which they are known; none where their shape does not count.
+        It is the first one in which they are known. Empty where their shape does not count.
         """
         counting = self._moving_shapes.counting & (self._owners == gesture)
         first = np.flatnonzero(counting)[:1].tolist()
@@ -251,19 +252,19 @@ class FusedVote:
     def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
         """Compare a condensed query with the nearest demonstration of every gesture.
 
-        Mirror images count as demonstrations. Demonstrations with depth are turned to how the
-        query's diver stands (`views`); where that is not known, to the view in which any of them
+        Mirror images count as demonstrations. Demonstrations with depth are turned to face as the
+        diver of the query does (`views`); where that is not known, to the view in which one of them
         is nearest.
 
-        The shape voters compare only where a gesture has no demonstration, or where the tuning
-        gives one of them another weight: otherwise they take a quarter of the time and change no
-        set's accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn`
-        they are left out in any case.
+        The shape voters are used only where a gesture has no demonstration or the tuning raises the
+        weight of one of them. Otherwise they would take a quarter of the time and change no set's
+        accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn` they
+        are left out in any case.
 
-        A query that holds a hand shape is compared with the held shapes, one that holds two in
-        sequence with the sequences, and every other one with the movements. One that holds a shape
-        and moves as little as the smallest movement may be either: it is the movement if it is
-        accepted as one, else what it is less novel as.
+        A query that holds one hand shape is compared with the held shapes, a query that holds two
+        in sequence with the sequences, and any other query with the movements. A query that holds a
+        shape and moves about as little as the smallest movement is compared with both: it is the
+        movement if it is accepted as one, otherwise the alternative of lower novelty.
         """
         if not len(self._hands):
             return self._compare_movements(trajectory, drawn)
@@ -472,7 +473,7 @@ class FusedVote:
 
 
 def _measure_novelty(table: ScoreTable) -> float:
-    """Return the novelty of a query as the nearest gesture; 0 without thresholds for it."""
+    """Return the novelty of a query for its nearest gesture; 0 if that has no thresholds."""
     if not np.isfinite(table.scores).any():
         return np.inf
     return float(np.nan_to_num(table.novelty[table.scores.argmin()], posinf=np.inf))

@@ -70,8 +70,8 @@ def weigh_distances(distances: FloatArray, weights: FloatArray, between: FloatAr
 
     Returns
     -------
-    Of the shape of `distances`, ``(V, ...)``: 0 where a voter has no weight or cannot compare, all
-    infinite where none with a weight can.
+    The contributions, in the shape of `distances`, ``(V, ...)``: 0 where a voter has no weight or
+    cannot compare; all infinite where no voter with a weight can compare.
 
     """
     shape = (-1,) + (1,) * (distances.ndim - 1)

@@ -18,9 +18,10 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.registry import HAND_VOTERS
 
 PALM_EXPONENT = 1.5
-"""Exponent of the palm in thresholds: landmarks err by a share of the palm, so that a small fist
-errs by more of its size (1), and hidden fingers err by more. At equal foreign takes 76 % of those
-from other views are accepted with 0, 84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
+"""Exponent of the palm's length in thresholds. A landmark's error is a share of the palm: relative
+to a small fist it is larger (exponent 1), and it is larger still for hidden fingers. At equally
+many accepted out-of-vocabulary takes, 76 % of takes from other views are accepted with exponent 0,
+84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
 
 SAME_SHAPE = 0.25
 """Score below which two held shapes are the same one: that of most takes from another view."""
@@ -45,8 +46,8 @@ class HandReferences:
     shapes
         Their hands: of one shape, or of two in sequence.
     mirrored
-        ``(M,)``: whether the mirror image is the same gesture: shown with the other hand, or with
-        the back of the hand.
+        ``(M,)``: whether the mirror image, shown with the other hand or the back of the hand, is
+        the same gesture.
     weights, between
         ``(2,)`` of the hand voters, see `fusion.weigh_voters`.
 
@@ -118,10 +119,10 @@ class HandReferences:
     def distances(self, shapes: HeldShapes) -> FloatArray:
         """Compute the distances of held hands to all references.
 
-        A reference of one hand is compared with each hand of the query, one of two hands with
-        both, in the arrangement in which it is nearest. Two shapes in sequence are compared with
-        two, in their order and with the same hand: the farther one counts, so that both must fit.
-        Each is measured by its own palm, of which its landmarks' errors are a share.
+        A reference with one hand is compared with each hand of the query, a reference with two
+        hands with both; the nearest arrangement counts. Two shapes in sequence are compared in
+        their order and with the same hand; the farther one counts, so that both must fit. Each
+        shape is measured by its own palm, because its landmarks' errors are a share of the palm.
 
         Returns
         -------
@@ -158,7 +159,7 @@ class HandReferences:
 
     @cached_property
     def _described(self) -> dict[_Number, _Group]:
-        """The references with as many shapes and hands, by that number."""
+        """The references grouped by their numbers of shapes and hands."""
         numbers = [_Number(len(each), len(each[0])) for each in self.shapes]
         return {
             number: _Group.of(
@@ -169,7 +170,7 @@ class HandReferences:
 
 
 class _Number(NamedTuple):
-    """How many shapes a reference holds one after the other, and with how many hands."""
+    """The number of shapes that a reference holds in sequence, and the number of hands."""
 
     shapes: int
     hands: int
@@ -177,7 +178,7 @@ class _Number(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Group:
-    """M references with as many shapes and hands.
+    """M references with the same numbers of shapes and hands.
 
     Attributes
     ----------
@@ -186,8 +187,9 @@ class _Group:
     parts
         By shape and hand their descriptors.
     factors
-        By shape ``(M,)`` factors on distances: 1 where there is one shape, else they are greater
-        for a smaller palm than the mean of the reference's hands, on which its thresholds depend.
+        For each shape, ``(M,)`` factors on distances: 1 where there is one shape; otherwise greater
+        where the palm is smaller than the mean of the reference's hands, on which its thresholds
+        depend.
 
     """
 
@@ -228,7 +230,7 @@ def _mirror(shapes: HeldShapes) -> HeldShapes:
 
 
 def _arrange(shapes: HeldShapes, count: int) -> list[HeldShapes]:
-    """Return the choices of one hand, or both in order of their sides; none of too few."""
+    """Return every choice of one hand, or both in order of their sides; none of too few hands."""
     sides = [hand.side for hand in shapes[0]] if shapes else []
     if count > len(sides):
         return []

@@ -62,7 +62,7 @@ class MajorityVote:
 
     @property
     def shape_twins(self) -> frozenset[tuple[int, int]]:
-        """No pairs: hands are not looked at."""
+        """No pairs, because hands are not compared."""
         return frozenset()
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
@@ -109,8 +109,8 @@ class MajorityVote:
     def count_votes(self, distances: FloatArray) -> Recognition:
         """Count the votes by distances ``(7, G)``.
 
-        Among equals the gesture with the smallest mean relative distance wins, among those the
-        first in the language.
+        Of gestures with equally many votes, the one with the smallest mean relative distance wins;
+        if these are equal too, the first in the language.
         """
         gestures = self._labels
         votes = {

@@ -46,8 +46,9 @@ MAX_GESTURES_TRAVERSED = 64
 direction only are then likely, and comparing all traversals would take seconds."""
 
 MOST_COMPARED = 1
-"""Traversals of a kind that are compared by DTW, of up to eight: those nearest step by step. The
-labels of 576 air-drawn digits, letters and commands are the same with 1, 2, 3, 4 or all."""
+"""Number of traversals of each kind, of up to eight, that are compared by DTW: those nearest step
+by step. The labels of 576 air-drawn digits, letters and commands are the same with 1, 2, 3, 4 or
+all."""
 
 REMEMBERED = 4
 """Languages whose references are cached: one and a few edited versions, each of up to ten
@@ -96,7 +97,7 @@ class MotionReferences:
     gestures
         ``(R,)`` index of each row's gesture in the language.
     traversals
-        Of each row.
+        The traversal of each row.
     descriptors
         By voter's name, ``(R, ...)``.
 
@@ -111,8 +112,8 @@ class MotionReferences:
     def of(cls, gestures: Sequence[Gesture]) -> MotionReferences:
         """Return the references of all gestures with a demonstration, in all traversals.
 
-        Those of the last few languages are cached: the same gestures occur again with their
-        thresholds, or with other drawings or weights.
+        References of the last few languages are cached, because the same gestures occur again with
+        their thresholds, or with other drawings or weights.
         """
         return _build_cached(tuple(ShownGesture.of(gesture) for gesture in gestures))
 
@@ -198,8 +199,8 @@ class MotionReferences:
     def find_promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
         """Return the traversals that are compared with a query by DTW.
 
-        Of each gesture the demonstrated one, and of each kind (forwards, backwards, with exchanged
-        sides) the `MOST_COMPARED` whose paths are nearest, step by step.
+        These are the demonstrated traversal of each gesture and, of each kind (forwards, backwards,
+        with exchanged sides), the `MOST_COMPARED` whose paths are nearest, step by step.
 
         Parameters
         ----------
@@ -340,7 +341,7 @@ def find_tempo_dependent(
 ) -> npt.NDArray[np.bool_]:
     """Return ``(S,)``: the references whose tempo counts, by their switch or automatically.
 
-    Automatically for two gestures that differ in duration only. Parameters as for
+    The tempo counts automatically for two gestures that differ in duration only. Parameters as for
     `find_unambiguous_traversals`; `gestures` are those of the references, S in number.
     """
     shown = references.as_shown
@@ -377,9 +378,9 @@ def find_unambiguous_traversals(
     """Return the rows of the traversals by which no gesture is confused with another one.
 
     Backward traversals are left out when another gesture is the same figure in the opposite
-    direction: for some starting points, their distance with one of them reversed is below
-    `SAME_FIGURE` or `TURNED` times the forward distance, and below `CLEARANCE` times that.
-    Exchanged sides are left out by the same rule.
+    direction: for some starting points, the distance with one of them reversed is below
+    `SAME_FIGURE` or `TURNED` times the forward distance, and also below `CLEARANCE` times the
+    forward distance. Exchanged sides are left out by the same rule.
 
     Parameters
     ----------
@@ -392,7 +393,7 @@ def find_unambiguous_traversals(
     owners
         ``(S,)``: index in the language of each reference's gesture.
     free
-        Those whose direction never counts.
+        Indices of the gestures whose direction never counts.
 
     """
     labels = owners[references.gestures]

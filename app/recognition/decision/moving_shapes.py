@@ -24,8 +24,8 @@ turns with the arm, whose elbow is elsewhere in another take (`benchmarks/studie
 """
 
 SAME_MOVEMENT: Final = 0.15
-"""Score below which two gestures may be the same movement with two hand shapes: of 93 % of one
-person's pairs of takes, and of fewer than 1 % of two different movements
+"""Score below which two gestures may be the same movement with two hand shapes: 93 % of one
+person's pairs of takes are below it, and fewer than 1 % of the pairs of different movements
 (`benchmarks/studies/hand-shapes.md`)."""
 
 OTHER_SHAPE: Final = 0.4
@@ -33,8 +33,9 @@ OTHER_SHAPE: Final = 0.4
 takes of one shape from one view (up to 0.36), below 95 % of the pairs of signs."""
 
 WEIGHT: Final = 0.5
-"""Added to the score of a gesture whose hand shape counts, for a shape as different as another
-sign: more than two takes of one movement differ by, less than two movements."""
+"""Amount added to the score of a gesture whose hand shape counts, for a shape as different as that
+of another sign: more than the score between two takes of one movement, less than that between two
+movements."""
 
 _BETWEEN = np.array([voter.between for voter in HAND_VOTERS])
 
@@ -74,7 +75,7 @@ class MovingShapes:
         return cls(shapes, owners, counting)
 
     def with_twins(self, gestures: Sequence[Gesture], movements: FloatArray) -> MovingShapes:
-        """Return the shapes of which also those count that tell twins apart.
+        """Return the shapes, in which those that distinguish twins count as well.
 
         Twins are two gestures of the same movement whose hand shapes differ clearly, also in the
         demonstrations that are nearest to each other.
@@ -167,8 +168,8 @@ def weigh_shapes(distances: FloatArray) -> FloatArray:
     """Return what distances ``(2, S)`` add to the scores, by voter; 0 where not comparable.
 
     The nearest shape adds nothing, so that a gesture whose shape counts is not farther than one
-    whose shape does not; the others add their distance beyond it. A shape that is like none is
-    refused by its novelty.
+    whose shape does not; the others add the distance by which they exceed it. A take whose shape
+    resembles none is rejected by its novelty.
     """
     known = np.isfinite(distances).all(axis=0)
     if not known.any():
@@ -180,7 +181,7 @@ def weigh_shapes(distances: FloatArray) -> FloatArray:
 
 
 def compare_shapes(seen: Shapes, shown: Shapes) -> FloatArray:
-    """Return the voters' distances of hands of the same sides, their mean: ``(2,)``.
+    """Return the voters' mean distances over the hands of the same sides: ``(2,)``.
 
     Of each hand and its mirror image, the palm or the back, the nearer one counts. Infinite without
     a common side.

@@ -41,20 +41,21 @@ CUE_GROUPS: Final[Mapping[str, Mapping[str, float]]] = _group_cues(VOTERS)
 """Weights of voters by cue group and name."""
 
 HAND_CUE_GROUP: Final = "hand"
-"""The cue group of the hand voters, in languages with held hand shapes. Clearness does not count:
-two shapes differ as much as any two, so that a foreign one is mostly clear."""
+"""The cue group of the hand voters, in languages with held hand shapes. Clearness is not used: all
+pairs of shapes differ about equally, so that an out-of-vocabulary shape is mostly clear."""
 
 SCORE_FLOOR = 0.02
 """Added to scores and novelties before the logarithm: the value of two takes by one careful person.
 """
 
 CLEAR_SHARE = 0.6
-"""Score over that of the nearest other gesture at which thresholds apply as they are. Of takes of
-eleven sets, 13 % of right ones are rejected then and 24 % of foreign ones accepted; without
-clearness 14 and 37 % (`benchmarks/studies/people.md`)."""
+"""Ratio of a score to that of the nearest other gesture at which thresholds apply unchanged. On
+eleven sets, 13 % of the gestures' own takes are then rejected and 24 % of out-of-vocabulary takes
+accepted; without clearness 14 and 37 % (`benchmarks/studies/people.md`)."""
 
 CLEARNESS_EXPONENT = 2.0
-"""Exponent of the share; 1 to 3 separate right from foreign takes alike."""
+"""Exponent of the share; values from 1 to 3 separate own from out-of-vocabulary takes equally
+well."""
 
 MOST_CLEAR = 1 / 3
 """Least clearness: however far the other gestures are, thresholds widen three times at most."""
@@ -125,8 +126,8 @@ def measure_group_novelties(
 def measure_clearness(scores: FloatArray) -> FloatArray:
     """Compute the factor on each gesture's novelty for how near the other gestures are.
 
-    Two people perform a gesture less alike than two takes of one person, and how much less differs
-    from language to language; the distances to the other gestures tell in what scale to measure.
+    Takes by two people differ more than two takes by one person, and how much more depends on the
+    language; the distances to the other gestures give the scale.
 
     Parameters
     ----------

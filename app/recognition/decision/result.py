@@ -40,16 +40,16 @@ class Recognition:
         ``(V, G)``, smaller = more alike, each voter in its own unit; infinite where query and
         gesture cannot be compared because the query lacks a salient landmark or does not move it.
     votes
-        Per voter's name the label of its nearest gesture, whether or not the vote has weight.
+        By voter's name, the label of its nearest gesture, whether or not the vote has weight.
     weights
         Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
         gestures of this language. In profile ``paper`` all voters have the same weight.
     findings
-        Repairs of the poses before recognition, as sentences with counts; and that more shapes are
-        held than a gesture has.
+        Repairs of the poses before recognition, as sentences with counts; and a sentence if more
+        shapes are held than a gesture has.
     fault
-        Why the poses are too poor to recognise, or that no hand is seen though the hand shape of
-        `nearest` counts, in words; `label` is then None.
+        Reason why there is no recognition, in words: the poses are too poor, or no hand is seen
+        although the hand shape of `nearest` counts; `label` is then None.
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
@@ -63,8 +63,8 @@ class Recognition:
         which `novelty` is the largest; NaN where the group has no thresholds or cannot compare.
         Empty for profile ``paper``, and in results of earlier versions.
     facing
-        Degrees by which the diver is turned from the camera, positive to the own left; None where
-        the poses have no depth, for profile ``paper``, and in results of earlier versions.
+        Degrees by which the diver is turned from the camera, positive to the diver's own left; None
+        where the poses have no depth, for profile ``paper``, and in results of earlier versions.
     views
         ``(G,)``: degrees by which each gesture's demonstration was turned before it was compared
         (`views.Views`); empty for profile ``paper``, and in results of earlier versions.
@@ -120,8 +120,9 @@ class Recognition:
     def margin(self) -> float:
         """How much nearer `nearest` is than every other gesture, in the unit of `scores`.
 
-        Negative where in profile ``paper`` more votes win over a nearer gesture; infinite where
-        no other can be compared; NaN in results of earlier versions without `scores`.
+        Negative where, in profile ``paper``, a gesture with more votes wins over a nearer one;
+        infinite where no other can be compared; NaN in results of earlier versions without
+        `scores`.
         """
         if not self.scores.size:
             return math.nan

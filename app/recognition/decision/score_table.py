@@ -39,8 +39,8 @@ class ScoreTable:
         ``(G,)``: degrees by which that demonstration was turned before it was compared
         (`views.Views`).
     facing
-        Degrees by which the query's diver is turned from the camera, positive to the own left;
-        None where not known.
+        Degrees by which the query's diver is turned from the camera, positive to the diver's own
+        left; None where not known.
     novelty_by_view
         ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
         group has no thresholds or cannot compare, all of profile ``paper``.
@@ -59,7 +59,7 @@ class ScoreTable:
     facing: float | None = None
 
     def nearest_demonstration(self, gesture: int) -> int:
-        """Return the index of the demonstration that stands for a gesture, given its own index."""
+        """Return the index of the demonstration by which a gesture, given by index, is compared."""
         return int(self.demonstrations[gesture])
 
     def find_nearest_demonstration(self, gestures: Sequence[Gesture], gesture: int) -> Gesture:
@@ -88,7 +88,7 @@ class ScoreTable:
         """``(G,)``: the sums of contributions and `turned`, smaller = more alike.
 
         Profile ``full``: the fused distance, which decides. Profile ``paper``: the mean relative
-        distance, which decides among gestures with as many votes.
+        distance, which decides among gestures with equally many votes.
         """
         return np.asarray(self.contributions.sum(axis=0) + self.turned, dtype=np.float64)
 

@@ -85,8 +85,8 @@ class ShapeReferences:
     def distances(self, trajectory: Trajectory) -> FloatArray:
         """Compute the distances of a query to all gestures.
 
-        It is drawn and described once per distinct set of salient landmarks, whatever the number
-        of gestures; the distances to all of them are array operations.
+        The query is drawn and described once per distinct set of salient landmarks, whatever the
+        number of gestures; the distances to all of them are array operations.
 
         Returns
         -------

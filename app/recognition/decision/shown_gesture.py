@@ -54,7 +54,7 @@ class ShownGesture:
         return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
 
     def describe(self, landmarks: tuple[str, ...], *, every: bool) -> DescribedGesture:
-        """Describe the demonstration in `every` traversal, or only in the demonstrated one.
+        """Describe all traversals of the demonstration if `every`, else the demonstrated one only.
 
         Cached for each set of landmarks that a language uses.
         """

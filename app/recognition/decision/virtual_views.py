@@ -18,14 +18,14 @@ from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.gestures.gesture import Gesture
 
 STEP = 30
-"""Degrees between views: DTW tolerates the 15 degrees between; steps of 15 changed no result by
-more than sampling error (`benchmarks/studies/views.md`)."""
+"""Degrees between views: DTW tolerates the up to 15 degrees from the nearest view; steps of 15
+degrees changed no result by more than sampling error (`benchmarks/studies/views.md`)."""
 
 FARTHEST = 60
 """Largest turn of a view in degrees: beyond, one shoulder hides the other."""
 
 PRECISION = 10
-"""Degrees to which the query's turn is rounded, as precisely as a pose model's depth gives it: so
+"""Degrees to which the query's turn is rounded: about the precision of a pose model's depth, so
 that a dive has few views."""
 
 SIDEWAYS = 105
@@ -33,7 +33,7 @@ SIDEWAYS = 105
 """
 
 CACHED = 8
-"""Views of one language that are kept: a dive has a few, each of up to ten megabytes."""
+"""Number of cached views of one language: a dive has a few, each of up to ten megabytes."""
 
 Turns = tuple[int, ...]
 """Degrees by which each of S references is turned, multiples of `STEP`."""
@@ -94,7 +94,7 @@ class Views:
         ----------
         facing
             `Trajectory.facing` of the query. Where it is None but demonstrations have depth, all
-            turns are listed, because the diver may stand in any way.
+            turns are listed, because the diver may face any direction.
 
         """
         if all(each is None for each in self._facings):

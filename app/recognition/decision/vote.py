@@ -39,11 +39,11 @@ class Vote(Protocol):
         ...
 
     def decide(self, compared: ScoreTable) -> Recognition:
-        """Decide for a gesture or none; one of the scores must be finite."""
+        """Decide for one gesture or none; one of the scores must be finite."""
         ...
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
-        """Return what counts of a gesture; None without movement."""
+        """Return which properties of a gesture count; None for a gesture without movement."""
         ...
 
     def may_win(

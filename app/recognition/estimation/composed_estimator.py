@@ -17,7 +17,7 @@ class BodyFinder(Protocol):
         ...
 
     def examine(self, image: Image) -> Body | None:
-        """Return the body in `image` alone; tracking goes on as if it had not been shown."""
+        """Return the body in `image` alone, without effect on the tracking."""
         ...
 
     def reset(self) -> None:
@@ -33,7 +33,7 @@ class HandFinder(Protocol):
         ...
 
     def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
-        """Return those in `image` alone; tracking goes on as if it had not been shown."""
+        """Return those in `image` alone, without effect on the tracking."""
         ...
 
     def reset(self) -> None:
@@ -102,7 +102,7 @@ class ComposedEstimator:
         return FrameLandmarks(body, self._hands.find(image, body) if self._hands else ())
 
     def examine(self, image: Image) -> FrameLandmarks:
-        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+        """Find body and hands in `image` alone, without effect on the tracking.
 
         Raises
         ------

@@ -10,7 +10,8 @@ from app.recognition.errors import EstimatorError
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 LARGEST_SIDE: Final = 16384
-"""Pixels. OpenCV stores positions in 16 bits, and rotated crops need some room."""
+"""Largest side of an image in pixels. OpenCV stores positions in 16 bits, and rotated crops need
+some room."""
 
 
 class PoseEstimator(Protocol):
@@ -38,7 +39,7 @@ def check_image(image: Image) -> None:
     Raises
     ------
     EstimatorError
-        Naming the shape and type seen.
+        When it is not; the message names the shape and type seen.
 
     """
     if image.ndim != 3 or image.shape[2] != 3 or not image.size or image.dtype != np.uint8:

@@ -30,11 +30,12 @@ Backend = Literal["onnx", "mediapipe"]
 """MediaPipe's models on ONNX Runtime, or the `mediapipe` library."""
 
 YOLO_POSE: Final = "yolo-pose"
-"""Before a colon and the user's own model file: an Ultralytics export on ONNX Runtime."""
+"""Backend name before a colon and the user's own model file: an Ultralytics export on ONNX
+Runtime."""
 
 MEDIAPIPE_HANDS: Final = "mediapipe"
 NO_HANDS: Final = "none"
-"""Names of hand models; besides these two, the paper's pair ``DETECTOR.onnx,KEYPOINTS.onnx``."""
+"""Names of hand models. A third choice is the paper's pair ``DETECTOR.onnx,KEYPOINTS.onnx``."""
 
 
 def create_estimator(

@@ -73,7 +73,7 @@ class MediaPipeEstimator:
         )
 
     def examine(self, image: Image) -> FrameLandmarks:
-        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+        """Find body and hands in `image` alone, without effect on the tracking.
 
         Landmarkers of their own look at it, which are started at the first call.
 

@@ -105,7 +105,7 @@ class OnnxPoseEstimator:
         return FrameLandmarks(body, self._hands.complete(image, followed, body))
 
     def examine(self, image: Image) -> FrameLandmarks:
-        """Find body and hands in `image` alone; tracking goes on as if it had not been shown.
+        """Find body and hands in `image` alone, without effect on the tracking.
 
         Raises
         ------

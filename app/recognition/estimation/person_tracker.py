@@ -22,9 +22,9 @@ either, so the gesture is lost anyway."""
 class PersonTracker:
     """Selects the same person in every frame.
 
-    First the most prominent: the largest box, weighted by the detector's confidence. Then the one
-    whose box overlaps the previous one, however large others become. Frames must be in order of
-    time.
+    First it is the most prominent person: the largest box, weighted by the detector's confidence.
+    Then it is the person whose box overlaps the previous one, however large other boxes become.
+    Frames must be in order of time.
     """
 
     def __init__(self) -> None:

@@ -2,7 +2,7 @@
 
 Water absorbs red first and, where it is turbid, blue; particles add a uniform colour; light from
 above leaves divers dark. The models were trained in air. `correct_colours` decides by grey levels,
-for models that cannot be asked; `WaterSight` asks them.
+for estimators that cannot examine a single image; `WaterSight` decides by the models' scores.
 """
 
 from __future__ import annotations
@@ -18,11 +18,12 @@ from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray
 
 WaterCorrection = Literal["auto", "on", "off"]
-"""Whether frames are corrected: as the models see most (`WaterSight`), all, or none."""
+"""Which frames are corrected: those for which it raises the models' scores (`WaterSight`), all, or
+none."""
 
 Correction = Literal["none", "balanced", "lightened", "contrasted"]
-"""What is done to a frame: nothing; colours balanced and stretched; that, and dark parts lightened,
-for divers against the light; and that with local contrast, for divers in haze."""
+"""Correction of a frame: none; colours balanced and stretched; in addition, dark parts lightened,
+for divers against the light; in addition to both, local contrast equalised, for divers in haze."""
 
 CORRECTIONS: Final[tuple[Correction, ...]] = get_args(Correction)
 
@@ -39,10 +40,10 @@ SAMPLING: Final = 4
 """Step in pixels, each way, with which a frame's colours are sampled."""
 
 TAIL: Final = 1.0
-"""Per cent of the pixels at either end of the range that the stretch may clip: a lamp, a hole."""
+"""Percentage of the pixels at either end of the range that the stretch may clip: a lamp, a hole."""
 
 LEAST_RANGE: Final = 8.0
-"""Grey levels; an image with a smaller range would be stretched to noise."""
+"""Least range in grey levels; an image with a smaller one would be stretched to noise."""
 
 MURKY_RANGE: Final = 64.0
 """Grey levels between the `TAIL` darkest and lightest pixels below which ``"auto"`` corrects. Clear
@@ -56,11 +57,11 @@ LUMA: Final = np.array([0.299, 0.587, 0.114])
 def correct_colours(image: Image, water: WaterCorrection = "auto") -> Image:
     """Return a frame as it would look in clear water, or the frame itself.
 
-    Three steps. The mean difference of red to green is added where the pixel is green, and so for
-    blue where the water is turbid (Ancuti et al. 2018, Sec. III, with a weight of 1). All channels
-    are brought to the same mean (grey world, Buchsbaum 1980). All are stretched about it alike,
-    until the widest fills its range. Their sharpening and fusion of several images is left out,
-    which does not help the models.
+    Three steps. The mean difference of green and red is added to red where the pixel is green, and
+    likewise to blue where the water is turbid (Ancuti et al. 2018, Sec. III, with a weight of 1).
+    All channels are brought to the same mean (grey world, Buchsbaum 1980). All are stretched about
+    it alike, until the widest fills its range. The sharpening and fusion of several images in that
+    paper are left out, because they do not help the models.
 
     Parameters
     ----------
@@ -91,7 +92,7 @@ def check_water(water: str) -> None:
     Raises
     ------
     EstimatorError
-        Naming those that exist.
+        When it does not; the message names those that exist.
 
     """
     if water not in get_args(WaterCorrection):
@@ -131,7 +132,7 @@ def _sample(image: Image) -> FloatArray:
 
 
 def _compensate(image: Image) -> Image:
-    """Add the mean difference to green to red, and to blue, most where the pixel is green."""
+    """Add to red and to blue their mean difference from green, most where the pixel is green."""
     means = _sample(image).mean(axis=0)
     channels = [np.ascontiguousarray(image[..., channel]) for channel in range(3)]
     for weak in (RED, BLUE):

@@ -1,9 +1,9 @@
 """Water choice: selects the water correction with the highest scores of the models.
 
-Grey levels do not tell whether a model can see: a back-lit diver and one in green murk have the
-same range of brightness and need opposite corrections. So the models are asked. Where they are in
-doubt about a frame, it is examined under every correction, and the one under which body and hands
-are believed most, over the latest examinations, is used until they are in doubt again.
+Grey levels do not show which correction a model needs: a back-lit diver and one in green murk have
+the same range of brightness and need opposite corrections. So the models' scores decide. A frame
+with low scores is in doubt and is examined under every correction. The correction with the highest
+scores for body and hands, over the latest examinations, is used until frames are in doubt again.
 """
 
 from __future__ import annotations
@@ -19,7 +19,8 @@ from app.recognition.estimation.water import CORRECTIONS, Correction
 from app.recognition.poses.frame import FrameLandmarks
 
 WINDOW: Final = 4
-"""Examinations over which belief is averaged: one frame can be hidden by bubbles."""
+"""Examinations over which scores (`measure_belief`) are averaged: one frame can be hidden by
+bubbles."""
 
 FIRST_PAUSE: Final = 8
 """Frames between the first examinations, a third of a second: neighbours show the same."""
@@ -29,33 +30,34 @@ LONGEST_PAUSE: Final = 256
 cost a twentieth."""
 
 PATIENCE: Final = 8
-"""Frames in doubt, one after the other, before an examination: a hand that is hidden for a moment
-is no reason. The first frame has none before it and is examined at once."""
+"""Consecutive frames in doubt before an examination: a hand hidden for a moment does not cause one.
+The first frame is examined at once."""
 
 SEARCHING_PAUSE: Final = 64
 """The same while nobody is found: two and a half seconds until a diver in murk is seen."""
 
 MARGIN: Final = 0.1
-"""Belief by which another correction must exceed the one in use at the first examination of a
-scene: less is noise."""
+"""Score by which another correction must exceed the one in use at the first examination of a scene:
+less is noise."""
 
 CHANGE_MARGIN: Final = 0.25
-"""The same later, for a change restarts the tracking: a surely believed hand more."""
+"""The same at later examinations, since a change restarts the tracking: as much as one more certain
+hand."""
 
 HAND_WEIGHT: Final = 0.25
-"""Weight of a hand's belief against the body's; without a body there are no gestures."""
+"""Weight of a hand's score against the body's; without a body there are no gestures."""
 
 
 class WaterChoice:
     """Chooses a correction from what the models find; starts with none.
 
     The pause between examinations doubles from `FIRST_PAUSE` to `LONGEST_PAUSE`, and is short again
-    after a body was lost, as when the scene changes; then what was believed is forgotten too.
+    after a body was lost, as when the scene changes; then the earlier scores are discarded too.
 
     Parameters
     ----------
     hands
-        Whether hands are looked for, so that their absence is a doubt.
+        Whether the estimator finds hands, so that a frame without any is in doubt.
 
     """
 
@@ -93,9 +95,9 @@ class WaterChoice:
         return True
 
     def choose(self, examined: Mapping[Correction, FrameLandmarks]) -> bool:
-        """Take in an examination, and return whether another correction is in use now.
+        """Process an examination, and return whether another correction is in use now.
 
-        One in which nothing is found under any correction says nothing and is not counted.
+        An examination in which nothing is found under any correction is not counted.
         """
         beliefs = {one: measure_belief(found) for one, found in examined.items()}
         if not any(beliefs.values()):
@@ -112,11 +114,11 @@ class WaterChoice:
     def _is_doubtful(self, found: FrameLandmarks) -> bool:
         if found.body is None or (self._sought and not found.hands):
             return True
-        # A body that is new was looked at once and off its centre: its score says little.
+        # A new body was examined once, off the centre of its region: its score means little.
         return self._had_body and found.body.score < SURE
 
 
 def measure_belief(found: FrameLandmarks) -> float:
-    """Return how far the models believe what they found: the body's score, and a bit of hands'."""
+    """Return the combined score of what was found: the body's, and a share of the hands'."""
     body = found.body.score if found.body else 0.0
     return body + HAND_WEIGHT * sum(hand.score for hand in found.hands)

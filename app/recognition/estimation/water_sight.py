@@ -19,18 +19,18 @@ from app.recognition.poses.frame import FrameLandmarks, Image
 
 @runtime_checkable
 class Examiner(Protocol):
-    """Interface of estimators that can look at an image by itself."""
+    """Interface of estimators that can examine a single image."""
 
     def examine(self, image: Image) -> FrameLandmarks:
-        """Find body and hands in `image` alone; tracking goes on as if it had not been shown."""
+        """Find body and hands in `image` alone, without effect on the tracking."""
         ...
 
 
 class WaterSight:
     """Corrects the water in frames, in order, and lets an estimator find the landmarks in them.
 
-    With ``"auto"`` a `WaterChoice` tells which correction the estimator's models believe most. An
-    estimator that is no `Examiner` cannot be asked; then murky frames are corrected
+    With ``"auto"`` a `WaterChoice` selects the correction with the highest scores of the
+    estimator's models. With an estimator that is no `Examiner`, murky frames are corrected
     (`correct_colours`).
 
     Parameters

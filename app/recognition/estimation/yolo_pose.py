@@ -27,7 +27,8 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import COCO_17
 
 DEFAULT_SIDE: Final = 640
-"""Pixels; what Ultralytics trains and exports with. Used where a file leaves its input open."""
+"""Side of the input in pixels where a file leaves it open: the one with which Ultralytics trains
+and exports."""
 
 LEAST_SCORE: Final = 0.25
 """Least confidence of a person; the default of Ultralytics' own prediction."""

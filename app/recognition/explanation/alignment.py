@@ -28,7 +28,7 @@ AlignedVoter = Path | Direction | Posture | HandAttitude
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Example:
-    """A gesture in the traversal, and mirrored or not, in which a query was compared with it.
+    """A gesture as a query was compared with it: in one traversal, mirrored or not.
 
     Attributes
     ----------
@@ -39,9 +39,9 @@ class Example:
     mirrored
         Whether it is the gesture's mirror image.
     movement
-        In that traversal.
+        Its movement in that traversal.
     time
-        ``(N,)`` seconds in the demonstration of each step.
+        ``(N,)``: seconds of each step in the demonstration.
 
     """
 
@@ -164,7 +164,7 @@ def align(
     Parameters
     ----------
     query
-        Of the same landmarks as the example.
+        The query, with the same landmarks as the example.
     example
         The gesture.
     landmarks

@@ -27,13 +27,13 @@ class Analysis:
         The gesture that the expected one is compared with: the nearest one, or the runner-up where
         the expected one is nearest; None in a language of one gesture.
     score, other_score
-        Of the expected gesture and of the other, see `ScoreTable.scores`; infinite where not
-        comparable.
+        Scores of the expected gesture and of the other one, see `ScoreTable.scores`; infinite where
+        not comparable.
     novelty
         Distance of the query relative to the expected gesture's thresholds: above 1 it is
         rejected; NaN without thresholds, as in profile ``paper``.
     fault
-        Why the poses are too poor to recognise; None: they are not.
+        Why the poses are too poor to recognise; None if they are not.
     votes
         By label the number of voters with weight that voted for it.
     support
@@ -41,15 +41,15 @@ class Analysis:
     verdicts
         The breakdown by voter, those most against the expected gesture first.
     facing
-        Degrees by which the diver is turned from the camera, positive to the own left; None where
-        not known.
+        Degrees by which the diver is turned from the camera, positive to the diver's own left; None
+        where not known.
     view
         Degrees by which the expected gesture's demonstration was turned to be compared.
     turned
         Share of `score` minus `other_score` that comes from the penalties of traversals.
     alignments
-        Of the query with the expected gesture and with the other: of the paths, and in profile
-        ``full`` of the postures.
+        Alignments of the query with the expected gesture and with the other: of the paths, and in
+        profile ``full`` of the postures.
     differences
         Differences between the query and the expected gesture, the largest share first; empty
         where the gesture has no demonstration.

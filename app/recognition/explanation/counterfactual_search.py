@@ -38,8 +38,9 @@ ORDER: Final = (
     "voter_weight",
     "demonstration",
 )
-"""Kinds of interventions, from what teaches most to what fits one take only: another demonstration
-adds evidence, weights are fitted to this take, and a demonstration that is replaced is lost."""
+"""Kinds of interventions, from those that add most evidence to those that fit one take only: a
+further demonstration adds evidence, weights are fitted to this take, and a replaced demonstration
+is lost."""
 
 VARIANTS = 1
 """Simulated takes of each gesture by another person, used with its demonstration to measure the
@@ -84,7 +85,7 @@ class Counterfactual:
     margin
         The score of the nearest other gesture minus that of the expected one, after it.
     effect
-        On the rest of the language; None for an intervention on this take alone.
+        Its effect on the rest of the language; None for an intervention on this take alone.
 
     """
 
@@ -109,8 +110,8 @@ class Counterfactual:
 class Counterfactuals:
     """The interventions that correct a recognition, in the order in which to try them.
 
-    In the `ORDER` of their kinds, of a kind the smallest first. None of them makes a gesture of the
-    language lose a take.
+    They are in the `ORDER` of their kinds; within a kind, the smallest is first. None of them makes
+    a gesture of the language lose a take.
 
     Attributes
     ----------
@@ -179,7 +180,7 @@ def _rank(found: _Found) -> tuple[int, float, float]:
 
 
 def _choose(described: Iterable[Counterfactual]) -> Iterator[Counterfactual]:
-    """Choose at most `MOST`, of a kind `MOST_OF_A_KIND`, by which no gesture loses a take."""
+    """Choose at most `MOST`, `MOST_OF_A_KIND` of a kind, with which no gesture loses a take."""
     kinds: Counter[str] = Counter()
     for each in described:
         kind = each.change.kind

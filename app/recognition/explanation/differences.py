@@ -71,8 +71,8 @@ class Difference:
         See `Kind`.
     share
         In [0, 1]: the part of the path distance, beyond that between takes of one figure, that
-        undoing it removes, of a hand shape of the distance between the shapes; 0 for differences
-        that change no path: tempo, place, size, the wrist, not seen.
+        undoing the difference removes; for a hand shape, the part of the distance between the
+        shapes. 0 for differences that change no path: tempo, place, size, the wrist, not seen.
     landmark
         The landmark that differs most; None: all of them.
     start, end
@@ -223,7 +223,7 @@ def _try_cuts(pairing: Pairing) -> Iterator[Difference]:
 def _find_best_cut(
     pairing: Pairing, whole: FloatArray, cut: FloatArray, at_end: bool
 ) -> tuple[int, float]:
-    """Find how many steps to cut off so that the rest equals the other, and the distance left.
+    """Find how many steps to cut off to match the other movement, and the distance left.
 
     No cut is returned if cutting both leaves less: then the parts differ, and none is missing.
     """
@@ -332,7 +332,7 @@ def _compare_sizes(pairing: Pairing) -> Iterator[Difference]:
 
 
 def _compare_wrists(pairing: Pairing) -> Iterator[Difference]:
-    """Return which wrist is bent otherwise, and by how many degrees."""
+    """Yield a difference for each wrist that is bent differently, with the degrees."""
     voter = WristBend()
     shown, expected = (
         voter.describe(each).reshape(-1, 1, 3) for each in (pairing.query, pairing.example.movement)

@@ -84,8 +84,8 @@ def measure_divergence(alignment: Alignment, query: FloatArray, gesture: FloatAr
 def find_costliest_stretch(costs: FloatArray) -> tuple[int, int]:
     """Return the first and last step of the stretch whose costs most exceed the average.
 
-    The contiguous run with the largest sum of costs minus their mean (Bentley 1984), widened to
-    `LEAST_STRETCH` if there are so many steps.
+    It is the contiguous run with the largest sum of costs minus their mean (Bentley 1984), widened
+    to `LEAST_STRETCH` if there are that many steps.
     """
     excess = costs - costs.mean()
     best, span = -np.inf, (0, len(costs) - 1)

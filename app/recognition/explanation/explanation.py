@@ -41,7 +41,7 @@ class Explanation(Analysis):
 
     @property
     def sentence(self) -> str:
-        """Why, in words."""
+        """The reason for the recognition, in words."""
         return write_sentence(self)
 
     def to_dict(self) -> dict[str, Any]:

@@ -27,7 +27,7 @@ CLEARLY_BENT = 30.0
 """Least difference of a finger's bend in degrees: the landmarks' errors make up to 20."""
 
 CLEARLY_TURNED = 25.0
-"""Least turn of the hand in degrees that is named; the voters forgive 20."""
+"""Least turn of the hand in degrees that is reported; the voters tolerate 20."""
 
 ROUNDED = 10
 """Degrees to which a bend or a turn is rounded: as precisely as the image shows it."""
@@ -41,7 +41,7 @@ FINGER_LENGTHS = (0.94, 1.04, 0.98, 0.77)
 """Stretched fingers in palms, index to little finger (Buryanov and Kotiuk 2010)."""
 
 BONE_SHARES = np.array([0.48, 0.29, 0.23])
-"""Of a finger's length, from the knuckle on (the same)."""
+"""Shares of a finger's length, from the knuckle on (Buryanov and Kotiuk 2010)."""
 
 _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
 
@@ -59,14 +59,15 @@ def find_held_differences(
     label
         The gesture's.
     shapes
-        The query's: one shape, or two in sequence; none: that is the difference.
+        The query's shapes: one, or two in sequence; if there is none, that is the difference.
     shown
         The gesture's, one or two.
 
     Returns
     -------
-    Of two sequences the order, where the other one fits; else the fingers of both shapes. The
-    farther shape decides, so that shares of the other one are smaller as it is nearer.
+    For two sequences, the order of the shapes, where the opposite order fits; otherwise the fingers
+    of both shapes. The farther shape decides, so that the shares of the other one are reduced in
+    proportion to its distance.
 
     """
     if not shapes:
@@ -92,7 +93,7 @@ def find_held_differences(
 
 
 def _describe_number(label: str, shapes: HeldShapes, shown: HeldShapes) -> str:
-    """Return in words that a take holds one shape where a gesture is two, or the reverse."""
+    """Return in words that a take holds one shape where a gesture has two, or the reverse."""
     if len(shapes) > len(shown):
         return f"two hand shapes are held one after the other in this take, and {label!r} is one"
     apart = [_pair_parts(shapes, [hands])[1] for hands in shown]
@@ -204,7 +205,7 @@ def _difference(share: float, words: str) -> Difference:
 
 
 def measure_distance(one: HandShape, other: HandShape) -> float:
-    """Return the mean of the hand voters' distances, each over that between two shapes."""
+    """Return the mean of the hand voters' distances, each over its between-class distance."""
     return float(
         np.mean(
             [
@@ -218,8 +219,9 @@ def measure_distance(one: HandShape, other: HandShape) -> float:
 def measure_bends(hand: HandShape) -> FloatArray:
     """Estimate the bend of index to little finger in degrees, the three joints together.
 
-    By how far each tip is beyond its knuckle along the palm, in palms, which a finger bent towards
-    the camera shows as one bent in the image. Returns ``(4,)``, 0 for a stretched finger.
+    The bend follows from how far each tip is beyond its knuckle along the palm, in palms, which is
+    the same for fingers bent towards the camera and in the image. Returns ``(4,)``, 0 for a
+    stretched finger.
     """
     axis = hand.xy[_MIDDLE] - hand.xy[_WRIST]
     bends = np.linspace(0.0, MOST_BENT, 41)

@@ -82,7 +82,7 @@ def _describe_opposition(analysis: Analysis) -> str:
 def _opposing_voters(analysis: Analysis) -> list[str]:
     """Return the voters against the expected gesture, those with the largest contribution first.
 
-    If it was nearest but rejected, those that are farthest beyond their thresholds.
+    If it was nearest but rejected, the voters farthest beyond their thresholds.
     """
     if analysis.nearest != analysis.expected:
         return [verdict.voter for verdict in analysis.verdicts if verdict.against > 0]
@@ -99,7 +99,7 @@ def _cause(analysis: Analysis) -> Difference | None:
     strongest = analysis.verdicts[0].voter if analysis.verdicts else ""
     kinds = {"tempo": "tempo", "posture": "place"} | dict.fromkeys(HAND_VOTER_NAMES, "hand_shape")
     causes = [each for each in analysis.differences if each.kind == kinds.get(strongest)]
-    # A hand shape is no reason for what the movement decided.
+    # A hand shape does not explain a decision by the movement.
     shaped = (
         strongest in HAND_VOTER_NAMES
         or analysis.nearest == analysis.expected
@@ -114,7 +114,7 @@ def _cause(analysis: Analysis) -> Difference | None:
 
 
 def _describe_view(analysis: Analysis) -> str:
-    """Return from where the demonstration was looked at, if it was turned."""
+    """Return in words from where the demonstration was viewed, if it was turned."""
     if not analysis.view:
         return ""
     side = "left" if analysis.view > 0 else "right"
@@ -125,7 +125,7 @@ def _describe_view(analysis: Analysis) -> str:
 
 
 def _remedy(analysis: Analysis) -> str:
-    # A take is recognised by its own demonstration by construction, which is no remedy to name.
+    # A take that becomes a demonstration is recognised by construction: no remedy to name.
     found = [
         each
         for each in analysis.counterfactuals.found

@@ -19,13 +19,14 @@ from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
 BONE_WIDTH = STROKE_WIDTH // 2 + 1
-"""Pixels: half of a path's, so that fingers side by side stay apart."""
+"""Width of a bone in pixels: half of a path's, so that fingers side by side stay apart."""
 
 APART = 3.0
-"""Sizes between the middles of two hands that are drawn side by side."""
+"""Distance between the middles of two hands drawn side by side, in sizes of a hand."""
 
 ARROW_SPACE = 1.8
-"""Sizes between two shapes in sequence: of an arrow that is seen on a card of 64 pixels."""
+"""Space between two shapes in sequence, in sizes of a hand: enough for an arrow that is visible on
+a card of 64 pixels."""
 
 ARROW_SHARES = (0.15, 0.85)
 """Places of the arrow's tail and tip in that space."""

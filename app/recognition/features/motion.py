@@ -61,7 +61,7 @@ ARM_JOINTS = ("elbow", "wrist")
 RESTING_SPEED = 0.15
 """Speed below which the arms rest before and after a gesture, as a share of the gesture's speed.
 
-Recordings begin and end with hanging arms for as long as it pleases; the speed is the 95th
+Recordings begin and end with hanging arms for any length of time; the gesture's speed is the 95th
 percentile, because a single frame may jump."""
 
 SPEED_SHARE = 0.95
@@ -280,14 +280,14 @@ class _Columns:
     needed, columns
         Names of the landmarks that are followed or end a bone, and their columns in the trajectory.
     followed, paths
-        Of the followed landmarks in the trajectory: indices in `needed`, and in the paths.
+        Indices of the followed landmarks in the trajectory: in `needed`, and in the paths.
     shown, inner, outer
-        Of the bones with both ends in the trajectory: indices in the limbs, and of both ends in
+        Indices of the bones with both ends in the trajectory: in the limbs, and of both ends in
         `needed`.
     bones
         Number of all bones.
     placed, joints
-        Of the arms' landmarks in the trajectory: indices in the places, and in `needed`.
+        Indices of the arms' landmarks in the trajectory: in the places, and in `needed`.
     arms
         Number of all landmarks of the arms.
     moving

@@ -22,8 +22,8 @@ MARGIN = 16
 """Border in pixels around the paths: room for half a stroke, and a visible frame."""
 
 STROKE_WIDTH = 9
-"""Pixels. A twentieth of the drawing, as much as a free hand wobbles, so that two drawings of one
-figure overlap. Wider strokes would close small loops."""
+"""Width of a stroke in pixels: a twentieth of the drawing, as much as a free hand wobbles, so that
+two drawings of one figure overlap. Wider strokes would close small loops."""
 
 SIMPLIFICATION = 4.0
 """Tolerance of Ramer-Douglas-Peucker in pixels: just below half a stroke, so that visible corners

@@ -19,7 +19,8 @@ BACKWARD_PENALTY = 2.0
 """Factor on the distances to a gesture traversed backwards.
 
 People keep the demonstrated direction more often than they reverse it. On other people's digits
-and commands the accuracy is flat from 1.2 to 2 and falls beyond; whole bodies lose with less.
+and commands the accuracy is flat from 1.2 to 2 and falls beyond; for whole bodies it falls with
+smaller factors.
 """
 
 EXCHANGED_PENALTY = 3.0

@@ -65,7 +65,7 @@ DEPTH_DIGITS = 2
 """Decimals kept of a trajectory's depth: 5 mm of a diver, a tenth of a pose model's error."""
 
 DEMONSTRATION_KINDS = ("a movement", "a held hand shape", "a sequence of two held hand shapes")
-"""By the number of hand shapes that are held."""
+"""Kinds of demonstrations, by the number of held hand shapes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,8 +135,8 @@ class Demonstration:
         Raises
         ------
         GestureError
-            When the take is too short, nothing moves in it and no hand shape is held, or more than
-            `MOST_HOLDS` are, or `salient` does not fit it.
+            When the take is too short, when nothing moves in it and no hand shape is held, when
+            more than `MOST_HOLDS` shapes are held, or when `salient` does not fit it.
 
         """
         if len(poses) < MIN_FRAMES:

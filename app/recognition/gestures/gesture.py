@@ -42,7 +42,7 @@ from app.recognition.voters.shape.shape_voter import describe_drawing
 from app.recognition.voters.shape.zernike import DEGREE
 
 MAX_LABEL_LENGTH = 80
-"""Characters: more than fits on a gesture's card, and still one line of a log."""
+"""Most characters of a label: more than fits on a gesture's card, and still one line of a log."""
 
 MAX_TEXT_LENGTH = 2000
 """Characters of a description or of a command in words: a card, not a manual."""
@@ -68,8 +68,8 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
         "fourier_harmonics": HARMONICS,
     }
 )
-"""Settings that images and descriptors in a language file depend on; where a file's differ, they
-are computed again."""
+"""Settings that images and descriptors in a language file depend on; if a file has others, its
+images and descriptors are computed again."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +117,7 @@ class Gesture:
     command
         What the robot should do: free text, a JSON object, or None.
     switches
-        Whether the gesture's direction, tempo and mirror image count.
+        Whether the gesture's direction, tempo, mirror image and hand shape count.
     diver
         Name of the diver of the first demonstration; empty: not known.
     further
@@ -251,8 +251,8 @@ class Gesture:
         diver
             Name of the diver who shows it; empty: not known.
         salient
-            Its salient landmarks. By default those of the first demonstration, or its own where
-            none of those moves, such as a take with the other hand.
+            Its salient landmarks. By default those of the first demonstration; where none of these
+            moves, as in a take with the other hand, those of the take itself.
 
         Raises
         ------
@@ -279,7 +279,7 @@ class Gesture:
         Raises
         ------
         GestureError
-            When there is no such demonstration, or no other.
+            When there is no such demonstration, or it is the only one.
 
         """
         count = 1 + len(self.further)

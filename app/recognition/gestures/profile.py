@@ -22,7 +22,7 @@ class Profile:
     name
         In results and language files.
     voters
-        In the order of results.
+        Voters in the order of results.
     rejects
         Whether it rejects movements that are no gesture, by thresholds of the language.
     compares_motion
@@ -45,7 +45,8 @@ PROFILES: Final[dict[str, Profile]] = {
     ),
     "full": Profile("full", VOTERS, rejects=True, compares_motion=True, repairs_keypoints=True),
 }
-"""By name. ``paper``: the seven voters of the paper, majority vote. ``full``: all voters, fused."""
+"""Profiles by name. ``paper``: the seven voters of the paper, majority vote. ``full``: all voters,
+fused."""
 
 DEFAULT_PROFILE: Final[ProfileName] = "full"
 """Profile of a language whose author chose none: it rejects movements that are no gesture."""

@@ -24,12 +24,11 @@ class Switches:
         movement, clearly slower or quicker.
     mirror
         ``on``: its mirror image, with the other hand, is the same gesture. ``auto``, ``off``: it
-        is not. ``off`` also refuses two-handed gestures with exchanged sides, which ``auto``
-        accepts where no other gesture of the language is meant by that.
+        is not. ``off`` also rejects takes of two-handed gestures with exchanged sides, which
+        ``auto`` accepts unless they mean another gesture of the language.
     hand_shape
         Whether the shape of the moving hand counts. ``auto``: if another gesture of the language
-        is the same movement with a clearly different hand shape. Of a held hand shape it always
-        does.
+        is the same movement with a clearly different hand shape. A held hand shape always counts.
 
     Raises
     ------
@@ -55,7 +54,7 @@ AUTOMATIC = Switches()
 
 @dataclass(frozen=True, kw_only=True)
 class Sensitivity:
-    """What counts of a gesture in its language, with `auto` resolved.
+    """The properties of a gesture that count in its language, with `auto` resolved.
 
     Attributes
     ----------
@@ -64,7 +63,7 @@ class Sensitivity:
     tempo
         Whether its duration counts.
     sides
-        Whether exchanged left and right are refused.
+        Whether takes with left and right exchanged are rejected.
     hand_shape
         Whether the shape of the moving hand counts.
 

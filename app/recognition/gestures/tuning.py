@@ -18,7 +18,7 @@ MAX_FACTOR = 100.0
 """Largest weight factor: with it, the other voters no longer matter."""
 
 MAX_SIMPLIFICATION = 50.0
-"""Pixels of 224: beyond it every drawing is a line or two."""
+"""Largest simplification tolerance, in pixels of 224: beyond it every drawing is a line or two."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,8 +33,8 @@ class Tuning:
         Tolerance of Ramer-Douglas-Peucker, in pixels of the trajectory image, for references and
         queries alike.
     keypoints_repaired
-        Whether the landmarks of queries are repaired (`repair`); None: as the profile, of which
-        ``full`` does and ``paper`` does not.
+        Whether the landmarks of queries are repaired (`repair`); None: as in the profile; ``full``
+        repairs and ``paper`` does not.
 
     Raises
     ------

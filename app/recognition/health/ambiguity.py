@@ -51,14 +51,14 @@ class Ambiguity:
 
 
 class _Lead(NamedTuple):
-    """What each of two walks has said that the other has not, of which one at least is nothing."""
+    """Contributions that only one of two walks has made so far; at least one of both is empty."""
 
     one: Parse
     other: Parse
 
 
 _DIFFERENT = None
-"""In the place of a lead: the walks have said different things, whatever comes."""
+"""Value in place of a lead: the parses of the walks differ, whatever follows."""
 
 _Pair = tuple[int, int, _Lead | None]
 """Two positions reached by the same gestures, and how their parses differ."""

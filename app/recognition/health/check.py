@@ -68,7 +68,7 @@ MOST_EXPLAINED = 100
 """Confused pairs with a finding of their own, the worst first; each costs two comparisons."""
 
 SAME = ("movement", "hand shape", "sequence of hand shapes")
-"""What duplicates have in common, by the number of hand shapes that are held."""
+"""Common property of duplicates, by the number of held hand shapes."""
 
 Progress = Callable[[str, int, int], None]
 """Called with the stage, the steps done and their number (0: unknown); an exception that it raises
@@ -92,7 +92,8 @@ def check_health(
     Parameters
     ----------
     language
-        The language, with its tuning, but always by profile ``full``: `paper` rejects nothing.
+        The language. Its tuning applies; the profile is always ``full``, since ``paper`` rejects
+        nothing.
     person
         The diver: the demonstrator, or another person.
     takes
@@ -102,8 +103,8 @@ def check_health(
     progress
         Called with stage, steps done and their number; may raise to cancel.
     known_signs
-        Signs that divers know, with their meaning; gestures that look like one are found. None:
-        they are not looked for.
+        Signs that divers know, with their meaning; gestures that look like one become findings.
+        None: there is no such search.
 
     """
     if not language.gestures:
@@ -353,7 +354,7 @@ def _confusion_message(
     differences: tuple[PairDifference | None, PairDifference | None],
     shapes: Mapping[str, int],
 ) -> str:
-    """Say what is confused; `shapes`: by label how many hand shapes are held."""
+    """Return the message about a confusion; `shapes`: numbers of held hand shapes by label."""
     first, second = pair.gestures
     if _is_duplicate(pair):
         same = SAME[shapes[first]]

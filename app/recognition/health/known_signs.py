@@ -16,7 +16,7 @@ from app.recognition.recognizer import Recognizer
 def find_known_signs(
     language: Language, known: Language, advance: Callable[[], None] = lambda: None
 ) -> Iterator[Finding]:
-    """Yield one finding for each gesture that the language of known signs takes for a sign.
+    """Yield one finding for each gesture that is recognised as one of the known signs.
 
     Each demonstration is recognised by profile ``full`` among the known signs, as if it were a
     take. A gesture with the label of the sign is meant to be that sign.

@@ -19,7 +19,7 @@ MOST_TOGETHER = MAX_GESTURES_TRAVERSED
 """Most gestures that are all compared with each other; the recogniser itself changes there too."""
 
 NEIGHBOURS = 24
-"""Nearest gestures that one is tried among in a larger language."""
+"""Number of nearest gestures among which each one is tried in a larger language."""
 
 
 def find_neighbours(recognizer: Recognizer) -> npt.NDArray[np.intp]:

@@ -69,7 +69,7 @@ class TrialRunner:
     takes
         Of each gesture, at least 2.
     seed
-        Of their variants.
+        Seed of their variants.
     person
         Who performs.
     advance
@@ -139,7 +139,7 @@ def find_pair_remedies(
     proposed = []
     for edit, changed in [best_of_kind[kind] for kind in kinds[:MOST_PROPOSED]]:
         repeated = run_trials(Recognizer(_with(language, pair, changed), "full"), pair)
-        # What is no neighbour any more is not confused.
+        # A gesture that is no longer a neighbour is not confused.
         after = _confusion_between(repeated, (0, 1), pair) or RateEstimate(0.0, 0.0, 0.0)
         missed_then = repeated.missed(0).rate + repeated.missed(1).rate
         if after.rate <= HELPS * confused.rate and missed_then < missed:

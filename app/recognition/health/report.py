@@ -20,7 +20,7 @@ MOST_CONFUSION = 0.05
 
 MOST_MISSED = 0.1
 """Threshold for missed takes of a gesture, which cost a repetition only. Rejection is calibrated to
-one take in twenty; twice as many is the gesture's problem."""
+one take in twenty; twice as many point to the gesture itself."""
 
 
 @dataclass(frozen=True)

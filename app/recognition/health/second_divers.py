@@ -20,8 +20,8 @@ def advise_second_divers(
     """Yield one finding that names the gestures in need of a second diver's demonstration.
 
     These are the gestures shown by one diver, of which more takes by other people are missed than
-    the threshold allows. The simulated takes vary about the demonstration, so that what a second
-    one brings cannot be simulated; the order is that of the missed takes.
+    the threshold allows. Simulated takes vary about the given demonstration, so that the effect of
+    a second one cannot be simulated; the gestures are ordered by their missed takes.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def advise_second_divers(
 
 
 def _is_shown_by_one_diver(gesture: Gesture) -> bool:
-    """Return whether all demonstrations are by one diver; unnamed divers of several are others."""
+    """Return whether all demonstrations are by one diver; of several, unnamed divers differ."""
     shown = gesture.single_demonstrations()
     divers = {each.diver for each in shown}
     return len(shown) == 1 or (len(divers) == 1 and "" not in divers)

@@ -91,7 +91,7 @@ class SimulatedTrials:
     def confusion(self, performer: int, other: int) -> RateEstimate | None:
         """Estimate the rate of takes that are nearer to another given gesture; None for no rival.
 
-        A take that shows something else is as near to any gesture.
+        A take that shows something else counts as equally near to all gestures.
         """
         rivals = self.rivals[performer]
         place = int(np.searchsorted(rivals, other))
@@ -190,7 +190,7 @@ def simulate_trials(
 
 
 def _turn(takes: Sequence[Trajectory], degrees: int, seed: int) -> tuple[Trajectory, ...]:
-    """Turn takes whose depth is off by `DEPTH_ERROR`, each landmark's by the same throughout."""
+    """Turn takes with a depth error of `DEPTH_ERROR`, constant for each landmark of a take."""
     draws = np.random.default_rng([seed, degrees % 360])
     turned = []
     for take in takes:

@@ -33,8 +33,8 @@ MOST_MISSED = 0.1
 """Share of people whose pose is missed from which it is an error: each has to show it again."""
 
 MOST_AN_HOUR = 60.0
-"""Times an hour of arms that move all the time from which a note is given: one a minute. Each
-costs a take that is rejected, not a command, since the second pose is missing."""
+"""Least number of takes, begun in an hour of arms that move all the time, for a note: one a minute.
+Each costs a take that is rejected, not a command, since the second pose is missing."""
 
 SECONDS_AN_HOUR = 3600.0
 
@@ -48,12 +48,12 @@ class TriggerHealth:
     words
         The trigger, for people.
     missed
-        Rate of other people whose pose is not seen, or whose gesture is not recognised; of two, of
-        the worse one.
+        Rate of other people whose pose is not seen, or whose gesture is not recognised; the higher
+        rate of two triggers.
     false_per_hour
         Times that ordinary movement begins a take, in an hour of arms that move all the time.
     set_off_by
-        Kinds of ordinary movement that do, the most frequent first.
+        Kinds of ordinary movement that begin a take, the most frequent first.
 
     """
 

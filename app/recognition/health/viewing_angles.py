@@ -15,18 +15,19 @@ from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
 
 ANGLES: Final = (-90, -60, -30, 30, 60, 90)
-"""Degrees by which the diver is turned from the demonstration, positive to the own left. Straight
-ahead is what the other trials simulate."""
+"""Degrees by which the diver is turned from the demonstration, positive to the diver's own left.
+Straight ahead is what the other trials simulate."""
 
 TAKES: Final = 4
-"""Simulated takes of each gesture at each angle: six angles of four are as many as the other trials
-have, and a half more."""
+"""Simulated takes of each gesture at each angle: at six angles, half as many again as in the other
+trials."""
 
 MOST_MISSED = 0.5
 """Estimated rate of misses from which an angle is named: every second command."""
 
 FORESEEABLE = 60
-"""Largest turn that a finding is about, degrees: farther, the far arm is hidden in any language."""
+"""Largest turn in degrees that a finding reports: beyond it, the far arm is hidden in any
+language."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ class FileFormat(str, Enum):
     """The language files."""
 
     OSG_STUDIO = "osg-studio"
-    """Ours: everything."""
+    """OSG Studio's own format: everything."""
     OSG_REFERENCE = "osg-reference"
     """The published implementation's: images and salient keypoints only."""
     PROTEUS = "proteus"

@@ -37,10 +37,10 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
 MAX_NAME_LENGTH = 80
-"""Characters: more than fits on a language's card."""
+"""Most characters of a name: more than fits on a language's card."""
 
 MAX_AUTHOR_LENGTH = 200
-"""Characters: a few names with their institution."""
+"""Most characters of the author: a few names with their institution."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -26,7 +26,7 @@ class Requirements:
         The gestures' salient landmarks, in alphabetical order: without one of them its gestures
         are never recognised.
     limbs
-        Landmarks of the arms of those, which make recognition more certain where seen.
+        Other landmarks of the same arms, which make recognition more certain where seen.
     torso
         Landmarks that normalise distance and drift; without them the unit is the extent of the
         movement.

@@ -34,7 +34,7 @@ MAX_FILE_BYTES = 64_000_000
 """1000 demonstrations of 40 kB, and half as much again for descriptions and commands."""
 
 MAX_HAND_COORDINATE = 5.0
-"""Of 21 points of size 1 none is farther from their centroid."""
+"""Largest coordinate of a hand: of 21 points of size 1 none is farther from their centroid."""
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Landmark = Annotated[str, Field(min_length=1)]

@@ -9,7 +9,7 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 
 
 def trigger_to_entry(trigger: Trigger) -> TriggerEntry | None:
-    """Return the file's entry of a trigger; None of the salute."""
+    """Return the file's entry of a trigger; None for the salute."""
     if trigger == SALUTE:
         return None
     start, stop = (_pose_to_entry(pose) for pose in (trigger.start, trigger.stop))

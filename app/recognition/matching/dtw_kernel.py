@@ -20,8 +20,8 @@ from app.recognition.matching.step_distances import ROUNDING
 from app.recognition.poses.sequence import FloatArray
 
 StepCosts: TypeAlias = npt.NDArray[np.float32]
-"""Single precision: memory traffic takes most of the time. Descriptors have a mean square of about
-1, of which distances are exact to a millionth."""
+"""Costs in single precision, because memory traffic takes most of the time. Descriptors have a mean
+square of about 1, and distances are exact to a millionth of it."""
 
 Totals: TypeAlias = npt.NDArray[np.float32 | np.float64]
 
@@ -138,11 +138,11 @@ class _Diagonal:
     number
         i + j.
     own
-        In the totals with its parity.
+        Indices in the totals with its parity.
     one, other
-        In the totals with the other parity: the neighbours on the diagonal before.
+        Indices in the totals with the other parity: the neighbours on the diagonal before.
     cells
-        In the costs, one row a pair of steps.
+        Indices in the costs, one row per pair of steps.
 
     """
 

@@ -81,10 +81,10 @@ UNUSED_OUTPUTS: Final[dict[ModelName, tuple[str, ...]]] = {"pose_landmark_full":
 takes half of its time."""
 
 MODEL_SCHEMA_SOURCE: Final = "mediapipe/tasks/metadata/schema_py_generated.py"
-"""In the wheel: Python module that reads and writes TensorFlow Lite models."""
+"""Python module in the wheel that reads and writes TensorFlow Lite models."""
 
 METADATA_SCHEMA_SOURCE: Final = "mediapipe/tasks/metadata/metadata_schema_py_generated.py"
-"""In the wheel: Python module that writes the description of a model's input."""
+"""Python module in the wheel that writes the description of a model's input."""
 
 LICENSE_SOURCE: Final = "mediapipe-0.10.21.dist-info/LICENSE"
 """In the wheel: MediaPipe's licence."""

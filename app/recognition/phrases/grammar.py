@@ -37,7 +37,7 @@ class Grammar(GrammarParts):
         Raises
         ------
         LanguageError
-            Its pointer is that of the language file.
+            When a gesture is missing; its pointer is that of the language file.
 
         """
         for use in self.uses():

@@ -45,13 +45,13 @@ class PhraseEvent:
     gestures
         Labels of the message so far, including this gesture if it belongs to it.
     label
-        Of this gesture; None when it was rejected, and for a pause.
+        Label of this gesture; None when it was rejected, and for a pause.
     expected
         Labels that may come next, in the grammar's order.
     mission
         The meaning of the message; only when complete.
     start, end
-        Seconds: of the message so far, in the clock of the gestures.
+        Seconds at which the message so far starts and ends, in the clock of the gestures.
 
     """
 

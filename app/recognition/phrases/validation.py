@@ -28,14 +28,15 @@ MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
 
 MAX_PHRASES_IN_MESSAGE = 8
-"""CADDIAN's missions have up to eleven commands; longer ones are planned on the surface."""
+"""Most phrases of a message. CADDIAN's missions have up to eleven commands; longer ones are planned
+on the surface."""
 
 MAX_GESTURES_IN_PHRASE = 40
-"""With every repetition counted: bounds the work of the check, and a phrase of forty gestures takes
-minutes to show."""
+"""Most gestures of a phrase, with every repetition counted: bounds the work of the check, and a
+phrase of forty gestures takes minutes to show."""
 
 MAX_GESTURES_IN_GRAMMAR = 1000
-"""Of all phrases together, for the same reason: the check compares each with each."""
+"""Most gestures of all phrases together, for the same reason: the check compares each with each."""
 
 MAX_TIMEOUT = 600.0
 """Seconds: ten minutes, far longer than any pause within a message."""

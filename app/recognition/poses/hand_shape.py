@@ -20,7 +20,7 @@ KNUCKLES_PER_PALM = 1.2
 """Palm length over the width of the knuckles, for foreshortened palms (as in `salute`)."""
 
 MOST_FRAMES = 64
-"""Frames that say what a hand's shape is, see `choose_frames`: more change no digit of a median."""
+"""Most frames from which a hand's shape is computed, see `choose_frames`: more change no digit."""
 
 
 _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
@@ -84,7 +84,7 @@ class HandShape:
     def palm(self) -> float:
         """Length of the palm, wrist to middle knuckle, in sizes of the hand.
 
-        Of a foreshortened palm by the width of its knuckles.
+        A foreshortened palm is measured by the width of its knuckles.
         """
         return float(measure_palms(self.xy[None])[0])
 

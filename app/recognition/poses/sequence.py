@@ -26,7 +26,7 @@ put the ratio at 1.3 to 1.7; it only stands in until the hips are seen.
 
 
 HANDS_SHAPE = (2, len(HAND_LANDMARKS), 2)
-"""Of the hands of one frame: left and right, landmarks, x and y."""
+"""Shape of the hands of one frame: left and right, landmarks, x and y."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

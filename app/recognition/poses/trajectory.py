@@ -56,10 +56,10 @@ class Trajectory:
         moves or no hand is seen, and in demonstrations that are a movement.
     then_hands
         The same hands with the second of two shapes that they hold one after the other
-        (`find_holds`); empty where `hands` are all.
+        (`find_holds`); empty where there is only one shape.
     moving_hands
         The hands that keep a shape during a movement, left then right (`find_moving_hands`); empty
-        where none is seen for long enough, and where nobody asks for them.
+        where none is seen for long enough, and where they are not requested.
 
     """
 

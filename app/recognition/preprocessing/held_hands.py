@@ -20,8 +20,8 @@ from app.recognition.preprocessing.salience import (
 )
 
 HOLD_PERCENTILES = (20.0, 80.0)
-"""The percentiles of a held hand's path taken as peak to peak: it may come and go in a fifth of the
-time at either end, and no stroke of a gesture is over in that."""
+"""The percentiles of a held hand's path taken as peak to peak: the hand may come and go in a fifth
+of the time at either end, in which no stroke of a gesture is complete."""
 
 PALMS_PER_TORSO = 5.2
 """Torso length over palm length (wrist to middle knuckle), 52 against 10 cm (Winter 2009)."""
@@ -36,11 +36,11 @@ that opens and closes has no shape. A wobbling flat hand ("something is wrong") 
 0.48; most pairs of signs are 0.7 and more apart."""
 
 SMALLER = 0.6
-"""Share of the smallest movement of a language below which a take is none of them: people's takes
-differ in size by a third of a doubling, and rarely by two."""
+"""Share of the smallest movement of a language below which a take is no movement of the language:
+people's takes differ in size by a third of a doubling, and rarely by two."""
 
 LEAST_SWAY = 0.1
-"""Torso lengths by which every hand moves that holds a shape: nobody hovers more steadily."""
+"""Least movement, in torso lengths, of a hand that holds a shape: nobody hovers more steadily."""
 
 LOWEST = 0.35
 """Lowest place of a hand that shows something, torso lengths below the torso's centre: a hand that
@@ -50,7 +50,7 @@ _WRIST = HAND_LANDMARKS.index("wrist")
 
 
 def find_least_movement(movements: Iterable[Trajectory]) -> float:
-    """Return how far a hand or the head moves at least in a take of a language's movements.
+    """Return the least distance that a hand or the head moves in takes of a language's movements.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def find_least_movement(movements: Iterable[Trajectory]) -> float:
 def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandShape, ...]:
     """Find the hands that hold a shape, where nothing moves clearly.
 
-    A hand counts that is seen in `LEAST_SEEN` of the frames, stays at one place, keeps its shape
+    A hand counts if it is seen in `LEAST_SEEN` of the frames, stays at one place, keeps its shape
     and does not hang down.
 
     Parameters
@@ -110,8 +110,8 @@ def measure_distances(hands: FloatArray, shape: FloatArray) -> FloatArray:
 def rests_between_ends(trajectory: Trajectory) -> bool:
     """Return whether hands and head rest between the ends of a take.
 
-    At the ends a hand may be brought to where it shows something, and taken away again. A movement
-    that is small as a whole does not rest before it is as still as a held hand.
+    At the ends a hand may be moved to its place and away again. A movement that is small as a whole
+    counts as rest only if it is as still as a held hand.
     """
     moved = measure_displacements(trajectory)
     farthest = max((moved[name] for name in choose_representatives(trajectory)), default=0.0)

@@ -26,9 +26,9 @@ MOST_HOLDS: Final = 2
 """Most shapes of one gesture: longer sequences are phrases, which name each of their signs."""
 
 MOST_TOLD: Final = 3
-"""Most shapes that are told apart, one more than a gesture has. Each of two is held in a third of
-a hand's frames at least, of three in a quarter: the hand model errs for less, by up to 1.1 sizes of
-the hand in a quarter of a sign's frames."""
+"""Most shapes that are distinguished, one more than a gesture has. Each of two shapes is held in at
+least a third of a hand's frames, each of three in a quarter: errors of the hand model are shorter,
+with up to 1.1 sizes of the hand in a quarter of a sign's frames."""
 
 TWO_SHAPES: Final = 0.65
 """Distance of two shapes that one hand holds one after the other, in sizes of the hand: the parts
@@ -47,13 +47,13 @@ AGREEING: Final = 0.85
 """Least share of the frames of a part that show its own shape: the change itself takes some."""
 
 CLEARLY: Final = 2.0
-"""How many times nearer to its own shape than to the next one a hand is while it holds it; between
-them it is on its way."""
+"""Factor by which a hand that holds a shape is nearer to it than to the next one; in between, the
+hand is changing."""
 
 MOST_DRIFT: Final = 0.4
-"""Largest distance of the first third of a shape between two others from its last third, in sizes
-of the hand: a hand that slowly goes from one to the other drifts by 0.6, one that holds a sign by
-0.07 (median) to 0.44 (95 %)."""
+"""Largest distance between the first and the last third of a shape that lies between two others, in
+sizes of the hand: a hand that slowly changes from one to the other drifts by 0.6, a hand that holds
+a sign by 0.07 (median) to 0.44 (95 %)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,9 +77,9 @@ class Hold:
 def find_holds(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
     """Find the hand shapes that a take holds one after the other, where nothing moves clearly.
 
-    A hand takes another shape where its frames before and after differ by `TWO_SHAPES`, by less
-    where it holds both still (`TWO_STILL_SHAPES`). Between two
-    holds the hand may be unseen; what it shows on its way counts with the shape it is nearer to.
+    A hand changes its shape where the frames before and after differ by `TWO_SHAPES`, or by
+    `TWO_STILL_SHAPES` where it holds both still. Between two holds the hand may be unseen; frames
+    on the way count with the nearer shape.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def find_single_hold(poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold,
 
 
 def keep_holds(trajectory: Trajectory, holds: Sequence[Hold]) -> Trajectory:
-    """Return a trajectory with the hands of its holds; without any of more than `MOST_HOLDS`."""
+    """Return a trajectory with the hands of its holds; with none of more than `MOST_HOLDS`."""
     if len(holds) > MOST_HOLDS:
         return trajectory
     hands, then_hands = (*(hold.hands for hold in holds), (), ())[:MOST_HOLDS]
@@ -115,7 +115,7 @@ def keep_holds(trajectory: Trajectory, holds: Sequence[Hold]) -> Trajectory:
 
 
 def describe_excess(holds: Sequence[Hold]) -> str:
-    """Return that a take shows three shapes, and a gesture has two, in words."""
+    """Return the message that a take shows three shapes although a gesture has two."""
     second, third = (hold.start for hold in holds[1:])
     return (
         f"three hand shapes one after the other, the second from {second:.1f} s and the third from "
@@ -124,7 +124,7 @@ def describe_excess(holds: Sequence[Hold]) -> str:
 
 
 def _find_holds_of(side: Side, poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
-    """Return the holds of a hand that takes another shape; none of one that does not."""
+    """Return the holds of a hand that changes its shape; none if it does not."""
     found = []
     for start, end in _find_stretches(side, poses):
         hands = find_held_hands(poses.between(start, end), trajectory)
@@ -159,8 +159,8 @@ def _find_stretches(side: Side, poses: PoseSequence) -> list[tuple[float, float]
 def _leave_out_changes(shown: FloatArray, starts: tuple[int, ...]) -> list[tuple[int, int]]:
     """Return the first and the last frame of every shape in a division of ``(T, 21, 2)``.
 
-    At a change the hand shows a shape from where it is `CLEARLY` nearer to it than to the other
-    one; nothing where it never is.
+    At a change, a shape counts only while the hand is `CLEARLY` nearer to it than to the other one.
+    No frames are returned if a shape never counts.
     """
     parts = [*zip(starts, (*starts[1:], len(shown)), strict=True)]
     shapes = [_take_median(shown[slice(*part)]) for part in parts]
@@ -181,8 +181,9 @@ def _leave_out_changes(shown: FloatArray, starts: tuple[int, ...]) -> list[tuple
 def _divide(shown: FloatArray) -> tuple[int, ...]:
     """Return the numbers of the frames ``(T, 21, 2)`` at which a shape begins, the first 0.
 
-    The most shapes into which they can be divided. Of all ways to do so, the one with most frames
-    that show their own shape, and of those the one with the shapes farthest apart.
+    The frames are divided into as many shapes as possible. Of all such divisions, the one with most
+    frames that show their own shape is chosen, and of equal ones the one with the shapes farthest
+    apart.
     """
     # Many divisions have parts in common.
     part = cache(partial(_Part, shown))
@@ -198,7 +199,7 @@ def _divide(shown: FloatArray) -> tuple[int, ...]:
 
 
 def _list_divisions(frames: int, count: int) -> Iterator[tuple[int, ...]]:
-    """Yield the starts of all divisions into `count` parts of a share of 1 / (count + 1) each."""
+    """Yield the starts of all divisions into `count` parts of at least 1 / (count + 1) each."""
     least = max(1, ceil(frames / (count + 1)))
     for more in combinations_with_replacement(range(frames - count * least + 1), count - 1):
         yield (0, *(number * least + each for number, each in enumerate(more, start=1)))
@@ -206,7 +207,7 @@ def _list_divisions(frames: int, count: int) -> Iterator[tuple[int, ...]]:
 
 @dataclass(frozen=True, eq=False)
 class _Part:
-    """The frames ``shown[start:end]`` of ``(T, 21, 2)``, measured when it is asked for."""
+    """The frames ``shown[start:end]`` of ``(T, 21, 2)``, measured when needed."""
 
     shown: FloatArray
     start: int
@@ -224,12 +225,12 @@ class _Part:
 
     @cached_property
     def spread(self) -> float:
-        """The median distance of the own frames."""
+        """The median distance of the part's own frames."""
         return float(np.median(self.distances[self.start : self.end]))
 
     @cached_property
     def drift(self) -> float:
-        """How far the first and the last third are apart."""
+        """The distance between the median shapes of the first and the last third."""
         frames = self.shown[self.start : self.end]
         third = max(1, len(frames) // 3)
         first, last = (_take_median(part) for part in (frames[:third], frames[-third:]))
@@ -237,10 +238,10 @@ class _Part:
 
 
 def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
-    """Return how many frames of a division show their own shape, and how far these are apart.
+    """Return how many frames show their own shape, and the least distance of adjacent shapes.
 
-    None where two shapes that follow each other are alike, too few frames agree with theirs, or a
-    shape between two others is the hand on its way.
+    None where adjacent shapes are alike, too few frames agree with their shape, or a shape between
+    two others is a slow change.
     """
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
@@ -256,7 +257,7 @@ def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
             if own_side.mean() < AGREEING:
                 return None
             agreeing += int(own_side.sum())
-    # What takes longest comes last.
+    # The slowest test comes last.
     if any(part.drift > MOST_DRIFT for part in parts[1:-1]):
         return None
     return agreeing, nearest

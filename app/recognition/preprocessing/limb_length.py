@@ -32,7 +32,7 @@ def limit_limbs(paths: FloatArray, demonstration: Trajectory) -> FloatArray:
     paths
         ``(..., T, K, 2)``, finite, of the demonstration's K landmarks.
     demonstration
-        Each bone can look at least as long as here.
+        The demonstration; each bone may look at least as long as in it.
 
     Returns
     -------

@@ -36,7 +36,7 @@ def find_moving_hands(
     """Find the shapes that hands keep during a movement.
 
     The hand turns with the arm: every frame is turned in the image to the median shape of all,
-    which has the mean direction of the take. A hand counts that is seen in `LEAST_SEEN` of the
+    which has the mean direction of the take. A hand counts if it is seen in `LEAST_SEEN` of the
     frames and keeps its shape, up to `MOST_CHANGE`.
 
     Parameters
@@ -44,7 +44,7 @@ def find_moving_hands(
     poses
         Repaired poses of a take.
     sides
-        The person's hands that are looked at.
+        The sides of the hands to search.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 """Quality check: refuses poses that are too poor to recognise after `repair`.
 
-A refusal with its reason is the better answer there; the nearest gesture would be a guess.
+A refusal with a reason is better than the nearest gesture, which would be a guess.
 """
 
 from __future__ import annotations

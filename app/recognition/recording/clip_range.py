@@ -1,4 +1,4 @@
-"""Clip range: the part of a recording that is meant: a take, a chosen range, or all of it."""
+"""Clip range: the selected part of a recording: a take, a chosen range, or all of it."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ def find_demonstration(
 ) -> Demonstration:
     """Find the demonstration meant by a range of seconds.
 
-    A range that is a take's own, from salute to salute, means its stroke, without the hand's way
-    from and to the salute unless `keep_transit`. Any other range is taken as it is.
-    Without a range the clip's only take is meant, or all of a clip in which nobody salutes.
+    A range that equals a take, from salute to salute, selects its stroke, without the transits
+    unless `keep_transit`. Any other range is used unchanged. Without a range, the clip's only take
+    is selected, or all of a clip without salutes.
 
     Takes are what lies between salutes, or other triggers of a language.
 
@@ -84,7 +84,7 @@ def find_demonstration(
 def find_surroundings(
     recording: Recording, start: float, end: float, trigger: Trigger = SALUTE
 ) -> PoseSequence:
-    """Return what a range was cut out of: the take around it between its triggers, or the clip."""
+    """Return the poses around a range: the take around it between its triggers, or the clip."""
     for take in find_brackets(recording, trigger):
         if take.start - SAME_MOMENT <= start and end <= take.end + SAME_MOMENT:
             return recording.poses.between(take.start, take.end)

@@ -15,8 +15,8 @@ def place_hands(hands: Sequence[Sequence[Hand]], wrists: FloatArray) -> FloatArr
 
     A hand belongs to the wrist that it is nearest to: the hand model guesses the side from the
     shape alone and takes the back of a left hand for the palm of a right one. Two hands at one
-    wrist are paired with both by the least sum of distances. Where no wrist is seen, the model's
-    own side counts, for the hand that it believes in most.
+    wrist are assigned to both wrists by the least sum of distances. Where a wrist is not seen, the
+    model's own side counts; of two hands of one side, the hand with the higher score.
 
     Parameters
     ----------

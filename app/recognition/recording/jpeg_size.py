@@ -1,4 +1,4 @@
-"""Size of a JPEG picture from its header: FFmpeg does not tell the size of one it refuses."""
+"""Size of a JPEG picture from its header: FFmpeg does not state it for a picture it refuses."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """Markers that are followed by the size (ITU-T T.81, table B.1)."""
 
 _WITHOUT_LENGTH = frozenset((*range(0xD0, 0xDA), 0x01))
-"""Markers of no segment: restarts, start and end of the picture."""
+"""Markers without a segment: restarts, start and end of the picture."""
 
 
 def read_jpeg_size(picture: bytes) -> tuple[int, int] | None:

@@ -119,10 +119,10 @@ class LiveTakes:
         )
 
     def cut_gap(self) -> Take | None:
-        """Cut out what lies before the salute that began a take with the last frame.
+        """Cut out the gap before the salute with which the last frame began a take.
 
-        It lies between the salute that ended the last take and that one. Where a salute was missed,
-        all later ones are paired wrongly, and this is the take.
+        The gap lies between that salute and the one that ended the previous take. Where a salute
+        was missed, all later ones are paired wrongly, and the gap is the take.
 
         Returns
         -------

@@ -103,7 +103,7 @@ WIDE_SPREAD = Condition(20.0, 4.0)
 """Degrees of the V: far beyond an open hand's 12."""
 
 WIDEST_SPREAD = 40.0
-"""Degrees: people's V is narrower; a folded ring finger can exceed it."""
+"""Largest degrees of the V: people's is narrower; a folded ring finger can exceed it."""
 
 WIDE_TIP_GAP_RATIO = Condition(1.4, 0.2)
 """Tip gaps as in `TIP_GAP_RATIO`."""
@@ -167,7 +167,7 @@ def salute_score(hand_xy: FloatArray) -> float:
         return 0.0
     try:
         shape = _HandShape.of(points)
-    except OverflowError:  # landmarks farther apart than numbers go
+    except OverflowError:  # distances too large for a float
         return 0.0
     # The score grows with the excess, so the least excess is of the least fulfilled condition.
     return score_condition(max(_clear_salute(shape), _wide_salute(shape)))
@@ -288,7 +288,7 @@ def best_salute(hands: Iterable[Hand]) -> float:
 
 @dataclass
 class HeldTrigger:
-    """Turns the scores of a stream's trigger, a salute by default, into held ones.
+    """Detects from the scores of a stream whether the trigger, a salute by default, is held.
 
     The time between neighbouring frames that both show the salute is summed, so a detection in a
     single frame adds nothing at any frame rate. One such step adds at most half of `hold`: a

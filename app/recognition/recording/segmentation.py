@@ -84,15 +84,15 @@ class TakeMachine:
     A salute that returns within `shortest` seconds of its release continues. A take longer than
     `longest` seconds ends unclosed.
 
-    Where another trigger ends a take than begins it, each is known by itself: one that begins
-    leaves an open take unclosed and begins the next, and one that ends does nothing without a take.
+    Where start and stop triggers differ, each has its own effect: a start trigger during a take
+    leaves that take unclosed and begins the next; a stop trigger without a take does nothing.
 
     Attributes
     ----------
     trigger
         Detects held salutes.
     stop
-        Detects what ends a take; None: what begins it.
+        Detects the stop trigger; None: the start trigger also ends a take.
     shortest, longest
         Least and most seconds of a take.
     state
@@ -135,9 +135,9 @@ class TakeMachine:
         time
             Seconds, later than in every call before.
         score
-            Score in [0, 1] of the best salute (`best_salute`), or of what begins a take.
+            Score in [0, 1] of the best salute (`best_salute`), or of the start trigger.
         stop_score
-            Score in [0, 1] of what ends a take, for a machine with a `stop` of its own.
+            Score in [0, 1] of the stop trigger, for a machine with a `stop`.
 
         Returns
         -------
@@ -185,7 +185,7 @@ class TakeMachine:
         return self._unclosed(released, time) if time - released >= self.shortest else None
 
     def _update_both(self, time: float, held: bool, stopped: bool) -> Bracket | None:
-        """Process a frame where what ends a take differs from what begins it."""
+        """Process a frame where start and stop triggers differ."""
         assert self.stop is not None
         found = None
         if self.state is TakeState.done and not stopped:
@@ -206,7 +206,7 @@ class TakeMachine:
         return found
 
     def _end_by_stop(self, time: float, stopped: bool) -> Bracket | None:
-        """End a take by what ends it, or because it is too long."""
+        """End a take by its stop trigger, or because it is too long."""
         assert self.stop is not None
         since = self.stop.since
         released = self.trigger.until if self._released is None else self._released
@@ -253,7 +253,7 @@ class TakeMachine:
 
 
 def create_held_pose() -> HeldTrigger:
-    """Create what detects that a pose of the arms is held."""
+    """Create the detector of a held pose of the arms."""
     return HeldTrigger(hold=POSE_SECONDS, leave=POSE_LEAVE_SCORE)
 
 
@@ -325,7 +325,7 @@ def takes_in(
     -------
     The takes in order; none without salutes, and none for a language without trigger, whose
     gestures a `Spotter` finds. Only the last one can be unclosed, unless a stop salute was
-    forgotten for `LONGEST_TAKE` seconds, or another trigger stops than starts.
+    forgotten for `LONGEST_TAKE` seconds, or start and stop triggers differ.
 
     """
     return tuple(

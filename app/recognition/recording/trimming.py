@@ -75,7 +75,8 @@ STRAIGHT_REACH = 0.85
 half circle has 0.64; a quarter circle has 0.90 but is no whole piece of a stroke."""
 
 LONGEST_REACH = 1.5
-"""Seconds. Reaches take 0.5 to 1 s (Flash and Hogan 1985); in water somewhat longer."""
+"""Most seconds of a reach. Reaches take 0.5 to 1 s (Flash and Hogan 1985); in water somewhat
+longer."""
 
 LARGEST_SHARE = 0.45
 """Largest share of a take that one reach may have; two leave a tenth."""
@@ -151,11 +152,11 @@ def find_stroke(
     poses
         Poses from the first salute to the last one.
     first_salute, last_salute
-        When the salutes were seen. The hand may keep the shape while it leaves, and take it before
-        it arrives. None: the take was not closed, and only its beginning is trimmed.
+        When the salutes were seen. The hand may keep the shape while it leaves, and form it before
+        it arrives. `last_salute` None: the take was not closed, and only its beginning is trimmed.
     posed
-        Whether these are poses of the arms, which a reach leaves or takes: what moves within them
-        alone is unrest.
+        Whether the triggers are poses of the arms. A movement entirely within a pose is unrest, no
+        reach.
 
     Returns
     -------

@@ -14,11 +14,13 @@ class VideoLimits:
     Attributes
     ----------
     pixels
-        Of one frame. The default takes the widest pictures of action cameras (5312 x 2988).
+        Most pixels of one frame. The default allows the widest pictures of action cameras (5312 x
+        2988).
     frames
-        Of one clip. The default takes `seconds` of 60 frames each.
+        Most frames of one clip. The default allows `seconds` of 60 frames each.
     seconds
-        Of one clip. A gesture lasts seconds; 15 minutes take a whole practice session.
+        Longest duration of one clip. A gesture lasts seconds; 15 minutes take a whole practice
+        session.
 
     """
 

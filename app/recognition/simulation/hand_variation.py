@@ -29,11 +29,11 @@ class HandSpread:
     roll
         Degrees in the image.
     turn
-        Degrees about an axis in the image, of a hand taken for flat.
+        Degrees about an axis in the image, as if the hand were flat.
     bend
-        Degrees by which each bone of a finger points otherwise.
+        Degrees by which each bone of a finger changes its direction.
     error
-        Of each landmark, in sizes of the hand.
+        Error of each landmark, in sizes of the hand.
 
     """
 

@@ -22,8 +22,8 @@ from app.recognition.simulation.background_motion import (
 from app.recognition.triggers.arm_pose import ArmPose
 
 LIMB_SPREAD: Final = 0.08
-"""Standard deviation of the logarithm of a limb's length over the torso's, which contains what the
-pose model errs on both (people's own differ by 0.05; Winter 2009)."""
+"""Standard deviation of the logarithm of a limb's length over the torso's, including the pose
+model's errors on both (people's own differ by 0.05; Winter 2009)."""
 
 TURN_SPREAD: Final = 15.0
 """Standard deviation in degrees by which a diver is turned away from the camera."""
@@ -76,7 +76,7 @@ def _hold(pose: ArmPose, random: np.random.Generator) -> HeldPose:
     upper, lower, width = np.exp(random.normal(0, LIMB_SPREAD, 3))
     own = width * shoulders
     elbows = own + upper * (places[:, 0] - shoulders)
-    # Hands go to a place, on the head or the belly, rather than keep an angle: half of each.
+    # Hands go to a place (head, belly) rather than keep an angle: half of each.
     reached = elbows + lower * (places[:, 1] - places[:, 0])
     wrists = (reached + places[:, 1]) / 2 + random.normal(0, PLACE_SPREAD, (2, 2))
     elbows = elbows + random.normal(0, PLACE_SPREAD, (2, 2))

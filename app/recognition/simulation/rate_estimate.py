@@ -1,9 +1,9 @@
 """Rate estimates: the probability of an error, from few simulated takes, with an interval.
 
 Counting errors is too coarse: of a dozen takes none may be misread at a rate of one in fifty. The
-estimate uses the mean of the takes' margins, and for their scatter that of people's takes. The
-simulated takes' own scatter is not used: variants have a heavier tail than people and predicted
-five confusions for each that was observed (`benchmarks/studies/predictions.md`).
+estimate uses the mean of the takes' margins and the scatter of people's takes. The simulated takes'
+own scatter is not used: variants have a heavier tail than people and predicted five confusions for
+each that was observed (`benchmarks/studies/predictions.md`).
 """
 
 from __future__ import annotations

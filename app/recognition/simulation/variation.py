@@ -154,9 +154,9 @@ def draw_variants(
     Returns
     -------
     `count` trajectories with the demonstration's landmarks, unit and number of moments, from
-    second 0 on. What does not move varies in tempo alone; a single moment does not vary. Of a
-    held hand shape, or of two in sequence, the hands alone vary (`hand_variation`), of a movement
-    those that move too.
+    second 0 on. What does not move varies in tempo alone; a single moment does not vary. For a held
+    hand shape, or two in sequence, only the hands vary (`hand_variation`); for a movement, its
+    moving hands vary as well.
 
     Raises
     ------

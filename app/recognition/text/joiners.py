@@ -9,7 +9,8 @@ from __future__ import annotations
 import unicodedata
 
 JOINERS = "\u200c\u200d"
-"""Zero width non-joiner and joiner: they are not seen, and tell which letters are joined."""
+"""Zero width non-joiner and joiner: invisible characters that determine which letters are
+joined."""
 
 _REMOVED = str.maketrans(dict.fromkeys(JOINERS))
 

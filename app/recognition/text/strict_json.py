@@ -99,7 +99,7 @@ def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any
 
 
 def canonical_json(value: Any) -> str:
-    """Write JSON in the one form of RFC 8785, so that its hash means its content.
+    """Write JSON in the one form of RFC 8785, so that equal content has one hash.
 
     Keys sorted by UTF-16 code units, no white space, numbers as ECMAScript writes them.
     """

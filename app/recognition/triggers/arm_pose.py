@@ -37,8 +37,8 @@ HOLD_SECONDS = 0.6
 than half a second (Flash and Hogan 1985), and divers hold a sign on purpose for longer."""
 
 LEAVE_SCORE = 0.4
-"""Score down to which a pose continues: a fifth beyond the tolerance, so that sway does not end it,
-and an arm that went down does."""
+"""Score down to which a pose continues: a fifth beyond the tolerance, so that sway does not end it
+but a lowered arm does."""
 
 HANGING_ARMS = ((0.58, 0.42), (0.66, 0.9), (-0.58, 0.42), (-0.66, 0.9))
 """Places of `ARM_JOINTS` of arms that hang, of a diver who faces the camera."""
@@ -142,7 +142,7 @@ class ArmPose:
 
     @classmethod
     def of_joints(cls, joints: Mapping[str, Place | list[float]]) -> ArmPose:
-        """Return the pose of places by the joints' names, which are rounded to `DIGITS`."""
+        """Return the pose of places given by the joints' names, rounded to `DIGITS`."""
         first, second, third, fourth = (
             (round(float(joints[name][0]), DIGITS), round(float(joints[name][1]), DIGITS))
             for name in ARM_JOINTS
@@ -165,7 +165,7 @@ class ArmPose:
         return " and ".join(hands)
 
     def score(self, places: FloatArray) -> FloatArray:
-        """Return how much bodies hold the pose.
+        """Return how closely bodies hold the pose.
 
         Parameters
         ----------

@@ -15,8 +15,8 @@ from app.recognition.triggers.arm_pose import ARM_JOINTS, ArmPose, locate_arms
 TriggerKind = Literal["salute", "pose", "gesture", "none"]
 
 MOST_ALIKE = 0.1
-"""Largest score of the stop pose as the start pose: between the two lie then a tolerance and more
-of another body."""
+"""Largest score of the stop pose as the start pose: the two then differ by more than the tolerance
+for another body."""
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Trigger:
     ----------
     kind
         ``salute``: a Vulcan salute. ``pose``: a held pose of the arms. ``gesture``: a gesture of
-        the language; what is spotted between two counts (`app.recognition.spotting`). ``none``:
-        nothing; gestures are spotted anywhere.
+        the language; gestures spotted between two of them count (`app.recognition.spotting`).
+        ``none``: nothing; gestures are spotted anywhere.
     start
         Of kind ``pose``, the pose that begins a take.
     stop
@@ -75,7 +75,7 @@ class Trigger:
 
     @property
     def words(self) -> str:
-        """What is held, for people."""
+        """The trigger in words, for people."""
         if self.kind == "none":
             return "without a trigger, gestures anywhere"
         if self.kind == "gesture":
@@ -93,7 +93,7 @@ class Trigger:
 
     @property
     def spots(self) -> bool:
-        """Whether gestures are spotted in continuous motion, for nothing held brackets them."""
+        """Whether gestures are spotted in continuous motion, as no held trigger brackets them."""
         return self.kind in ("gesture", "none")
 
     def renamed(self, before: str, after: str) -> Trigger:
@@ -114,7 +114,7 @@ class Trigger:
         return (*SHOULDERS, *ARM_JOINTS) if self.kind == "pose" else ()
 
     def score(self, poses: PoseSequence, salute: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return how much every frame shows what begins a take, and what ends it.
+        """Return the scores of every frame for what begins a take and for what ends it.
 
         Parameters
         ----------

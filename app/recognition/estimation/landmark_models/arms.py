@@ -23,8 +23,8 @@ WRIST_SHIFT: Final = 0.1
 """Shift towards the finger tips, over the same length, as in MediaPipe Holistic."""
 
 FOREARM_VISIBILITY: Final = 0.5
-"""Least visibility of a wrist at whose forearm's end a hand is searched: a larger place needs a
-surer arm."""
+"""Least visibility of a wrist for a search at the end of its forearm: the larger region needs a
+more certain arm."""
 
 FOREARM_SIDES: Final = (0.6, 0.9)
 """Sides of the regions at a forearm's end, over the body's size: a hand is 0.4 of a torso long, and
@@ -44,9 +44,9 @@ tracked body's arms 95 % are nearer than 0.6; those of bystanders are several pa
 def region_of_wrist(body: Body, side: Side) -> Region | None:
     """Return the region of the hand at the end of an arm, from the pose alone.
 
-    Centred on the middle finger's knuckle, which lies between those of index and little finger,
-    twice as near to the index, and turned so that it is straight above the wrist (MediaPipe
-    Holistic, Grishchenko and Bazarevsky 2020).
+    The region is centred on the middle finger's knuckle, which lies between those of index and
+    little finger, twice as near to the index. It is turned so that this knuckle is straight above
+    the wrist (MediaPipe Holistic, Grishchenko and Bazarevsky 2020).
 
     Parameters
     ----------
@@ -76,8 +76,9 @@ def region_of_wrist(body: Body, side: Side) -> Region | None:
 def regions_of_forearm(body: Body, side: Side) -> tuple[Region, ...]:
     """Return regions at the end of a forearm, for hands whose fingers the pose does not show.
 
-    A glove hides the fingers that `region_of_wrist` needs. The forearm's direction and the body's
-    size, the longer of torso and shoulders, say as well where a hand is and how large.
+    A glove hides the fingers that `region_of_wrist` needs. The direction of the forearm and the
+    size of the body (the longer of torso and shoulders) also show where a hand is and how large it
+    is.
     """
     elbow, wrist = (POSE_LANDMARKS.index(f"{side}_{joint}") for joint in ("elbow", "wrist"))
     if not body.visibility[wrist] >= FOREARM_VISIBILITY:

@@ -12,10 +12,10 @@ from app.recognition.estimation.landmark_models.smoothing import ExponentialFilt
 from app.recognition.poses.frame import Body, Image
 
 SEARCH_PAUSE: Final = 10
-"""Frames in a row without a person before another search; the first frame is searched at once. The
-detector finds most people within these, and tracking goes on from who is found. A search costs as
-much as five detections, so half as much again is spent on frames without a person, and nothing on
-others."""
+"""Consecutive frames without a person before another search; the first frame is searched at once.
+The detector finds most people within these frames, and they are tracked from then on. A search
+costs as much as five detections, so frames without a person cost half as much again, and others no
+more."""
 
 VISIBILITY_WEIGHT: Final = 0.1
 """Weight of a new visibility in MediaPipe's smoothing, which lags by about ten frames."""

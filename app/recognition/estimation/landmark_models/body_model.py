@@ -47,12 +47,12 @@ MARGIN: Final = 1.25
 """The region's side over the circle's diameter, so that a moving body stays inside."""
 
 LEAST_PRESENCE: Final = 0.5
-"""Below it there is no body; MediaPipe's default minimum presence confidence."""
+"""Least probability of a body; MediaPipe's default minimum presence confidence."""
 
 
 @dataclass(frozen=True, eq=False)
 class SeenBody:
-    """A body as one look at one region shows it, not smoothed.
+    """A body as found in one region, not smoothed.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class SeenBody:
 
     @property
     def believed(self) -> bool:
-        """Whether there is a body, one that can be looked at again."""
+        """Whether there is a body with a usable region in the next frame."""
         return self.score >= LEAST_PRESENCE and self.following.usable
 
 
@@ -95,7 +95,7 @@ class BodyModel:
         self._session = session
 
     def look(self, image: Image, region: Region) -> SeenBody:
-        """Return the body in a usable `region` of `image`, however little the model believes it."""
+        """Return the body in a usable `region` of `image`, however low its score."""
         region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._session.pixels)
         raw, presence, heatmap, metric = self._session.run()
         points = raw.reshape(LANDMARKS, 5)[:USED_LANDMARKS]

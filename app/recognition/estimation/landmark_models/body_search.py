@@ -2,10 +2,10 @@
 
 Divers swim on their sides and head down, and water takes the contrast that the person detector was
 trained on. So its weak candidates count too, in the image turned four ways, and the landmark model
-decides among them: it is asked twice, the second time at the region that its own first answer
-gives, and a candidate is believed as far as both answers believe it. A region with nobody in it
-seldom leads to a second one that is believed. Nobody is taken whose torso leaves the image, or who
-would not fit into it: so near, the detector sees people, and the model believes hands to be bodies.
+decides among them. It runs twice, the second time on the region that its first result gives, and
+the product of both scores is the candidate's score. A region with nobody in it seldom leads to a
+second one with a high score. Candidates whose torso leaves the image, or that would not fit into
+it, are dropped: the detector sees people that near itself, and the model takes hands for bodies.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ TURNS: Final = (0.0, math.pi / 2, math.pi, -math.pi / 2)
 """Radians by which the image is turned: upright, on either side, head down."""
 
 WEAK_SCORE: Final = 0.3
-"""Least score of a candidate. Of divers in five waters it finds 89 % of bodies and 88 % of heads,
-0.2 finds 88 and 85 %, for the weakest win against better ones
+"""Least score of a candidate. With it, 89 % of divers' bodies and 88 % of their heads in five
+waters are found; with 0.2, 88 and 85 %, because the weakest candidates win against better ones
 (`benchmarks/studies/hands-and-water.md`)."""
 
 SURE: Final = 0.9
-"""Belief from which no further turn is tried; trying all of them finds no more."""
+"""Score from which no further turn is tried; trying all of them finds no more."""
 
 MOST_CANDIDATES: Final = 3
-"""Most candidates of each turn; each costs two looks."""
+"""Most candidates of each turn; each costs two runs of the landmark model."""
 
 TORSO: Final = [
     POSE_LANDMARKS.index(f"{side}_{joint}")
@@ -43,14 +43,14 @@ TORSO: Final = [
 
 
 class BodySearch:
-    """Searches a whole image for the person believed most.
+    """Searches a whole image for the person with the highest score.
 
     Parameters
     ----------
     detector
         Finds candidates.
     model
-        Decides.
+        The landmark model, which decides among them.
 
     """
 
@@ -59,7 +59,7 @@ class BodySearch:
         self._model = model
 
     def find(self, image: Image) -> SeenBody | None:
-        """Return the person believed most, whose score is that belief; None where nobody is."""
+        """Return the person with the highest product of both scores; None where nobody is found."""
         best: SeenBody | None = None
         for turn in TURNS:
             persons = self._detector.detect(image, turn=turn, least=WEAK_SCORE)

@@ -15,7 +15,7 @@ from app.recognition.estimation.landmark_models.suppression import Detection, bl
 from app.recognition.poses.frame import Image
 
 LEAST_SCORE: Final = 0.5
-"""Below it a detection is dropped; MediaPipe's default minimum detection confidence."""
+"""Least score of a detection; MediaPipe's default minimum detection confidence."""
 
 
 @dataclass(frozen=True)

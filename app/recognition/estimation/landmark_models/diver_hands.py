@@ -34,7 +34,7 @@ DETECTION: Final = 7
 """Columns of the detector's output: image in the batch, box (corners), class, score."""
 
 LEAST_SCORE: Final = 0.5
-"""Belief in a hand from which one counts, as in the published port."""
+"""Least score of a hand, as in the published port."""
 
 LEAST_PEAK: Final = 0.1
 """Mean height of the heat maps' peaks from which there is a hand. Maps are trained towards peaks of
@@ -42,8 +42,9 @@ LEAST_PEAK: Final = 0.1
 
 MEAN: Final = np.array([0.485, 0.456, 0.406])
 DEVIATION: Final = np.array([0.229, 0.224, 0.225])
-"""ImageNet's, which the classifier's own repository takes from values in 0 to 255 before it divides
-by 255; repeated here, for the weights were trained for some such scale and not for 0 to 1."""
+"""Means and standard deviations of ImageNet's channels. The classifier's own repository applies
+them to values from 0 to 255 and then divides by 255. This is repeated here, because the weights
+were trained for some such scale and not for 0 to 1."""
 
 QUARTER: Final = 0.25
 """Cells by which a peak is moved towards its higher neighbour (Xiao et al. 2018): a cell is four
@@ -104,8 +105,9 @@ class DiverHands:
         image
             ``(height, width, 3)`` RGB, upright.
         body
-            The body in the image, whose nearer wrist gives a hand's side; the models do not.
-            Without one every hand is a right one, which makes no difference to the salute.
+            The body in the image. Its nearer wrist gives a hand's side, which the models do not.
+            Without a body every hand counts as a right one, which makes no difference to the
+            salute.
 
         Raises
         ------

@@ -13,9 +13,9 @@ from app.recognition.poses.sequence import FloatArray
 
 PALM_SCALE: Final = 2.6
 PALM_SHIFT: Final = 0.5
-"""The whole hand's region from the palm's box: its side, and the shift towards the fingers.
+"""Side of the whole hand's region over that of the palm's box, and its shift to the fingers.
 
-These two and the next two are what MediaPipe's landmark model was trained with.
+These two values and the next two are those that MediaPipe's landmark model was trained with.
 """
 
 PALM_TURN: Final = 90 - 14 * 2 * math.pi - math.pi / 2
@@ -28,7 +28,7 @@ which hands are found.
 
 HAND_SCALE: Final = 2.0
 HAND_SHIFT: Final = 0.1
-"""The next frame's region from the box of a hand's landmarks: its side, and the shift."""
+"""Side of the next frame's region over that of the box of a hand's landmarks, and its shift."""
 
 WRIST, INDEX_KNUCKLE, MIDDLE_KNUCKLE, RING_KNUCKLE, PINKY_KNUCKLE = 0, 5, 9, 13, 17
 

@@ -41,7 +41,7 @@ MOST_HANDS: Final = 2
 """Most hands: a diver has two, and each costs a run of the landmark model per frame."""
 
 LEAST_PRESENCE: Final = 0.5
-"""Below it there is no hand; MediaPipe's default minimum presence confidence."""
+"""Least probability of a hand; MediaPipe's default minimum presence confidence."""
 
 WORTH_A_SECOND_LOOK: Final = 0.1
 """Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
@@ -56,19 +56,20 @@ PALM_PAUSE: Final = 4
 detection costs as much as the body model."""
 
 FOREARM_PAUSE: Final = 10
-"""Frames between searches at the ends of forearms, which cost up to four looks an arm: so at most a
+"""Frames between searches at the ends of forearms, which cost up to four looks an arm: at most a
 tenth of a frame's time is spent on arms without a hand."""
 
 SURE: Final = 0.8
-"""Presence from which a hand needs no second opinion. Below it most hands that are found at the end
-of a forearm, or by the palm detector away from the body's arms, are none; and while a tracked hand
-is below it, palms are sought although there are two already, for one may be a phantom."""
+"""Presence from which a hand is certain. Below it, most results at the end of a forearm, or of the
+palm detector away from the body's arms, are no hands. While a tracked hand is below it, palms are
+detected even with two tracked hands, because one of them may be false."""
 
 DUPLICATE_DISTANCE: Final = 0.2
 DUPLICATE_LANDMARKS: Final = 10
 DUPLICATE_OVERLAP: Final = 0.2
-"""Two hands are one if that many landmarks lie within that part of the palm's size of each
-other and their boxes overlap by that much; MediaPipe found the three values by experiment."""
+"""Two hands are one if at least this number of landmarks lies within this share of the palm's size
+of each other and their boxes overlap by more than this; MediaPipe found the three values by
+experiment."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -129,7 +130,7 @@ class HandModel:
         points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
         xy = region.to_image(points, INPUT_SIZE)
         # The model was trained on mirrored selfies and renamed since: in an unmirrored image
-        # this output is the belief in the person's own right hand.
+        # this output is the probability of the person's own right hand.
         side: Side = "right" if right[0, 0] > 0.5 else "left"
         return SeenHand(Hand(xy, side, min(float(presence[0, 0]), 1.0)), region_of_hand(xy))
 
@@ -137,15 +138,15 @@ class HandModel:
 class HandTracker:
     """Tracks up to two hands through the frames of a clip.
 
-    Palms are detected only while fewer hands than `MOST_HANDS` are tracked for `SURE`; the
-    landmarks of a frame give the regions of the next. Where there are more hands than
-    `MOST_HANDS`, or two at one arm, those are kept that the model believes most. Hands are not
-    smoothed: the model's own output is steady, and fingers are fast.
+    Palms are detected only while fewer hands than `MOST_HANDS` are tracked with a presence of
+    `SURE` or more; the landmarks of a frame give the regions of the next. Where there are more
+    hands than `MOST_HANDS`, or two at one arm, those with the highest scores are kept. Hands are
+    not smoothed: the model's own output is steady, and fingers are fast.
 
-    A palm detector sees the whole frame at 192 pixels a side, where the hands of a distant diver
-    are too small. With ``search="pose"`` each arm of the body that has no hand is looked at in the
-    full frame (after MediaPipe Holistic, Grishchenko and Bazarevsky 2020), every few frames also at
-    the end of the forearm, for gloves, and no arm has two.
+    The palm detector works on the whole frame at 192 pixels a side, in which the hands of a distant
+    diver are too small. With ``search="pose"`` a hand is searched in the full frame at each arm
+    that has none (after MediaPipe Holistic, Grishchenko and Bazarevsky 2020), every few frames also
+    at the end of the forearm, for gloves, and no arm has two hands.
 
     Parameters
     ----------
@@ -234,8 +235,8 @@ class HandTracker:
     ) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
-        A second hand at the end of one arm is dropped, the one believed less. Hands at no arm (of
-        others, or where the pose is wrong) compete with those at the arms by belief.
+        Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
+        others, or where the pose is wrong) compete with those at the arms by score.
         """
         arms = _arms_of(followed, body)
         with_forearms = self._until_forearms == 0
@@ -272,7 +273,7 @@ class HandTracker:
 
 
 def _arms_of(followed: Iterable[SeenHand], body: Body) -> dict[Side, SeenHand]:
-    """Assign hands to the arms, the one believed most first, each to the nearest within `REACH`."""
+    """Assign hands to the arms, the highest score first, each to the nearest within `REACH`."""
     arms: dict[Side, SeenHand] = {}
     for one in _by_belief(followed):
         free = [side for side in SIDES if side not in arms]

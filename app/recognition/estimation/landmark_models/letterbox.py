@@ -75,6 +75,6 @@ class Letterbox:
 
     @property
     def _scale(self) -> FloatArray:
-        """Pixels of the input per pixel of the image, across and down: rounding parts the two."""
+        """Pixels of the input per pixel of the image, across and down: they differ by rounding."""
         filled = np.array([self.width, self.height], dtype=np.float64)
         return np.asarray(filled / np.array(self.image_size))

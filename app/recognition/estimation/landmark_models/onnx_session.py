@@ -16,7 +16,8 @@ import numpy.typing as npt
 from app.recognition.errors import EstimatorError, ModelError
 
 Provider = Literal["cpu", "cuda", "tensorrt", "coreml"]
-"""What runs the models: the processor, or an accelerator with the processor as its fallback."""
+"""Execution provider of the models: the processor, or an accelerator with the processor as its
+fallback."""
 
 Tensor: TypeAlias = npt.NDArray[np.float32]
 
@@ -46,7 +47,7 @@ class Signature:
         Side in pixels of the square RGB image the model takes, as ``(1, side, side, 3)``.
     outputs
         Shapes of the outputs wanted, in the order in which `ModelSession.run` gives them.
-        Of outputs with equal shapes the file's order decides.
+        Outputs of equal shape are taken in the file's order.
 
     """
 
@@ -118,7 +119,7 @@ def check_provider(provider: str) -> None:
     Raises
     ------
     EstimatorError
-        Naming the providers that are available here.
+        When it does not or cannot; the message names the available providers.
 
     """
     here = ", ".join(available_providers())

@@ -20,7 +20,7 @@ from app.recognition.estimation.landmark_models.onnx_session import (
 )
 
 TYPES: Final = {"tensor(float)": np.float32, "tensor(float16)": np.float16}
-"""What exports take: single or half precision."""
+"""Input types of exported models: single or half precision."""
 
 
 class PlanarModel:
@@ -97,5 +97,5 @@ class PlanarModel:
 
 
 def _takes_planes(shape: tuple[int | str | None, ...]) -> bool:
-    """Return whether an input is a batch of one, or of a size left open, of three planes."""
+    """Return whether an input takes three planes, in a batch of one or of open size."""
     return shape[1] == 3 and (shape[0] == 1 or not isinstance(shape[0], int))

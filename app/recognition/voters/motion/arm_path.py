@@ -10,8 +10,8 @@ from app.recognition.voters.motion.motion_voter import DtwVoter
 class ArmPath(DtwVoter):
     """DTW distance between the paths of elbows and wrists at equal times.
 
-    As `Path`, but of all joints of both arms, whichever are salient, and in time: an elbow's share
-    in a movement tells whole arms apart, and the steps keep their speed.
+    Unlike `Path`, it compares all joints of both arms, whichever are salient, at equal times: an
+    elbow's share in a movement distinguishes whole arms, and the steps keep their speed.
     """
 
     name = "arm_path"

@@ -12,8 +12,8 @@ from app.recognition.voters.motion.motion_voter import DtwVoter
 class Direction(DtwVoter):
     """DTW distance between the directions of travel (Taranta et al. 2017, Jackknife).
 
-    The joint unit vector of all landmarks' velocities at equal steps. Without size, small details
-    count as much as large ones.
+    The descriptor is the joint unit vector of all landmarks' velocities at equal steps. Without
+    size, small details count as much as large ones.
     """
 
     name = "direction"

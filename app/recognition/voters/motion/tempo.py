@@ -22,8 +22,8 @@ class Tempo(MotionVoter):
     within = 0.38
     between = 0.5
     weight_where_needed = 0.3
-    """Added to the score per doubling of the duration, of a gesture whose tempo counts: more than
-    the distance of two takes (0.1), less than that of two gestures (1)."""
+    """Amount added to the score per doubling of the duration, for a gesture whose tempo counts:
+    more than the distance of two takes (0.1), less than that of two gestures (1)."""
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return the logarithm to base 2 of the seconds, ``(1,)``."""

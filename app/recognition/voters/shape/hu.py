@@ -18,8 +18,8 @@ figures, reach this value when people draw them; on a plain logarithm their nois
 class HuMoments(ShapeVoter):
     """Hu's invariants of translation, scale and rotation (Hu 1962; paper, Sec. IV-D1).
 
-    From the normalised central moments of the stroke's pixels, on a logarithmic scale with sign,
-    ``sign(h) log10(1 + |h| / FLOOR)``: they span ten decades, and unscaled the first would
+    Computed from the normalised central moments of the stroke's pixels, on a signed logarithmic
+    scale, ``sign(h) log10(1 + |h| / FLOOR)``: they span ten decades, and unscaled the first would
     dominate the other six.
     """
 
