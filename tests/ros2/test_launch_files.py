@@ -34,6 +34,10 @@ class LaunchConfiguration(Recorded):
     """An argument's value."""
 
 
+class Shutdown(Recorded):
+    """The end of everything that the launch file started."""
+
+
 class Node(Recorded):
     """A process to start."""
 
@@ -48,7 +52,10 @@ def launch(monkeypatch: pytest.MonkeyPatch) -> None:
         "ament_index_python": {},
         "ament_index_python.packages": {"get_package_share_directory": lambda name: NODES},
         "launch": {"LaunchDescription": list},
-        "launch.actions": {"DeclareLaunchArgument": record(DeclareLaunchArgument)},
+        "launch.actions": {
+            "DeclareLaunchArgument": record(DeclareLaunchArgument),
+            "Shutdown": record(Shutdown),
+        },
         "launch.conditions": {"IfCondition": record(Recorded)},
         "launch.substitutions": {"LaunchConfiguration": record(LaunchConfiguration)},
         "launch_ros": {},
@@ -107,6 +114,9 @@ def test_a_launch_file_starts_what_exists_with_arguments_that_are_declared(
     assert len(set(declared)) == len(declared)
     assert used(nodes) == set(declared)
     assert {node["package"] for node in nodes} == {"osg_ros"}
+    # A robot without one of its nodes is deaf; without its pictures it is not.
+    ending = {node["executable"] for node in nodes if isinstance(node["on_exit"], Shutdown)}
+    assert ending == set(executables) - {"visualisation_node"}
 
 
 @pytest.mark.usefixtures("launch")

@@ -9,5 +9,5 @@ from osg_ros.launch_arguments import create_node, create_switch, declare_argumen
 
 def generate_launch_description() -> LaunchDescription:
     """Return the description that `ros2 launch` starts."""
-    pictures = create_switch("visualisation", "visualisation_node", on=False)
+    pictures = create_switch("visualisation", "visualisation_node", on=False, needed=False)
     return LaunchDescription([*declare_arguments(), create_node("gesture_process"), *pictures])

@@ -18,6 +18,6 @@ def generate_launch_description() -> LaunchDescription:
             *create_switch("hand", "hand_node", on=True),
             *create_switch("recognition", "recognition_node", on=True),
             *create_switch("command", "command_node", on=True),
-            *create_switch("visualisation", "visualisation_node", on=True),
+            *create_switch("visualisation", "visualisation_node", on=True, needed=False),
         ]
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ament_index_python.packages import get_package_share_directory
-from launch.actions import DeclareLaunchArgument
+from launch.actions import DeclareLaunchArgument, Shutdown
 from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -34,16 +34,24 @@ def declare_arguments() -> list[DeclareLaunchArgument]:
     ]
 
 
-def create_switch(name: str, executable: str, *, on: bool) -> list[DeclareLaunchArgument | Node]:
+def create_switch(
+    name: str, executable: str, *, on: bool, needed: bool = True
+) -> list[DeclareLaunchArgument | Node]:
     """Create an executable's node with the launch argument that switches it on or off."""
     argument = DeclareLaunchArgument(
         name, default_value=str(on).lower(), description=f"Start the {executable}."
     )
-    return [argument, create_node(executable, IfCondition(LaunchConfiguration(name)))]
+    condition = IfCondition(LaunchConfiguration(name))
+    return [argument, create_node(executable, condition, needed=needed)]
 
 
-def create_node(executable: str, condition: IfCondition | None = None) -> Node:
-    """Create the node of an executable of this package from the launch arguments."""
+def create_node(
+    executable: str, condition: IfCondition | None = None, *, needed: bool = True
+) -> Node:
+    """Create the node of an executable of this package from the launch arguments.
+
+    `needed`: the launch file ends when the node ends, so that a supervisor starts all nodes again.
+    """
     image = LaunchConfiguration("image")
     return Node(
         package=PACKAGE,
@@ -60,5 +68,6 @@ def create_node(executable: str, condition: IfCondition | None = None) -> Node:
         remappings=[("image", image), ("image/compressed", [image, "/compressed"])],
         arguments=["--ros-args", "--log-level", LaunchConfiguration("log_level")],
         condition=condition,
+        on_exit=Shutdown(reason=f"{executable} has ended") if needed else None,
         output="screen",
     )
