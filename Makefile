@@ -1,4 +1,4 @@
-# What a developer or a new user does with this checkout. `make help` lists it.
+# Tasks of developers and new users in this checkout. `make help` lists them.
 # Written for GNU make 3.81 (macOS) as well: no grouped targets, no .ONESHELL.
 
 PYTHON ?= python3
@@ -8,9 +8,10 @@ UV ?= uv
 BIN := $(VENV)/bin
 # Written by npm.
 PAGE_TOOLS := node_modules/.package-lock.json
-# The environment is made without ensurepip, which Debian ships apart from Python: the pip that is at
-# hand installs into it. The lock files are complete, so pip resolves nothing, and to run it builds nothing.
-# uv, where it is at hand, takes a quarter of the time: make INSTALLER=uv.
+# The environment is made without ensurepip, which Debian packages apart from Python: the pip
+# already available installs into it. The lock files are complete, so pip resolves no dependencies,
+# and it builds none of the packages needed to run. uv, if installed, takes a quarter of the time:
+# make INSTALLER=uv.
 INSTALLER ?= pip
 ifeq ($(INSTALLER),uv)
   INSTALL := $(UV) pip install --python $(BIN)/python --quiet --no-deps
@@ -18,7 +19,7 @@ else
   INSTALL := $(PYTHON) -m pip --python $(BIN)/python --disable-pip-version-check install --quiet --no-deps
 endif
 LOCKED := --require-hashes --only-binary :all:
-# ROS 2's generators of messages need it, for the tests; it is one Python file, and there is no wheel.
+# ROS 2's message generators need it, for the tests; it is one Python file without a wheel.
 SOURCE_ONLY := --no-binary empy
 
 # Measured where the parity test runs in CI; elsewhere that test is skipped.
@@ -26,8 +27,8 @@ ifeq ($(shell uname -s -m),Linux x86_64)
   MEDIAPIPE_LOCK := requirements-mediapipe.txt
 endif
 
-# Compiled modules are kept, whatever the shell says: the tests start some hundred processes, each of
-# which would compile ours anew.
+# Compiled modules are kept, whatever the shell's settings: the tests start some hundred processes,
+# each of which would compile our modules again.
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
@@ -43,7 +44,7 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
 	$(BIN)/osg-studio models install
 
-# Style and types beside the tests, which leave the processor idle at times.
+# Style and types are checked in parallel with the tests, which leave the processor idle at times.
 test: $(VENV)/.development models  ## Check and test everything
 	@$(MAKE) --jobs 2 lint pytest
 
@@ -52,22 +53,22 @@ test: $(VENV)/.development models  ## Check and test everything
 check: $(VENV)/.development  ## Check the source and run the quick tests, in two minutes
 	@$(MAKE) --jobs 2 lint quick
 
-# Those in the browser are all slow, and take long to collect.
+# Browser tests are left out: all are slow, and collecting them takes long.
 quick: $(VENV)/.development $(PAGE_TOOLS)
 	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci \
 	  -m "not slow and not models" -q --ignore tests/browser
 
-# What the tests execute, by branch, in their processes too; takes longer than the tests alone. Of the
-# quick tests alone: make coverage TESTS='-m "not slow"'.
+# Branch coverage of the tests, including their child processes; takes longer than the tests alone.
+# For the quick tests only: make coverage TESTS='-m "not slow"'.
 coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches the tests execute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci \
 	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
 
-# By file: the tests of one file share a server, a database or a recording. In the order of
-# tests/conftest.py: the long ones first. Three at a time also on two cores: those in the browser and
-# with other processes wait a lot, but four browsers at once take half as much processor's time again
-# as two. Examples of properties are the same ones everywhere, so that nobody's change fails for what
-# it has not touched; plain `pytest` goes on looking for others.
+# Distributed by file, since the tests of one file share a server, a database or a recording; in the
+# order of tests/conftest.py, the long ones first. Three workers even on two cores: tests with a
+# browser or other processes wait a lot, but four browsers at once take half as much processor time
+# again as two. Property tests use the same examples everywhere, so that a change fails only for its
+# own faults; plain `pytest` keeps trying new examples.
 pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
@@ -75,8 +76,8 @@ endif
 	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --hypothesis-profile ci \
 	  --durations 25
 
-# Compiles the tests once: of a fresh checkout, each of those that run them would compile all. In two
-# halves, for two processors; the messages of ROS 2 take as long as everything else.
+# Compiles the tests once: in a fresh checkout each test worker would compile all. In two halves,
+# for two processors; the messages of ROS 2 take as long as everything else.
 collection: collection-ros2 collection-others
 
 collection-ros2: $(VENV)/.development
@@ -85,9 +86,9 @@ collection-ros2: $(VENV)/.development
 collection-others: $(VENV)/.development
 	@$(BIN)/python -m pytest --collect-only -qq --ignore tests/ros2 > /dev/null
 
-# What robots run has to run on Python 3.10 as well, ROS 2 Humble's. What the language and its standard
-# library had by then is checked here, without other packages: their types were looked at by the check
-# before, and NumPy describes its own for newer Pythons alone.
+# The robot's code must also run on Python 3.10, the version of ROS 2 Humble. This checks it against
+# the language and standard library of 3.10, without other packages: the check before covers their
+# types, and NumPy's type stubs need a newer Python.
 AS_ON_HUMBLE := --python-version 3.10 --follow-imports silent --no-site-packages \
   --ignore-missing-imports --allow-subclassing-any --allow-untyped-decorators --no-warn-return-any \
   --no-warn-unused-ignores \
@@ -141,7 +142,8 @@ lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer vers
 
 PIN = $(UV) pip compile --quiet --universal --generate-hashes --custom-compile-command "make lock"
 LOCK = $(PIN) pyproject.toml
-# One version of everything on every Python and platform (`fewest`), so that what is tested is what runs.
+# One version of each package on every Python and platform (`fewest`), so that the tested versions
+# run.
 FOR_STUDIO = --python-version 3.11 --fork-strategy fewest $(UPGRADE)
 # The same on a robot, for uv keeps the versions that it finds in the file to write; on Python 3.10 the
 # last ones that support it.
@@ -152,7 +154,7 @@ clean:  ## Remove the virtual environment, caches and build results
 	  build dist test-output benchmarks/out htmlcov .coverage node_modules
 	find app tests benchmarks languages -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# Stamp files: a second `make` finds them newer than the locks and starts at once.
+# Stamp files: if they are newer than the locks, `make` skips the installation.
 
 $(VENV)/.python:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python %d.%d is too old: the studio needs 3.11 or newer; run make PYTHON=/path/to/python3.11" % sys.version_info[:2])'

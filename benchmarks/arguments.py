@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def set_arguments(description: str | None, *, draws: int, queries: int) -> argparse.ArgumentParser:
-    """Return a parser of the folder, the sets, and how many languages and queries are drawn.
+    """Return a parser for the folder, the sets, and the numbers of languages and queries to draw.
 
     Parameters
     ----------

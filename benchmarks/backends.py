@@ -20,23 +20,23 @@ from tests.postgres import postgres_cluster
 from tests.s3 import BUCKET, s3_server
 
 BACKENDS: Final = ("postgres", "dask", "s3")
-"""What a server can be given beside its folder."""
+"""Backends that a server can use beside its folder."""
 
 DASK_WORKERS: Final = 2
 
 
 @dataclass
 class Backends:
-    """What runs beside the server.
+    """Backends that run beside the server.
 
     Attributes
     ----------
     environment
         Variables that a server needs to use it.
     faults
-        By name what kills a part of it and starts it again.
+        Functions by name, each of which kills a part of a backend and restarts it.
     dask_workers
-        Return the process ids of the Dask workers, which run the worker processes of jobs.
+        Returns the process ids of the Dask workers, which run the worker processes of jobs.
 
     """
 
@@ -52,7 +52,7 @@ def backends(names: Collection[str], folder: Path, draw: Random) -> Iterator[Bac
     Raises
     ------
     SystemExit
-        When one of them is not installed here.
+        When a backend is not installed.
 
     """
     found = Backends()
@@ -62,7 +62,7 @@ def backends(names: Collection[str], folder: Path, draw: Random) -> Iterator[Bac
                 _add_postgres(found, running)
             if "s3" in names:
                 _add_s3(found, running)
-            # After it: the machines of the cluster know the bucket by this environment.
+            # Started after S3: the cluster's machines find the bucket by this environment.
             if "dask" in names:
                 _add_dask(found, running, folder, draw)
         except pytest.skip.Exception as error:
@@ -86,7 +86,7 @@ def _add_dask(found: Backends, running: ExitStack, folder: Path, draw: Random) -
 
     def restart_scheduler() -> None:
         cluster.restart_scheduler()
-        # They end by themselves when they miss it, some seconds later.
+        # The workers end by themselves some seconds after they lose the scheduler.
         for process in cluster.workers:
             process.kill()
             process.wait()
@@ -106,7 +106,7 @@ def _add_dask(found: Backends, running: ExitStack, folder: Path, draw: Random) -
 
 
 def _fill(cluster: DaskCluster) -> None:
-    """Start workers for those that have ended, as the service manager of a cluster does."""
+    """Replace workers that have ended, as the service manager of a cluster does."""
     cluster.workers[:] = [process for process in cluster.workers if process.poll() is None]
     while len(cluster.workers) < DASK_WORKERS:
         cluster.add_worker()

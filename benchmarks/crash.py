@@ -4,10 +4,10 @@
 round three clients upload clips (whole and in parts), create, rename and delete languages, and
 import language files, until the server is killed by SIGKILL at a random moment, in most rounds
 after something else: a worker process, or a part of the backends that ``--with postgres dask s3``
-gives the server, which is then started again. After the next start everything that was acknowledged
-must be there, what was not must be there wholly or not at all, and no file may be without its row.
-At the end every job must have come to an end, those that are done with all frames of their clip.
-The exit code is 1 where anything is lost.
+gives the server, which is then started again. After the next start every acknowledged change must
+be there, every other change must be there in full or not at all, and no file may be without its
+row. At the end every job must have ended, and each one that is done must have all frames of its
+clip. The exit code is 1 if anything is lost.
 """
 
 from __future__ import annotations
@@ -38,21 +38,21 @@ from benchmarks.backends import BACKENDS, Backends, backends
 from benchmarks.cost.load import SERVE, small_clip
 
 DATABASE: Final = "OSG_DATABASE_URL"
-"""Variable that names another database than SQLite in the folder, for the server to use."""
+"""Environment variable for the URL of a database other than SQLite in the folder."""
 
 API: Final = "/api/v1"
 
 FEWEST_SECONDS, MOST_SECONDS = 0.2, 3.0
-"""When a kill comes after the clients have begun: a request takes milliseconds, a job seconds."""
+"""Seconds from the clients' start to a kill: a request takes milliseconds, a job seconds."""
 
 MOST_SURVIVAL_SECONDS = 3.0
-"""How long a server may go on after something else was killed: it notices within two seconds."""
+"""Seconds that a server may run after another process was killed: it notices within two."""
 
 FRAMES = 10
-"""Of the clip that is uploaded."""
+"""Frames of the uploaded clip."""
 
 MOST_CLIPS = 12
-"""Clips that are kept; further ones are deleted, which is a change to check as well."""
+"""Number of clips to keep; further ones are deleted, a change that is checked too."""
 
 FINAL: Final = ("done", "failed", "cancelled")
 
@@ -61,16 +61,16 @@ WORKER: Final = "worker process"
 
 @dataclass
 class Written:
-    """What the server has acknowledged, and what was sent last without an answer.
+    """Changes that the server has acknowledged, and the last ones sent without an answer.
 
     Attributes
     ----------
     languages
-        By id the revision and the name; None for a deleted one.
+        Revision and name by id; None for a deleted language.
     attempts
-        By id the name, or None for a deletion, that was sent and not answered.
+        Name by id, or None for a deletion, of requests without an answer.
     clips
-        By id whether it is kept.
+        By id whether the clip is kept.
     deleting
         Ids of clips whose deletion was sent and not answered.
     acknowledged
@@ -78,11 +78,11 @@ class Written:
     refused
         Number of uploads that were refused because the process that probed them was killed.
     lost
-        What is missing or wrong, in words.
+        Missing or wrong things, in words.
     kills
-        By what was killed, in how many rounds.
+        Number of rounds by what was killed.
     ends
-        By how the jobs of the kept clips ended, how many.
+        Number of the kept clips' jobs, by how they ended.
 
     """
 
@@ -102,7 +102,7 @@ Client = Callable[[httpx.Client, Written, random.Random], None]
 
 def edit(client: httpx.Client, written: Written, draw: random.Random) -> None:
     """Create, rename or delete a language."""
-    # Not what was sent without an answer: whether that was done shows after the next start.
+    # Not a language with an unanswered request: its state is known only after the next start.
     kept = [
         key for key, state in written.languages.items() if state and key not in written.attempts
     ]
@@ -178,7 +178,7 @@ def serving(folder: Path) -> Iterator[tuple[str, subprocess.Popen[str]]]:
 
 
 def workers_of(pid: int) -> list[int]:
-    """Return the processes that a server has started, and those that they have."""
+    """Return the processes that a server has started, and their descendants."""
     parents = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
@@ -188,7 +188,7 @@ def workers_of(pid: int) -> list[int]:
 
 
 def work(address: str, written: Written, client: Client, seed: int, stop: threading.Event) -> None:
-    """Write until the server is gone or the round is over."""
+    """Send changes until the server is gone or the round is over."""
     draw = random.Random(seed)
     with httpx.Client(base_url=address, timeout=30) as connection:
         while not stop.is_set():
@@ -205,7 +205,7 @@ def work(address: str, written: Written, client: Client, seed: int, stop: thread
 
 
 def check(address: str, folder: Path, written: Written, digest: str) -> None:
-    """Compare what a fresh server has with what the former one acknowledged."""
+    """Compare the data of a restarted server with the acknowledged changes."""
     with httpx.Client(base_url=address, timeout=60) as client:
         found = {each["id"]: each for each in client.get(f"{API}/languages").json()}
         for key, state in written.languages.items():
@@ -222,7 +222,7 @@ def check(address: str, folder: Path, written: Written, digest: str) -> None:
                     written.lost.append(f"clip {key}: other bytes than were sent")
         written.attempts.clear()
         written.deleting.clear()
-        # What was stored without an acknowledgement is whole, and goes on like the others.
+        # A clip stored without an acknowledgement is complete, and is used like the others.
         for key in clips - written.clips.keys():
             written.clips[key] = True
         for key in found.keys() - written.languages.keys():
@@ -246,14 +246,14 @@ def _check_language(
 
 def _check_files(folder: Path, written: Written) -> None:
     if DATABASE in os.environ:
-        return  # Files without a row stay for a day, where another server may be writing them.
+        return  # Files without a row stay for a day if another server may be writing them.
     with closing(sqlite3.connect(folder / "studio.db")) as database:
         (verdict,) = database.execute("PRAGMA quick_check").fetchone()
         rows = {key for (key,) in database.execute("SELECT id FROM clip")}
     if verdict != "ok":
         written.lost.append(f"database: {verdict}")
     for path in (folder / "clips").iterdir():
-        # A job that began again may be at work.
+        # A restarted job may be running.
         if path.name.partition(".")[0] not in rows and not path.name.startswith("."):
             written.lost.append(f"orphan: {path.name}")
 
@@ -261,7 +261,7 @@ def _check_files(folder: Path, written: Written) -> None:
 def crash(
     rounds: int, seed: int, names: Collection[str] = (), longest: float = MOST_SECONDS
 ) -> Written:
-    """Run the rounds with the named backends, and return what was written and lost.
+    """Run the rounds with the named backends, and return the acknowledged and lost changes.
 
     `longest`: most seconds of a round before the first kill.
     """
@@ -310,7 +310,7 @@ def crash(
 
 @contextmanager
 def _environment(beside: Backends) -> Iterator[None]:
-    """Let the servers that are started here use the backends."""
+    """Set the environment so that the servers use the backends."""
     with pytest.MonkeyPatch.context() as environment:
         for name, value in beside.environment.items():
             environment.setenv(name, value)
@@ -318,7 +318,7 @@ def _environment(beside: Backends) -> Iterator[None]:
 
 
 def _kill_beside(server: int, beside: Backends, draw: random.Random) -> str:
-    """Kill something beside the server, or nothing; return what is dead when the server is."""
+    """Kill nothing or one process beside the server; return what was killed."""
     chosen = draw.choice(["", WORKER, *beside.faults])
     if chosen == WORKER:
         workers = [each for pid in (server, *beside.dask_workers()) for each in workers_of(pid)]
@@ -351,7 +351,7 @@ def _wait_for_jobs(address: str, written: Written, seconds: float = 300.0) -> No
 
 
 def _check_ends(client: httpx.Client, clips: list[dict[str, Any]], written: Written) -> None:
-    """Note how the jobs ended; one that is done has found what is in all frames, once."""
+    """Record how the jobs ended; one that is done must have every frame's poses exactly once."""
     for each in clips:
         written.ends[each["error_code"] or each["status"]] += 1
         if each["status"] == "done":

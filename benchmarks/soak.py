@@ -3,10 +3,10 @@
 ``python -m benchmarks.soak --minutes 60`` starts a server of its own and uses it: event watchers
 that come and go, uploads with their extraction, recognitions, previews, edits and deletions. Every
 few seconds it reads the server's resident memory, file descriptors, threads and child processes.
-After a time to warm up it fits a line by least squares and prints its slope with a 95 % interval,
-whose width counts that neighbouring samples depend on each other. The exit code is 1 where the
-memory grows: where the whole interval is above a megabyte in ten minutes, or descriptors are left
-over at the end.
+After a warm-up it fits a line by least squares and prints its slope with a 95 % interval, which
+allows for the correlation of neighbouring samples. The exit code is 1 if the memory grows, that is,
+if the whole interval is above a megabyte in ten minutes, or if descriptors are left open at the
+end.
 """
 
 from __future__ import annotations
@@ -33,22 +33,22 @@ from benchmarks.crash import workers_of
 API: Final = "/api/v1"
 SAMPLE_SECONDS: Final = 2.0
 WARM_SHARE: Final = 0.25
-"""Share of the time before the slope counts: caches fill, and the allocator finds its size."""
+"""Share of the time used as warm-up: caches fill, and the allocator reaches its size."""
 
 MOST_GROWTH: Final = 6.0
 """Megabytes an hour that may be measurement: a leak of a kilobyte a request is ten times that."""
 
 CLOSED_BETWEEN: Final = ("RemoteProtocolError", "ReadError")
-"""Failures of a request on a connection that the server closed as idle in the same moment, which
-clients send again; they are counted apart."""
+"""Errors of a request on a connection that the server closed as idle at the same moment; clients
+repeat it, and it is counted separately."""
 
 PAUSE_SECONDS: Final = 0.5
-"""Between two uses of one client: light use, so that other programs on the machine can work."""
+"""Seconds between two requests of a client: light use, so that other programs can work."""
 
 
 @dataclass
 class Samples:
-    """What was read of the server.
+    """Measurements of the server.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ def fit_slope(
 ) -> tuple[float, float]:
     """Fit a line; return its slope an hour and half of its 95 % interval.
 
-    The residuals' correlation from sample to sample (r) makes N samples worth N (1 - r) / (1 + r).
+    With a correlation r of successive residuals, N samples count as N (1 - r) / (1 + r).
     """
     hours = seconds / 3600
     centred = hours - hours.mean()
@@ -115,7 +115,7 @@ async def watch(address: str, tally: Tally, draw: random.Random) -> None:
 
 
 async def add_clips(address: str, tally: Tally, clip: bytes) -> None:
-    """Upload a clip, wait for its job, look at all of it, and delete it."""
+    """Upload a clip, wait for its job, read all its data, and delete it."""
     async with httpx.AsyncClient(base_url=address, timeout=120) as client:
         while True:
             added = await tally.send(
@@ -182,7 +182,7 @@ async def prepare(address: str) -> tuple[str, str]:
 
 
 async def soak(minutes: float, every: int, seed: int) -> tuple[Samples, Tally]:
-    """Use a server for so long; a line is printed every so many samples."""
+    """Use a server for some time, and print a line every few samples."""
     samples, tally, draw = Samples(), Tally(), random.Random(seed)
     with tempfile.TemporaryDirectory() as folder:
         clip = small_clip(Path(folder) / "dive.mkv", frames=10)
@@ -235,7 +235,7 @@ def main() -> None:
     failed = [each for each in tally.failures if each not in closed]
     slope, half = fit_slope(seconds[warm], megabytes[warm])
     files, more = fit_slope(seconds[warm], np.array(samples.descriptors, dtype=float)[warm])
-    # Not against the beginning: the pool of database connections has filled since.
+    # Not compared with the beginning: the pool of database connections has filled since.
     left = samples.descriptors[-1] - min(np.array(samples.descriptors)[warm].tolist())
     print(
         f"{given.minutes:g} minutes, {tally.requests} requests, {tally.uploads} clips, "

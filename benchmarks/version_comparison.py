@@ -49,7 +49,7 @@ TOLERANCE = 1e-9
 """Tolerance, relative or absolute, within which two numbers are equal."""
 
 TEXTS = ("sentence", "message", "title", "description", "summary", "why", "text", "findings")
-"""Keys of texts, which may be reworded."""
+"""Keys of texts; these may be reworded, so they are not compared."""
 
 
 def write_answers(data: Path | None) -> dict[str, Any]:
@@ -90,7 +90,7 @@ def _clip_answers(folder: Path) -> Iterator[tuple[str, Any]]:
 
 
 def answer(recognizer: Recognizer, poses: PoseSequence) -> dict[str, Any]:
-    """Return all of a recognition, or why the take cannot be compared."""
+    """Return a complete recognition, or the reason why the take cannot be compared."""
     try:
         return recognizer.recognize(poses).to_dict()
     except PoseError as error:
@@ -153,7 +153,7 @@ def _http_schema() -> Any:
 
 
 def differences(one: Any, other: Any, path: str = "") -> Iterator[str]:
-    """Yield every place at which two answers differ, texts excepted."""
+    """Yield every place at which two answers differ, except texts."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other}, key=str):
             if key in TEXTS:

@@ -22,7 +22,7 @@ RECORDINGS = ROOT / "tests" / "recordings"
 """Landmarks of the sample clips as `languages.record` wrote them, one folder a processor."""
 
 PROCESSORS = ("avx2", "avx512")
-"""Processors that round differently: what holds on both does not depend on rounding."""
+"""Processors that round differently: results equal on both do not depend on rounding."""
 
 UPDATES_IMAGES = bool(os.environ.get("OSG_UPDATE_IMAGES"))
 """Whether the pictures that tests take go into the documentation."""
@@ -31,7 +31,7 @@ SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "d
 
 
 def pytest_collection() -> None:
-    """Look for no garbage among what is imported and collected, which stays to the end.
+    """Disable garbage collection while tests are collected, since these objects stay to the end.
 
     It would take a fifth of the collection's time, and more in each test that makes much garbage.
     """
@@ -39,13 +39,13 @@ def pytest_collection() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Look for garbage from now on, in what the tests make."""
+    """Enable garbage collection for objects of the tests."""
     gc.freeze()
     gc.enable()
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark what needs models, and as slow what runs on PostgreSQL or S3, other processes."""
+    """Mark tests that need models, and as slow those that use PostgreSQL or S3."""
     fixtures = getattr(item, "fixturenames", ())
     if "postgresql" in item.name or "s3" in fixtures:
         item.add_marker("slow")
@@ -54,13 +54,13 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Begin with the files that take long, so that no worker is left alone with one in the end.
+    """Sort the files that take long to the front, so that no worker is left with one at the end.
 
-    Those with a limit of their own take minutes; after them come the parts, and in them the
-    folders, with most slow tests.
+    Files with a time limit of their own take minutes and come first; then come the parts of the
+    suite, and in them the folders, with most slow tests first.
     """
     tests = ROOT / "tests"
-    # All of one part of the suite together, so that a browser is started once.
+    # The tests of one part stay together, so that a browser is started only once.
     parts = {item: item.path.relative_to(tests).parts[0] for item in items}
     slow = Counter(parts[item] for item in items if item.get_closest_marker("slow"))
     in_folder = Counter(item.path.parent for item in items if item.get_closest_marker("slow"))
@@ -76,7 +76,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
-    """Return the folder of real recordings by other people; skip where it does not lie at hand."""
+    """Return the folder of real recordings by other people; skip if it is missing."""
     if not SHARED_DATA.is_dir():
         pytest.skip(f"needs the shared recordings, and there is no {SHARED_DATA}")
     return SHARED_DATA
@@ -102,7 +102,7 @@ def installed_models() -> None:
 def thin_clip(
     sample_clips: Path, installed_models: None, tmp_path_factory: pytest.TempPathFactory
 ) -> Callable[[str], Path]:
-    """Return what makes a copy of a sample clip, given its name, with every third frame.
+    """Return a function that copies every third frame of a sample clip, given its name.
 
     Its poses are found in a third of the time; takes and gestures are the same. The documentation's
     images show the whole clip.
@@ -120,7 +120,7 @@ def thin_clip(
 
 @pytest.fixture(scope="session", params=PROCESSORS)
 def sample_recording(request: pytest.FixtureRequest) -> Callable[[str], Recording]:
-    """Return what loads the landmark recording of a sample clip by the clip's name.
+    """Return a function that loads the landmark recording of a sample clip by the clip's name.
 
     A test that uses it runs once for each processor on which the clips were recorded.
     """
@@ -130,7 +130,7 @@ def sample_recording(request: pytest.FixtureRequest) -> Callable[[str], Recordin
 
 @pytest.fixture
 def osg_studio(capsys: pytest.CaptureFixture[str]) -> OsgStudio:
-    """Return what runs a command line and tells how it ended."""
+    """Return a runner of command lines, which reports how each ended."""
     return OsgStudio(capsys)
 
 

@@ -14,7 +14,7 @@ def documented(*words: str, page: str | None = None) -> list[list[str]]:
     Parameters
     ----------
     words
-        With which the arguments begin.
+        First arguments of the commands.
     page
         Page below ``docs``, or None for all of them.
 

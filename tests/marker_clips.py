@@ -1,4 +1,4 @@
-"""Clips of a diver made of coloured markers, for models that find those (`marker_models`)."""
+"""Clips of a diver made of coloured markers, for the models in `marker_models`."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ RESTING = {
     "left_ankle": (0.2, 1.2),
     "right_ankle": (-0.2, 1.2),
 }
-"""Where a diver's COCO keypoints rest; no two markers touch."""
+"""Resting places of a diver's COCO keypoints; no two markers touch."""
 
 
 def marker_clip(path: Path, shape: Shape, *, frames: int = 30) -> Path:

@@ -24,7 +24,7 @@ HEAD = (5.2, 6.2)
 
 
 def posed_clip(name: str) -> Path:
-    """Return a clip's file; there is one of ``circle-by-belly`` and ``circle-by-belly-2``."""
+    """Return a clip's file; only ``circle-by-belly`` and ``circle-by-belly-2`` have one."""
     return POSED_CLIPS / f"{name}.mp4"
 
 

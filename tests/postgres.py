@@ -35,7 +35,7 @@ class Cluster:
     Parameters
     ----------
     folder
-        Its data and its socket; short, because the path of a socket is.
+        Folder of its data and socket; its path is short, because a socket's path must be.
 
     """
 
@@ -51,13 +51,13 @@ class Cluster:
         self._run("initdb", "-D", self._data, "-U", "osg", "-A", "trust", "-E", "UTF8", "--no-sync")
 
     def start(self) -> None:
-        """Start the server; nothing but the socket leads to it."""
+        """Start the server, reachable only by its socket."""
         options = f"-c listen_addresses='' -c unix_socket_directories={self.folder} -c fsync=off"
         log = self.folder / "log"
         self._run("pg_ctl", "-D", self._data, "-l", log, "-w", "-o", options, "start")
 
     def stop(self, mode: str = "immediate") -> None:
-        """End the server, by default as a crash does."""
+        """End the server, by default as in a crash."""
         self._run("pg_ctl", "-D", self._data, "-m", mode, "-w", "stop")
 
     def new_database(self) -> str:

@@ -39,7 +39,7 @@ class S3Server:
         _, self.port = self._server.get_host_and_port()
 
     def stop(self) -> None:
-        """Answer no more."""
+        """Stop answering."""
         self._server.stop()
 
     def client(self) -> Any:

@@ -1,4 +1,4 @@
-"""The layers: who may import whom, and what a robot gets by with."""
+"""The layers: which may import which, and the packages that a robot needs."""
 
 import subprocess
 import sys

@@ -1,8 +1,8 @@
 """Ablation: accuracy of profile ``full`` with one voter alone and with one voter left out.
 
 One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
-distances are measured once and fused anew for every choice of voters, in the traversals that all of
-them together chose.
+distances are measured once, in the traversals that all voters together chose, and fused anew for
+every choice of voters.
 
     python -m benchmarks.accuracy.ablation ../shared/data
 """
@@ -27,7 +27,7 @@ ALL = "all together"
 
 
 def choices() -> dict[str, FloatArray]:
-    """Return per name a factor ``(V,)`` on every voter's weight."""
+    """Return the weight factors of the voters, ``(V,)``, by name of the choice."""
     alone = {f"{voter} alone": np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)}
     without = {
         f"without {voter}": 1 - np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)
@@ -71,7 +71,7 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
 
 
 def main() -> None:
-    """Print one line a voter, one pair of columns a set: alone, and left out."""
+    """Print one line per voter and one pair of columns per set: alone, and left out."""
     given = set_arguments(__doc__, draws=40, queries=25).parse_args()
     sets = [*recorded_sets(given.data / "trajectories", given.sets)]
     shares = [ablate(each, given.draws, given.queries, given.seed) for each in sets]

@@ -1,13 +1,14 @@
 """Comparison of methods: accuracy, time and memory on the same takes, in one run.
 
-One template a class; see `one_shot_draws` for who demonstrates and who is asked. Times are
-processor time of all threads, so other programs on the machine do not count, in shares of what
-profile ``full`` takes for the very same work. Memory is the peak of a process that does nothing but
-import a method, teach it one language of ten digits and ask it ten times.
+One template per class; `one_shot_draws` chooses templates and queries. Times are processor time of
+all threads, so that other programs on the machine do not count, relative to profile ``full`` on the
+same work. Memory is the peak of a process that imports a method, teaches it one language of ten
+digits and recognises ten queries.
 
     python -m benchmarks.accuracy.comparison ../shared/data --draws 20 --queries 15 --seed 1
 
-The trained methods need the extra ``bench``; without it they are left out, with the reason.
+The trained methods need the extra ``bench``; without it they are left out, and the reason is
+printed.
 """
 
 from __future__ import annotations
@@ -49,10 +50,10 @@ class Outcome:
     Attributes
     ----------
     own, others
-        Per set: queries by the person who demonstrated, and by everybody else.
+        Per set: shares right for queries by the person who demonstrated, and by everybody else.
     adding, asking
-        Seconds of processor time: of adding the last gesture of each language, with whatever has
-        to be done anew for it, and of each query.
+        Seconds of processor time: for adding the last gesture of each language, with all work that
+        it makes necessary, and for each query.
 
     """
 
@@ -63,9 +64,9 @@ class Outcome:
 
 
 def measure(name: str, sets: Iterable[tuple[RecordedSet, list[Draw]]]) -> Outcome:
-    """Teach a method every drawn language and ask it every query."""
+    """Teach a method every drawn language and let it recognise every query."""
     outcome = Outcome()
-    new_method(name)  # what is imported on first use is no time of the first gesture
+    new_method(name)  # imports on first use must not count for the first gesture
     for recorded, drawn in sets:
         own, others = Share(0, 0), Share(0, 0)
         for draw in drawn:
@@ -78,7 +79,7 @@ def measure(name: str, sets: Iterable[tuple[RecordedSet, list[Draw]]]) -> Outcom
 
 
 def _teach(method: Method, recorded: RecordedSet, templates: list[int]) -> float:
-    """Return the seconds that the last gesture took."""
+    """Teach a language and return the seconds that its last gesture took."""
     start = process_time()
     for template in templates:
         start = process_time()

@@ -1,11 +1,11 @@
 """Constants of the voters and of rejection, each set's chosen without that set.
 
-`voters` prints every voter's distances within and between classes, and compares three ways to
-weigh the voters on a left-out set: the shipped priors, equal priors, and priors learned on the
-other sets by logistic ranking. `rejection` prints, for languages of half of a set's classes, how
-many right takes of others the shipped thresholds refuse and how many foreign takes they accept,
-beside an oracle that knows the set and refuses one in twenty, and the confidence's coefficients
-fitted without the set.
+`voters` prints every voter's distances within and between classes, and compares three ways to weigh
+the voters on a left-out set: the shipped priors, equal priors, and priors learned on the other sets
+by logistic ranking. `rejection` prints, for languages of half of a set's classes, how many true
+takes by others the shipped thresholds reject and how many out-of-vocabulary takes they accept.
+Beside them stand the rates of an oracle, whose threshold is fitted to the set and rejects one in
+twenty, and the confidence's coefficients fitted without the set.
 
     python -m benchmarks.accuracy.constants ../shared/data --subject voters
     python -m benchmarks.accuracy.constants ../shared/data --subject rejection
@@ -41,7 +41,7 @@ NEWTON_ROUNDS = 30
 """Steps of Newton's method; logistic regression converges in about ten."""
 
 ORACLE_REFUSES = 0.05
-"""Share of right takes that the oracle's threshold refuses."""
+"""Share of true takes that the oracle's threshold rejects."""
 
 KINDS = [VOTER_NAMES.index(voter.name) for voter in MOTION_VOTERS]
 """Rows of the motion voters among all."""
@@ -68,12 +68,12 @@ class Comparison:
 
 
 def others_or_own(chosen: Draw) -> npt.NDArray[np.intp]:
-    """Return the queries by other people, or by anybody where people are not told apart."""
+    """Return the queries by other people, or by anybody if the set does not name people."""
     return chosen.others if len(chosen.others) else chosen.own
 
 
 def compare(recorded: RecordedSet, given: argparse.Namespace) -> Iterator[Comparison]:
-    """Yield the distances of queries to the gestures of drawn languages."""
+    """Yield the distances of queries to the gestures of randomly drawn languages."""
     for chosen in draws(recorded, given.draws, given.queries, given.seed):
         labels = [str(recorded.labels[index]) for index in chosen.templates]
         vote = FusedVote(
@@ -133,7 +133,7 @@ def count_right(compared: Sequence[Comparison], within: FloatArray, priors: Floa
 
 
 def learn_priors(sets: Sequence[Sequence[Comparison]], within: FloatArray) -> FloatArray:
-    """Learn priors by logistic ranking: the likelihood of the right gesture, sets weighing alike.
+    """Learn priors by logistic ranking of the right gesture; sets are weighted equally.
 
     Returns
     -------
@@ -243,7 +243,7 @@ def decide(recorded: RecordedSet, given: argparse.Namespace) -> Decided:
 
 
 def fit_confidence(data: Sequence[Decided]) -> FloatArray:
-    """Fit the confidence's coefficients ``(3,)``; sets and foreign takes weigh one half each."""
+    """Fit the confidence's coefficients ``(3,)``; foreign takes weigh one half of each set."""
     regressors = np.concatenate([each.regressors() for each in data])
     right = np.concatenate([each.kind == "right" for each in data]).astype(float)
     weights = np.concatenate(
@@ -263,7 +263,7 @@ def fit_confidence(data: Sequence[Decided]) -> FloatArray:
 
 
 def print_rejection(data: Mapping[str, Decided]) -> None:
-    """Print refusals, acceptances, the oracle's, and the coefficients without each set."""
+    """Print rejected and accepted shares, the oracle's, and the coefficients without each set."""
     reaches = []
     for name, each in data.items():
         right, foreign = (each.novelty[each.kind == kind] for kind in ("right", "foreign"))

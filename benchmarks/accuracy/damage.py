@@ -1,7 +1,8 @@
 """Damaged keypoints: accuracy of profile ``full`` with and without the repair.
 
-Clean demonstrations, damaged queries, the same for both. The recorded sets show hands or arms only;
-the takes of our own test clips (TAKES, from poses extracted once and kept there) show a whole body.
+Demonstrations are clean and queries damaged, the same ones with and without the repair. The
+recorded sets show hands or arms only; the takes of our own test clips show a whole body (their
+poses are extracted once and stored in the folder TAKES).
 
     python -m benchmarks.accuracy.damage ../shared/data TAKES --draws 10 --queries 20 --seed 1
 """
@@ -112,7 +113,7 @@ def in_runs(share: float, count: int, random: np.random.Generator) -> Mask:
 
 
 def question(language: Language, poses: PoseSequence, label: str) -> Question:
-    """Ask with the repair and without it."""
+    """Recognise a query with the repair and without it."""
     return Question(
         Recognizer(language),
         Recognizer(language, tuning=Tuning(keypoints_repaired=False)),
@@ -137,7 +138,7 @@ def recorded_questions(
 
 
 def clip_questions(kept: Path, times: int) -> Iterator[tuple[str, Question]]:
-    """Ask the takes of our test clips, each so many times; poses are kept in a folder."""
+    """Recognise the takes of our test clips, each several times; poses are stored in a folder."""
     first = question(
         Language.load(FOLDER / "osg-table-2.json"), _recording(kept, "line-test-1").poses, ""
     )
@@ -163,7 +164,7 @@ def is_named(recognizer: Recognizer, poses: PoseSequence, label: str) -> bool:
 
 
 def main() -> None:
-    """Print one line a damage and set: with the repair, without it."""
+    """Print one line per damage and set: with the repair, and without it."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
     parser.add_argument("takes", type=Path, help="a folder for the poses of our test clips")

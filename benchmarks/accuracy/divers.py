@@ -1,10 +1,10 @@
 """Accuracy on published sets of divers' signs: SDG11, SCUBANetV2 and CADDY's gestures.
 
-The folder is one of them as its authors give it; which one, its layout tells. In each draw one
-take of each sign, chosen at random, makes a language; all other takes of the signs are queries, up
-to a number. A query is *alike* where the demonstration of its sign was shown in the same setting
-(SDG11: place and view; SCUBANetV2: clip; CADDY: scenario), else *other*. Takes without a sign are
-false alarms where they get a label. People are not told in these sets.
+The folder holds one of these sets in its authors' layout, by which it is identified. In each draw
+one random take per sign makes a language; all other takes of the signs are queries, up to a number.
+A query is *alike* if the demonstration of its sign was shown in the same setting (SDG11: place and
+view; SCUBANetV2: clip; CADDY: scenario), else *other*. A take without a sign that gets a label is a
+false alarm. These sets do not name people.
 
     python -m benchmarks.accuracy.divers FOLDER [--draws 20] [--queries 200] [--keep FOLDER]
 """
@@ -31,12 +31,12 @@ PROFILES = ("full", "paper")
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of one query.
+    """Outcome of one query.
 
     Attributes
     ----------
     kind
-        ``"alike"`` or ``"other"`` setting than the demonstration, or ``"no sign"``.
+        Setting relative to the demonstration, ``"alike"`` or ``"other"``, or ``"no sign"``.
     right
         Whether the nearest gesture is the sign; False where none is shown.
     labelled

@@ -1,9 +1,9 @@
 """Health check: compares its estimates with confusions and misses in real takes.
 
-Of each recorded set one take a class by one person makes a language. It is rehearsed as
-`osg-studio check` does; then real takes of each gesture are read, by the same person or by others.
-What was forecast of each ordered pair of gestures, and of each gesture, is put beside what came of
-it: by set, and by how much was forecast.
+In each recorded set one take per class by one person makes a language. Simulated trials estimate
+its rates, as in `osg-studio check`; then real takes of each gesture are recognised, by the same
+person or by others. The estimate for each ordered pair of gestures, and for each gesture, is
+compared with the observed rate: by set, and by bins of the estimate.
 
     python -m benchmarks.accuracy.health ../shared/data
 """
@@ -30,19 +30,19 @@ from benchmarks.arguments import set_arguments
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 BINS = (0.0, 0.02, 0.05, 0.1, 0.2, 1.001)
-"""Bins of estimates; the two thresholds of the report are among their ends."""
+"""Limits of the bins of estimates; they include the two thresholds of the report."""
 
 
 @dataclass(frozen=True, eq=False)
 class Forecasts:
-    """N estimates of one kind, of several languages.
+    """N estimates of one kind, for several languages.
 
     Attributes
     ----------
     predicted
         ``(N,)`` rates.
     happened, takes
-        ``(N,)`` how many real takes it came true of, out of how many.
+        ``(N,)`` number of real takes with the estimated error, and number of real takes.
 
     """
 
@@ -83,7 +83,7 @@ class Forecasts:
     def rank_correlation(self) -> float:
         """Spearman's rank correlation of estimates and observed rates.
 
-        0 where it came true of all alike.
+        0 if all observed rates are equal.
         """
         ranks = _ranks(self.predicted), _ranks(self.happened / self.takes)
         if min(float(np.ptp(each)) for each in ranks) == 0:
@@ -102,9 +102,9 @@ class Study:
     takes
         Real takes of each gesture.
     variants
-        Rehearsed takes of each gesture.
+        Simulated trials of each gesture.
     seed
-        Of what is drawn.
+        Seed of all random draws.
 
     """
 
@@ -119,7 +119,7 @@ def study_set(recorded: RecordedSet, person: Person, study: Study) -> tuple[Fore
 
     Returns
     -------
-    Forecasts of confusions, one an ordered pair, and of misses, one a gesture.
+    Estimates of confusions, one per ordered pair, and of misses, one per gesture.
 
     """
     generator = np.random.default_rng(study.seed)
@@ -131,7 +131,7 @@ def study_set(recorded: RecordedSet, person: Person, study: Study) -> tuple[Fore
             int(generator.choice(np.flatnonzero(own & (recorded.labels == label))))
             for label in labels
         ]
-        # Where people are not told apart, the others are among them.
+        # In a set without people's names, everybody counts as the same person.
         alone = own.all() or person == "same"
         pool = np.setdiff1d(np.flatnonzero(own if alone else ~own), templates)
         recognizer = Recognizer(Language(recorded.name, demonstrated(recorded, templates)))

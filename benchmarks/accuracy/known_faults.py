@@ -34,7 +34,7 @@ CUT = 0.35
 """Share of a take's duration that is missing."""
 
 APPROACH_SECONDS = 0.6
-"""Seconds of the hand's way from beside the hip."""
+"""Seconds in which the hand comes from beside the hip."""
 
 
 def turn_round(take: Trajectory) -> Trajectory:
@@ -66,7 +66,7 @@ def approach(take: Trajectory) -> Trajectory:
 
 
 def exchange(take: Trajectory) -> Trajectory:
-    """Take left for right in two stretches, a fifth of the moments together."""
+    """Exchange left and right in two stretches, a fifth of the moments in all."""
     names = take.landmarks
     others = [names.index(other_side(name)) for name in names]
     xy = take.xy.copy()

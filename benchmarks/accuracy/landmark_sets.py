@@ -1,11 +1,11 @@
 """Landmark sets: accuracy without the landmarks that other pose estimators lack.
 
-First the sample clips, found by MediaPipe's 33 landmarks and cut down to the 17 of COCO (by name
-the same as OpenPose's 18, and all of BODY_25 that gestures follow): a language defined with either
-set recognises takes with either set. Then NATOPS (other people's arms, with wrists, elbows, thumbs
-and hand tips): one template a class, everything of all joints or of wrists and elbows alone. What a
-profile would refuse counts as wrong in the column "label" and by its nearest gesture in "nearest";
-at the end stands which two gestures make up most of the wrong ones among the nearest.
+First the sample clips, with MediaPipe's 33 landmarks or only COCO's 17 (by name the same as
+OpenPose's 18, and all of BODY_25 that gestures follow): a language defined with either set
+recognises takes with either set. Then NATOPS (other people's arms, with wrists, elbows, thumbs and
+hand tips): one template per class, with all joints or with wrists and elbows alone. A rejected take
+counts as wrong in the column "label", and by its nearest gesture in "nearest"; each line ends with
+the most frequent confusion among the nearest gestures.
 
     python -m benchmarks.accuracy.landmark_sets ../shared/data
 """

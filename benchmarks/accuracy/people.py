@@ -1,8 +1,8 @@
 """Accuracy on people not used for tuning, beside plain DTW of positions and of velocities.
 
-One demonstration a gesture from one person; queries from the same person (UD) or from everybody
-else (UI). `nearest` is the share whose nearest gesture is the right one, `refused` the share of
-these that the shipped thresholds reject; the interval is Wilson's.
+Each gesture has one demonstration, all by one person; queries are by the same person (UD) or by
+everybody else (UI). `nearest` is the share of queries whose nearest gesture is the right one,
+`refused` the share of these that the shipped thresholds reject; the interval is Wilson's.
 
     python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
 """
@@ -28,7 +28,7 @@ from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
 from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
 
 STEPS, BAND = 32, 8
-"""Steps that a recording is resampled to in time, and how many one may be ahead of the other."""
+"""Steps that a recording is resampled to in time, and the band of DTW in steps."""
 
 MOVING = ("elbow", "wrist", "hand", "hand_tip", "thumb", "index")
 """Parts of the body that plain DTW follows."""
@@ -39,7 +39,7 @@ Name = Callable[[PoseSequence], Recognition | str | None]
 def positions(poses: PoseSequence) -> FloatArray:
     """Return ``(N, D)`` positions of arms in time: torso lengths from the shoulders' mean place.
 
-    Without a torso they are free of place and size.
+    Without a torso they are normalised by place and size.
     """
     trajectory = Trajectory.from_poses(poses)
     arms = [name for name in trajectory.landmarks if name.split("_", 1)[-1] in MOVING]
@@ -71,7 +71,7 @@ def plain_dtw(
 
 
 def score(recorded: RecordedSet, chosen: Draw) -> Iterator[tuple[str, str, Share, Share]]:
-    """Yield method, relation, the share of right nearest gestures, and of these the refused."""
+    """Yield method, relation, share of right nearest gestures, and share rejected among these."""
     templates = [recorded.recordings[index] for index in chosen.templates]
     labels = [str(recorded.labels[index]) for index in chosen.templates]
     language = Language(recorded.name, list(map(gesture_of, labels, templates)))
@@ -108,7 +108,7 @@ def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]
 
 
 def main() -> None:
-    """Print one line a set, method and relation."""
+    """Print one line per set, method and relation."""
     parser = set_arguments(__doc__, draws=8, queries=60)
     given = parser.parse_args()
     for recorded in all_sets(given.data / "trajectories", given.sets):

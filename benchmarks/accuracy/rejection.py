@@ -1,9 +1,9 @@
 """Rejection rates: out-of-vocabulary movements accepted and true takes rejected.
 
-A bar on the novelty can stand in three places: where it refuses `REFUSED` of the true takes of
-each set by itself, where one and the same bar refuses `REFUSED` on average over the sets, or where
-the language was calibrated to. Intervals are those of the bootstrap over languages (Efron 1979):
-queries of one language share its templates, and which classes it lacks.
+Three thresholds of the novelty are compared: one per set, which rejects `REFUSED` of the set's true
+takes; a common one, which rejects `REFUSED` on average over the sets; and the calibrated one of
+each language. Intervals are from the bootstrap over languages (Efron 1979), because queries to one
+language share its templates and its missing classes.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ import numpy.typing as npt
 from app.recognition.poses.sequence import FloatArray
 
 REFUSED = 0.05
-"""Share of the true takes refused where false acceptance is reported."""
+"""Share of the true takes rejected at the thresholds for which false acceptance is reported."""
 
 RESAMPLES = 1000
-"""Bootstrap samples: the ends of an interval of 95 % then stray by a tenth of its width."""
+"""Bootstrap samples: with these the ends of a 95 % interval vary by a tenth of its width."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +34,9 @@ class Outcomes:
     known
         ``(N,)`` whether the query's gesture was in the language.
     refused
-        ``(N,)`` whether it was read as no gesture.
+        ``(N,)`` whether the query was rejected.
     language
-        ``(N,)`` number of the language that was asked.
+        ``(N,)`` number of the language that recognised the query.
 
     """
 
@@ -46,7 +46,7 @@ class Outcomes:
     language: npt.NDArray[np.intp]
 
     def resampled(self, generator: np.random.Generator) -> Outcomes:
-        """Draw as many languages with replacement, each with all of its queries."""
+        """Draw the same number of languages with replacement, each with all of its queries."""
         languages, counts = np.unique(self.language, return_counts=True)
         starts = np.concatenate([[0], np.cumsum(counts)])
         order = np.argsort(self.language, kind="stable")
@@ -58,17 +58,17 @@ class Outcomes:
 
     @property
     def true_refused(self) -> float:
-        """The share of true takes that the language refused."""
+        """The share of true takes that the language rejected."""
         return float(self.refused[self.known].mean())
 
     @property
     def foreign_accepted(self) -> float:
-        """The share of foreign movements that the language accepted."""
+        """The share of out-of-vocabulary movements that the language accepted."""
         return float((~self.refused[~self.known]).mean())
 
     @property
     def own_bar(self) -> float:
-        """The threshold that refuses `REFUSED` of the true takes."""
+        """The threshold that rejects `REFUSED` of the true takes."""
         return float(np.quantile(self.novelty[self.known], 1 - REFUSED))
 
     def accepted_at(self, bar: float) -> float:
@@ -80,12 +80,12 @@ Statistic = Callable[[Sequence[Outcomes]], float]
 
 
 def accepted_at_own_bars(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets, each with its own threshold."""
+    """Return the share accepted, averaged over the sets, each with its own threshold."""
     return float(np.mean([each.accepted_at(each.own_bar) for each in sets]))
 
 
 def accepted_at_one_bar(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets, all with the threshold that refuses `REFUSED` on average."""
+    """Return the mean share accepted at the threshold that rejects `REFUSED` on average."""
     true = np.concatenate([each.novelty[each.known] for each in sets])
     counted = [int(each.known.sum()) for each in sets]
     weight = np.concatenate([np.full(count, 1 / count / len(sets)) for count in counted])
@@ -95,17 +95,17 @@ def accepted_at_one_bar(sets: Sequence[Outcomes]) -> float:
 
 
 def refused_as_calibrated(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets of the true takes refused."""
+    """Return the share of true takes rejected, averaged over the sets."""
     return float(np.mean([each.true_refused for each in sets]))
 
 
 def accepted_as_calibrated(sets: Sequence[Outcomes]) -> float:
-    """Average over the sets of the foreign movements accepted."""
+    """Return the share of out-of-vocabulary movements accepted, averaged over the sets."""
     return float(np.mean([each.foreign_accepted for each in sets]))
 
 
 def with_interval(statistic: Statistic, sets: Sequence[Outcomes]) -> str:
-    """Write a statistic with its interval, 95 %."""
+    """Return a statistic and its 95 % interval as text."""
     generator = np.random.default_rng(0)
     drawn = [statistic([each.resampled(generator) for each in sets]) for _ in range(RESAMPLES)]
     low, high = np.quantile(drawn, [0.025, 0.975])

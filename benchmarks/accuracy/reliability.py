@@ -1,10 +1,10 @@
 """Reliability: calibration of the confidence of profile ``full``, and its rejection rates.
 
-Of each recorded set a random half of the classes makes a language, one template each by one
-person; queries come from all classes, so that about half of them mean no gesture of the language.
-They come from the same person (UD), and where people are known also from everybody else (UI).
-What is refused and accepted is told for every bar that `rejection` knows; averages over the sets
-are of queries by the same person where people are known.
+In each recorded set a random half of the classes makes a language, one template each by one person;
+queries come from all classes, so that about half of them are out-of-vocabulary. They are by the
+same person (UD), and if people are known also by everybody else (UI). Rejected and accepted shares
+are printed for every threshold of `rejection`; averages over the sets are of queries by the same
+person if people are known.
 
     python -m benchmarks.accuracy.reliability ../shared/data --seeds 1 2 3
 """
@@ -47,15 +47,15 @@ class Answer:
     Attributes
     ----------
     language
-        Number of the language asked.
+        Number of the language that recognised the query.
     confidence, novelty
         Of the nearest gesture.
     known
         Whether the query's gesture was in the language.
     correct
-        Whether it was the nearest one.
+        Whether this gesture was the nearest one.
     refused
-        Whether it was read as no gesture.
+        Whether the query was rejected.
 
     """
 
@@ -99,7 +99,7 @@ def answers(
 
 
 def outcomes(asked: Sequence[Answer]) -> Outcomes:
-    """Put the answers of one set into arrays."""
+    """Convert the answers of one set to arrays."""
     return Outcomes(
         np.array([answer.novelty for answer in asked]),
         np.array([answer.known for answer in asked]),

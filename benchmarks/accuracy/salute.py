@@ -30,15 +30,15 @@ from tests.recognition.parametric_hand import labelled_hands
 Rule = Callable[[FloatArray], bool]
 
 CHANGING_PHASES = ("raise", "transit", "lower")
-"""Phases of a clip in which the hand takes or gives up the salute's shape on its way; nobody can
-say which frame is the first, so these count neither way."""
+"""Phases of a clip in which the moving hand takes or leaves the salute's shape; its first and last
+frame are uncertain, so these phases do not count."""
 
 SURROUND = 1.5
-"""Picture widths of plain background around a drawing that its hand fills: the palm detector
-knows hands as a part of a picture."""
+"""Picture widths of plain background added around a drawing that its hand fills: the palm detector
+expects hands as a part of a picture."""
 
 SYNTHETIC_HANDS = 3000
-"""Enough that a false-positive rate of one per cent is known to a quarter of itself."""
+"""Synthetic hands: enough to measure a false-positive rate of 1 % to a quarter of its value."""
 
 
 def salutes(hand: FloatArray) -> bool:
@@ -88,7 +88,7 @@ class Rates:
 
 
 def synthetic_pictures(noise: float = 0.02) -> list[Picture]:
-    """Return hands from joint angles, seen with an error of `noise` palms."""
+    """Return hands from joint angles, with landmark errors of `noise` palms."""
     hands = labelled_hands(SYNTHETIC_HANDS, seed=11, noise=noise)
     return [Picture(hand.salutes, (hand.xy,)) for hand in hands]
 
@@ -153,7 +153,7 @@ def _readable(path: Path) -> Image:
 
 
 def report(title: str, pictures: Sequence[Picture]) -> None:
-    """Print both rules' rates on some pictures."""
+    """Print the rates of both rules on some pictures."""
     saluting = sum(picture.salutes for picture in pictures)
     print(f"{title}: {saluting} salutes, {len(pictures) - saluting} others")
     rules: dict[str, Rule] = {"published rule": check_published_rule, "salute_score": salutes}

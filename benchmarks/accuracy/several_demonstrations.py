@@ -1,8 +1,8 @@
 """Several demonstrations: accuracy on further people, by how many takes and people show a gesture.
 
 Each language has one take of every class by one person, two takes by one person, or one take each
-by two or three people. Queries are by people who show none of them: the same queries for all
-of these languages. Plain DTW, which takes the nearest template of all, stands beside the profiles.
+by two or three people. Queries are by people who show none of these takes, and are the same for all
+these languages. Plain DTW, which takes the nearest template of all, stands beside the profiles.
 
     python -m benchmarks.accuracy.several_demonstrations ../shared/data --sets utd_other utkinect
 """

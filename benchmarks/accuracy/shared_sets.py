@@ -1,11 +1,11 @@
 """Shared sets: accuracy on recorded and drawn trajectories, one demonstration per class.
 
-Per draw, one template of each class comes from one person, and queries from the same person
-(UD, user-dependent) or from everyone else (UI, user-independent), through the public interface:
-`Gesture.from_demonstration` and `Recognizer.recognize`. Where a set does not tell its people apart,
-everything is in the first column, whoever it comes from. Draws are random with a fixed seed, the
-same for every method; the interval is Wilson's. What profile ``full`` would refuse counts by its
-nearest gesture here; `reliability` measures what is refused.
+Per draw, one template of each class comes from one person, and queries from the same person (UD,
+user-dependent) or from everyone else (UI, user-independent), through the public interface:
+`Gesture.from_demonstration` and `Recognizer.recognize`. For a set without people's names all
+results are in the first column. Draws are random with a fixed seed, the same for every method; the
+interval is Wilson's. A take that profile ``full`` rejects counts here by its nearest gesture;
+`reliability` measures rejections.
 
     python -m benchmarks.accuracy.shared_sets ../shared/data --methods paper dtw full
 """
@@ -55,7 +55,7 @@ def _named(recorded: RecordedSet, queries: npt.NDArray[np.intp], answer: Answer)
 
 
 def build_answerer(recorded: RecordedSet, templates: list[int], method: str) -> Answer:
-    """Teach a method one template a class."""
+    """Teach a method one template per class."""
     if method not in PROFILES:
         taught = new_method(method)
         for template in templates:
@@ -82,7 +82,7 @@ def demonstrated(recorded: RecordedSet, templates: list[int]) -> list[Gesture]:
 
 
 def main() -> None:
-    """Print one line a set and method."""
+    """Print one line per set and method."""
     methods = [*PROFILES, "dtw"]
     parser = set_arguments(__doc__, draws=60, queries=30)
     parser.add_argument("--methods", nargs="+", choices=methods, default=methods)

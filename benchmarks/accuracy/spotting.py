@@ -2,8 +2,8 @@
 
 Half of a set's classes make a language, one template each by one person; streams are composed of
 that person's or of other people's takes, of the classes left out, and of accidental movements
-(`benchmarks/sets/streams.py`). A gesture counts as found when it is reported with its label and the
-middle of what was reported lies in it; everything else reported is a false alarm.
+(`benchmarks/sets/streams.py`). A gesture counts as found if a report has its label and the middle
+of the report lies within the gesture; every other report is a false alarm.
 
     python -m benchmarks.accuracy.spotting ../shared/data --streams 3 --events 30 --seed 1
 """
@@ -39,7 +39,7 @@ CLIP_FRAMES = 60
 
 @dataclass(frozen=True)
 class Detections:
-    """A stream with all that was reported in it, and when."""
+    """A stream with all its reports and their times."""
 
     stream: Stream
     reports: list[tuple[float, Spotted]]
@@ -129,7 +129,7 @@ def pose_seconds() -> float:
 
 
 def main() -> None:
-    """Print precision, recall and false alarms per set, and the work of a frame."""
+    """Print precision, recall and false alarms per set, and the processing time per frame."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("data", type=Path, help="the folder that holds trajectories/")
     parser.add_argument("--streams", type=int, default=3, help="streams per set")

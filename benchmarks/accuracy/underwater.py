@@ -49,11 +49,11 @@ class Found:
     Attributes
     ----------
     body, hands
-        Frames with a body, and hands of two in every frame.
+        Share of frames with a body, and of hands found, out of two per frame.
     salutes, false_salutes
-        Frames of a salute in which one is seen, and other frames in which one is seen.
+        Share of salute frames in which a salute is seen, and of other frames in which one is seen.
     takes, named
-        Clips with exactly one closed take, and clips whose take is named correctly.
+        Clips with exactly one closed take, and clips whose take is recognised correctly.
     clips
         How many there were.
 
@@ -136,7 +136,7 @@ def _rate_salutes(
 
 
 def main() -> None:
-    """Print a line per degree of murk and setting of the correction."""
+    """Print one line per degree of murk and setting of the correction."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.accuracy.underwater", description=__doc__
     )

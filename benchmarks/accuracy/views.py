@@ -1,9 +1,9 @@
 """Accuracy on people who are turned from the camera, one frontal demonstration a gesture.
 
-Whole bodies recorded by depth cameras are turned about the vertical and projected. Compared are
-demonstrations without depth; demonstrations and queries with a depth whose error is a pose model's;
-and queries without depth against demonstrations with it. UD: queries by the person who
-demonstrated, UI: by others. The interval is Wilson's.
+Whole bodies recorded by depth cameras are turned about the vertical and projected. Three cases are
+compared: no depth; demonstrations and queries with a depth as inaccurate as a pose model's; and
+queries without depth against demonstrations with it. UD: queries by the person who demonstrated,
+UI: by others. The interval is Wilson's.
 
     python -m benchmarks.accuracy.views ../shared/data --draws 20 --queries 30
 """
@@ -28,16 +28,16 @@ TURNS = (0, 30, 45, 60, -45)
 """Degrees, positive to the own left."""
 
 DEPTH_ERROR = 0.05
-"""Metres: about what pose models reach on limbs seen from the front."""
+"""Error of depth in metres: about that of pose models on limbs seen from the front."""
 
 METHODS = ("no depth", "depth", "query without depth")
 
 Key = tuple[str, str, str, int]
-"""Set, relation, method, turn."""
+"""Key of a result: set, relation, method, turn."""
 
 
 def without_depth(poses: PoseSequence) -> PoseSequence:
-    """Return poses in the image alone."""
+    """Return poses without their depth."""
     return replace(poses, world=None)
 
 

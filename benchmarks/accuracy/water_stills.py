@@ -1,12 +1,12 @@
 """Water stills: how much of real divers is found in photographs from several waters.
 
-FOLDER holds ``boxes.csv`` (columns image, what, x0, y0, x1, y1: Diver, Head or Hand, and corners
-in pixels) and the photographs in ``images/``; the letters that a file's name begins with
-are its water. Each photograph is looked at by itself, with everything forgotten before.
+FOLDER holds ``boxes.csv`` (columns image, what, x0, y0, x1, y1: Diver, Head or Hand, and corners in
+pixels) and the photographs in ``images/``; the letters at the beginning of a file's name denote its
+water. Each photograph is processed by itself: the estimator is reset before it.
 
-- body: photographs with a diver's box; found if the middle of shoulders and hips is in one.
+- body: photographs with a diver's box; found if the centre of shoulders and hips is in one.
 - head: photographs with a head's box; found if the nose is in one.
-- hand: boxes of hands; found if the middle of a found hand's landmarks is in it.
+- hand: boxes of hands; found if the centre of a found hand's landmarks is in it.
 - off: hands found whose middle is in no hand's box, of all hands found. Boxes are missing around
   some hands that people see, so a part of these is right.
 
@@ -86,7 +86,7 @@ class Still:
 
 @dataclass(frozen=True)
 class Score:
-    """What was found in some photographs; see the module for what counts."""
+    """Counts of what was found in some photographs; the module's docstring defines them."""
 
     body: Share = NOTHING
     head: Share = NOTHING

@@ -43,10 +43,10 @@ from app.robot import (
 )
 
 SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
-"""Seconds that do not count for the slope: caches are filled by then."""
+"""Seconds left out of the slope, until caches are filled."""
 
 SAME: Final = 0.02
-"""Tolerance of a stamp between loops, in seconds: half a frame."""
+"""Tolerance of a time stamp between loops, in seconds: half a frame."""
 
 
 BEAT: Final = 1e-6
@@ -55,7 +55,7 @@ BEAT: Final = 1e-6
 OWN: Final = re.compile(r"^(?:RssAnon|VmSwap):\s+(\d+) kB$", re.MULTILINE)
 
 STOCK_EVERY: Final = 10
-"""Frames between two measurements of the memory; the last of a loop counts."""
+"""Frames between two measurements of the memory; the last one in a loop counts."""
 
 
 class Looped(Source, Protocol):
@@ -79,16 +79,16 @@ class LoopedClip:
     clip
         The file, opened again for every loop.
     seconds
-        Of stream time, rounded up to whole loops.
+        Stream time, rounded up to whole loops.
     every
-        Of so many frames one is given: 3 of a clip of 25 frames a second leaves 8.
+        One frame out of this many is given: with 3, a clip of 25 frames a second gives 8 a second.
 
     Attributes
     ----------
     period
         Seconds of one loop.
     frames
-        Given in one loop.
+        Number of frames given in one loop.
 
     """
 
@@ -113,8 +113,8 @@ class LoopedClip:
                 for frame in reader:
                     if frame.index % self._every == 0:
                         yield Frame(loop * self.period + frame.time, frame.image)
-            # PyAV's objects know each other: what every opening leaves waits for Python's next full
-            # collection, hours away. A camera is opened once.
+            # PyAV's objects form reference cycles: without this, what each opening leaves would
+            # stay until Python's next full collection, hours later. A camera is opened only once.
             del reader, frame
             gc.collect()
 
@@ -128,9 +128,9 @@ class FirstLoopEstimator:
     Parameters
     ----------
     estimator
-        What finds them.
+        The estimator that finds the landmarks.
     frames
-        Of one loop.
+        Number of frames in one loop.
 
     """
 
@@ -141,7 +141,7 @@ class FirstLoopEstimator:
         self._number = 0
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
-        """Return what was found in this frame of the first loop."""
+        """Return the result of this frame in the first loop."""
         if len(self._found) < self._frames:
             self._found.append(self._estimator.estimate(image, time))
             return self._found[-1]
@@ -166,7 +166,7 @@ class LoopAnswer:
     Attributes
     ----------
     label
-        None: rejected.
+        The label; None if rejected.
     start, end
         Seconds after its loop began.
     confidence
@@ -192,15 +192,15 @@ class Lap:
     Attributes
     ----------
     frames
-        Looked at in it.
+        Number of frames processed.
     remembered
-        Most frames that the listener remembered.
+        Largest number of frames that the listener remembered.
     memory
-        Bytes at its end, see `own_bytes`.
+        Bytes at the loop's end, see `own_bytes`.
     allocated
-        Bytes at its end, see `allocated_bytes`.
+        Bytes at the loop's end, see `allocated_bytes`.
     objects
-        Blocks that Python has given out at its end, an object or two each.
+        Blocks that Python has allocated at the loop's end, of an object or two each.
     answers
         The answers to its takes.
 
@@ -217,7 +217,7 @@ class Lap:
 def endure(
     source: Looped, estimator: PoseEstimator, listener: Listener, water: WaterCorrection = "auto"
 ) -> list[Lap]:
-    """Run a looped stream to its end and take stock of every loop."""
+    """Run a looped stream to its end and measure every loop."""
     laps: defaultdict[int, Lap] = defaultdict(Lap)
 
     def take_stock(frame: Frame, found: FrameLandmarks) -> None:
@@ -238,9 +238,9 @@ def endure(
 
 
 def own_bytes() -> int:
-    """Return the memory that this process has for itself, swapped out or not (Linux).
+    """Return the private memory of this process, swapped out or not (Linux).
 
-    The resident size would also tell what the system takes back from it and gives it again.
+    The resident size would also vary with pages that the system swaps out and in.
     """
     status = Path("/proc/self/status").read_text()
     return sum(int(kilobytes) for kilobytes in OWN.findall(status)) * 1024
@@ -259,7 +259,7 @@ class HeapStatistics(ctypes.Structure):
 
 
 def allocated_bytes() -> int:
-    """Return what is allocated in this process and not freed (glibc), but for Python's objects."""
+    """Return the bytes allocated in this process (glibc), without Python's objects."""
     mallinfo2 = ctypes.CDLL(None).mallinfo2
     mallinfo2.restype = HeapStatistics
     heaps = mallinfo2()
@@ -267,7 +267,7 @@ def allocated_bytes() -> int:
 
 
 def slope_of(values: Sequence[float], period: float) -> tuple[float, float]:
-    """Return the growth of a loop's value in a minute of stream time, by least squares.
+    """Return the growth of a loop's value per minute of stream time, by least squares.
 
     Returns
     -------

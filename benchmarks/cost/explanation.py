@@ -1,7 +1,7 @@
 """Explanation: time of an explanation relative to a recognition.
 
-Of each gesture of the larger sample language a plausible take by another person is explained as if
-the next gesture had been meant: nothing but large changes help, so nearly all are tried.
+For each gesture of the larger sample language, a plausible take by another person is explained as
+if the next gesture had been meant: only large changes help, so nearly all are tried.
 """
 
 from __future__ import annotations

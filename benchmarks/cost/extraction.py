@@ -22,7 +22,7 @@ from app.recognition.estimation import create_estimator
 from app.resources import samples_dir
 
 ROUNDS = 5
-"""Pairs of runs; the median of their ratios is reported, since the machine is not ours alone."""
+"""Pairs of runs; the median of their ratios is reported, since other programs may run too."""
 
 
 @dataclass(frozen=True, eq=False)

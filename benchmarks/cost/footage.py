@@ -23,7 +23,7 @@ CLIPS = 6
 
 
 def measure(clips: list[Path], count: int) -> tuple[float, float]:
-    """Extract clips by `count` processes; return the seconds, and those of processors."""
+    """Extract clips by `count` processes; return the elapsed and the processor seconds."""
     with tempfile.TemporaryDirectory() as folder:
         workers = Workers(Settings(data_dir=Path(folder)))
         footage = Footage(clips, Path(folder) / "recordings", workers, lambda progress: None)

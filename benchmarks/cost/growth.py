@@ -2,9 +2,9 @@
 
 ``python -m benchmarks.cost.growth`` runs a server in this process and sends it cycles of requests
 that leave nothing behind: recognitions, checks, a clip and a language that are added and deleted.
-After each number of cycles it prints how many blocks Python has given out, what is allocated in
-the heap of C, and what SQLite has. What the process has of the system's memory tells less: an
-allocator keeps what is free (see `benchmarks.soak`).
+At intervals it prints how many blocks Python has allocated, the bytes allocated in the heap of C,
+and SQLite's memory. The process's resident memory says less: an allocator keeps free memory (see
+`benchmarks.soak`).
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def sqlite_bytes() -> int:
 
 
 def main() -> None:
-    """Send the cycles and print what is kept."""
+    """Send the cycles and print the memory that is kept."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--cycles", type=int, default=25, help="between two lines")
     parser.add_argument("--lines", type=int, default=9)

@@ -1,6 +1,6 @@
 """Library: server load with many languages and clips.
 
-The processor time that a server of 200 languages and 1000 clips takes for what a page asks of it,
+The processor time that a server of 200 languages and 1000 clips takes for a page's requests,
 relative to a server of 10 and 10. The requests go through the whole app, without a network.
 """
 
@@ -28,7 +28,7 @@ SMALL, LARGE = (10, 10), (200, 1000)
 """Languages and clips."""
 
 REPEATS = 15
-"""Odd, for the median; a garbage collection now and then is no cost of the library."""
+"""Runs of an action: odd for the median, which leaves out an occasional garbage collection."""
 
 LISTS = ("/api/v1/languages", "/api/v1/clips")
 
@@ -42,9 +42,9 @@ class Page:
     client
         Asks the server.
     language, clip
-        Ids of those that change.
+        Ids of the language that is changed, and of a clip.
     tags
-        Per list the ETag of what the page has.
+        Per list the ETag of the page's version.
 
     """
 
@@ -61,7 +61,7 @@ class Page:
             self.tags[place] = answer.headers["etag"]
 
     async def visit(self) -> None:
-        """Load both lists again, as a browser does that has them."""
+        """Load both lists again, with the ETags of a browser that has them."""
         for place in LISTS:
             answer = await self.client.get(place, headers={"If-None-Match": self.tags[place]})
             assert answer.status_code == 304
@@ -75,7 +75,7 @@ class Page:
         assert (await self.client.get(f"/api/v1/clips/{self.clip}")).status_code == 200
 
     async def visit_after_change(self) -> None:
-        """Change something, and load both lists anew."""
+        """Change a language, and load both lists anew."""
         await self.change()
         await self.first_visit()
 
@@ -107,7 +107,7 @@ def fill(studio: Studio, languages: int, clips: int) -> tuple[str, str]:
 
 
 async def costs(languages: int, clips: int) -> dict[str, float]:
-    """Return the cost of every action of a page on a server with that much data."""
+    """Return the cost of every action of a page on a server with so many languages and clips."""
     with tempfile.TemporaryDirectory() as folder:
         app = create_app(Settings(data_dir=Path(folder), samples_dir=Path(folder) / "none"))
         transport = httpx.ASGITransport(app)

@@ -25,13 +25,13 @@ import httpx
 import numpy as np
 
 PROBED: Final = {"health": "/healthz", "page": "/", "API": "/api/v1/clips"}
-"""What is timed, by a client that does nothing else."""
+"""Requests that are timed, by a client that does nothing else."""
 
 LIST_SECONDS: Final = 3.0
-"""Between two looks of a page at its lists."""
+"""Seconds between a page's requests for its lists."""
 
 PROBE_SECONDS: Final = 0.05
-"""Between two timed requests."""
+"""Seconds between two timed requests."""
 
 SERVE: Final = """
 import sys
@@ -117,7 +117,7 @@ async def probe(address: str, path: str, seconds: list[float], tally: Tally) -> 
 
 
 def small_clip(path: Path, frames: int = 30) -> bytes:
-    """Return a clip of noise in which nobody is."""
+    """Return a clip of noise, without a person."""
     random = np.random.default_rng(1)
     with av.open(str(path), "w") as container:
         stream = container.add_stream("mpeg4", rate=25)
@@ -149,7 +149,7 @@ async def serving(folder: Path) -> AsyncIterator[tuple[str, int]]:
 
 
 async def measure(watchers: int, uploaders: int, seconds: float) -> Tally:
-    """Load a server for so long, and return what was counted."""
+    """Load a server for some seconds, and return the counts."""
     tally = Tally()
     with tempfile.TemporaryDirectory() as folder:
         clip = small_clip(Path(folder) / "dive.mkv")

@@ -18,7 +18,7 @@ from app.resources import samples_dir
 
 MINUTES = (1, 10)
 FRAMES_PER_SECOND = 4
-"""Few, so that ten minutes run in acceptable time; leaks would grow per frame."""
+"""Frames a second: few, so that ten minutes run in acceptable time; leaks would grow per frame."""
 
 CHILD = """
 import resource, sys

@@ -1,8 +1,8 @@
 """Recognition: time as a function of the number of gestures.
 
-Rendering and describing the query happens once per distinct set of salient keypoints, so a
-thousand gestures must cost far less than a hundred and twenty-five times what eight cost. Processor
-time, so that other programs do not count.
+The query is rendered and described once per distinct set of salient keypoints, so a thousand
+gestures must cost far less than 125 times as much as eight. Times are processor time, so that other
+programs do not count.
 """
 
 from __future__ import annotations

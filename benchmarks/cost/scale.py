@@ -1,10 +1,10 @@
 """Scale: what a library of a million clips and thousands of watchers cost one server.
 
-``python -m benchmarks.cost.scale`` fills a database of its own with rows of clips, as many as told,
-and measures what grows with them: the whole list, pages of it and searches as the studio's page
-asks for them, one clip, a new job and its start, a quota, the look for jobs that other servers
-left. With ``--database URL`` it does so in an empty PostgreSQL. Then it
-gives events to watchers, through the code that writes their streams, without a network.
+``python -m benchmarks.cost.scale`` fills a database of its own with a given number of clips, and
+measures the accesses that grow with it: the whole list, pages of it and searches as the studio's
+page requests them, one clip, a new job and its start, a quota, and the search for jobs left by
+other servers. With ``--database URL`` it uses an empty PostgreSQL. Then it sends events to
+watchers, through the code that writes their streams, without a network.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def fill(database: Database, first: int, last: int) -> None:
 
 
 def milliseconds(work: Callable[[], object], repeats: int = REPEATS) -> str:
-    """Return the median time of some work, and the processor time of this process."""
+    """Return the median elapsed time of some work, and this process's processor time for it."""
     taken, spent = [], []
     for _ in range(repeats):
         began, before = time.perf_counter(), time.process_time()
@@ -87,7 +87,7 @@ def milliseconds(work: Callable[[], object], repeats: int = REPEATS) -> str:
 
 
 def measure_rows(database: Database, folder: Path, clips: int, longest_list: int) -> None:
-    """Print what each kind of access takes in a database of so many clips."""
+    """Print the time of each kind of access to a database of so many clips."""
     store, jobs = ClipStore(database, folder), JobStore(database, "benchmark")
     clip_id = f"{clips // 2:032x}"
 
@@ -125,7 +125,7 @@ def measure_rows(database: Database, folder: Path, clips: int, longest_list: int
 
 
 async def measure_watchers(counts: list[int], events: int) -> None:
-    """Print the processor time of giving an event to watchers, a watcher and event."""
+    """Print the processor time of sending events to watchers, per watcher and event."""
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(data_dir=Path(folder), samples_dir=Path(folder) / "none")
         async with open_studio(settings) as studio:

@@ -30,7 +30,7 @@ from benchmarks.cost.recognition import wander
 GESTURES = 20
 ROUNDS = 25
 IN_A_ROW = 4
-"""Times that a work is done when it is its turn: once after another one, then after itself."""
+"""Runs of a task in its turn: the first follows another task, the others follow the same task."""
 
 FRAMES = 60
 
@@ -58,15 +58,15 @@ def whole_body(seed: int) -> PoseSequence:
 
 @dataclass(frozen=True)
 class Took:
-    """The median processor time of a work, in seconds.
+    """The median processor time of a task, in seconds.
 
     Attributes
     ----------
     at_first
-        Right after another work, which left neither its code nor its data in the caches: as a
-        robot recognises a take after hundreds of frames.
+        Right after another task, with its own code and data no longer in the caches: as a robot
+        recognises a take after hundreds of frames.
     again
-        Right after itself, as it is usually measured.
+        Right after the same task, as it is usually measured.
 
     """
 
@@ -75,9 +75,9 @@ class Took:
 
 
 def measure_seconds(*works: Callable[[], object], rounds: int = ROUNDS) -> list[Took]:
-    """Measure some works, each done once before it counts.
+    """Measure some tasks, each after one run that does not count.
 
-    They take turns: what slows down the machine for a while then slows down all of them.
+    They take turns, so that a temporary load on the machine slows all of them down alike.
     """
     for work in works:
         work()
@@ -129,7 +129,7 @@ def published_steps(
 
 def main() -> None:
     """Print the ratios."""
-    # Threads of OpenCV that wait for work spin, and their time would count as the published steps'.
+    # Idle threads of OpenCV spin, and their time would count for the published steps.
     cv2.setNumThreads(1)
     demonstrations = [whole_body(seed) for seed in range(GESTURES)]
     gestures = [

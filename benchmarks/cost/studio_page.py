@@ -2,10 +2,10 @@
 
 A clip of 30 s in 1280 x 720, in which a rendered diver draws again and again:
 
-- scrubbing through it at 25 frames a second, how many of the frames asked for are shown, how often
-  the 3D view is drawn, relative to 25 a second, and how long the server computes for a frame,
-  relative to a 25th of a second: the last does not depend on what else the machine does;
-- how much of the clip is done when the first poses are on the screen.
+- while scrubbing through it at 25 frames a second: the share of requested frames that are shown,
+how often the 3D view is drawn, relative to 25 a second, and how long the server computes for a
+frame, relative to a 25th of a second (the last does not depend on other load of the machine);
+- the share of the clip that is processed when the first poses are on the screen.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from tests.browser.files import drop
 from tests.browser.library import add_clip
 
 SHAPES = ("circle", "line", "circle backwards") * 3
-"""Nine takes, 33 s; the clip is cut at 30."""
+"""Number of takes: nine last 33 s; the clip is cut at 30 s."""
 
 SECONDS, SIZE = 30, (1280, 720)
 
@@ -122,7 +122,7 @@ def scrub(server: Running, page: Page, clip: Path) -> dict[str, Any]:
     page.frame_locator("#lab").locator("canvas").first.wait_for()
     page.wait_for_function("() => /frame/.test(document.getElementById('clock')?.textContent)")
     found: dict[str, Any] = {}
-    # The first time the pictures are still being decoded; people look a moment before they scrub.
+    # At first the pictures are still being decoded; people look for a moment before they scrub.
     for _ in range(2):
         before = time.process_time()
         found = page.evaluate(SCRUB, {"asked": ASKED, "period": 1000 / ASKED_PER_SECOND})
@@ -131,7 +131,7 @@ def scrub(server: Running, page: Page, clip: Path) -> dict[str, Any]:
 
 
 def count_first_poses(page: Page, clip: Path) -> tuple[int, int]:
-    """Drop a clip; return how many frames of how many were done when poses were on screen."""
+    """Drop a clip; return the processed and all frames when the first poses are on the screen."""
     drop(page, clip)
     done, total = page.wait_for_function(FIRST_POSES, polling="raf").json_value()
     page.get_by_role("button", name=f"Cancel {clip.name}").click()

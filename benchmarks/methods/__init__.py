@@ -32,7 +32,7 @@ METHODS: Final = (*PROFILES, *_OTHERS)
 def new_method(name: str) -> Method:
     """Make a method that has not seen a gesture yet.
 
-    Only the packages of that one are imported: those of some are large, and an extra.
+    Only the packages of this method are imported: some are large, and in the extra ``bench``.
 
     Raises
     ------

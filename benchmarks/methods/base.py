@@ -12,7 +12,7 @@ class Method(ABC):
 
     @abstractmethod
     def add(self, label: str, demonstration: PoseSequence) -> None:
-        """Take the demonstration of one more gesture.
+        """Add a gesture by its demonstration.
 
         Raises
         ------
@@ -22,7 +22,7 @@ class Method(ABC):
         """
 
     def prepare(self) -> None:  # noqa: B027 - most methods have nothing to do here
-        """Prepare after gestures are added, before the next query."""
+        """Prepare for queries after gestures were added."""
 
     @abstractmethod
     def answer(self, query: PoseSequence) -> str | None:

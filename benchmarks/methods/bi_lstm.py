@@ -23,8 +23,8 @@ UNITS = 32
 EPOCHS = 15
 BATCH = 64
 
-# Compiling takes longer than training. A network of a shape that was seen before is not
-# compiled again, in this process or a later one.
+# Compiling takes longer than training, so compiled networks are cached by their shape, also for
+# later processes.
 jax.config.update("jax_compilation_cache_dir", str(Path(tempfile.gettempdir()) / "osg-bench-jax"))
 
 

@@ -16,7 +16,8 @@ STATES = 8
 """Number of states, each of four of the 32 steps."""
 
 LEAST_VARIANCE = 1e-3
-"""Least variance of a coordinate in a state, in squared sizes: below that of two takes."""
+"""Least variance of a coordinate in a state, in squared sizes; takes of a gesture differ by
+more."""
 
 ROUNDS = 10
 """Iterations of expectation maximisation."""
@@ -27,7 +28,7 @@ class HiddenMarkov(TrainedOnVariants):
 
     def train(self, sequences: list[FloatArray]) -> None:
         """Fit the gestures' models, each to its own variants."""
-        # It reports every round in which the likelihood does not grow any more.
+        # The library logs every round in which the likelihood no longer grows.
         logging.getLogger("hmmlearn").setLevel(logging.ERROR)
         self._models: list[Any] = [_fit(each) for each in sequences]
 

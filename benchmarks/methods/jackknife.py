@@ -1,8 +1,8 @@
 """A matcher in the manner of Jackknife (Taranta et al. 2017), written from the paper.
 
-Sixteen points, fifteen directions between them, dynamic time warping with one less the inner
-product as its cost and a band of two, and two correction factors: how far each coordinate travels,
-and how far it reaches. Without the rejection threshold.
+Sixteen points and the fifteen directions between them are compared by dynamic time warping, with
+one minus the inner product as its cost and a band of two. Two factors correct the distance: the
+length that each coordinate travels, and its range. The rejection threshold is left out.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Jackknife(Method):
     def answer(self, query: PoseSequence) -> str:
         """Return the label of the nearest reference."""
         directions, corrections = _describe(query)
-        # Of unit vectors, the squared distance is twice one less the inner product.
+        # The squared distance of unit vectors is twice (one minus the inner product).
         warped = dtw_distances(directions, np.array(self._directions), BAND) / 2
         alike = np.einsum("gcd,cd->gc", np.array(self._corrections), corrections)
         factors = 1 / np.maximum(alike, 1e-9)

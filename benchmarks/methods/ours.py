@@ -7,9 +7,9 @@ from benchmarks.methods.base import Method
 
 
 class OurProfile(Method):
-    """A profile of the recogniser; answers the nearest gesture, also if it is rejected.
+    """A profile of the recogniser; answers with the nearest gesture, even if the take is rejected.
 
-    The other methods never refuse, so a refusal would not be compared with anything.
+    The other methods never reject, so that rejections cannot be compared.
     """
 
     def __init__(self, profile: str) -> None:
@@ -35,7 +35,7 @@ class OurProfile(Method):
 
 
 def gesture_of(label: str, demonstration: PoseSequence) -> Gesture:
-    """Make a gesture; where nothing moves enough by itself, of every landmark."""
+    """Make a gesture; if no landmark moves enough to be salient, all landmarks are."""
     try:
         return Gesture.from_demonstration(label, demonstration)
     except GestureError:

@@ -1,4 +1,4 @@
-"""Plain dynamic time warping, the yardstick: position and direction of all landmarks together."""
+"""Plain dynamic time warping, the baseline: position and direction of all landmarks together."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The $P recogniser: gestures as clouds of points, whatever the order (Vatavu et al. 2012).
 
-$Q (Vatavu et al. 2018) is the same matching with early abandoning on coarser points: faster where a
-language is large, and not more accurate, so one of the two stands for both. The points of several
-landmarks that belong to one moment are one point of a space with as many more dimensions.
+$Q (Vatavu et al. 2018) is the same matching with early abandoning on coarser points: faster for a
+large language, but not more accurate, so $P stands for both. The points of several landmarks at one
+moment are combined into one point with more dimensions.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from benchmarks.methods.base import Method
 from benchmarks.methods.steps import STEPS, even_positions
 
 STARTS_EXPONENT = 0.5
-"""Exponent of the number of starting points that are tried: the published trade-off."""
+"""Exponent of the number of starting points, as published."""
 
 
 class PointCloud(Method):
@@ -47,7 +47,7 @@ def greedy_cloud_distance(one: FloatArray, other: FloatArray) -> float:
 
 
 def _match(costs: FloatArray, start: int) -> float:
-    """Match each point with the nearest one left; those matched first weigh most."""
+    """Match each point with the nearest unmatched one; early matches weigh most."""
     left = costs.copy()
     total = 0.0
     for rank, row in enumerate(np.roll(np.arange(len(costs)), -start)):

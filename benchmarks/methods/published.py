@@ -1,18 +1,19 @@
 """The published implementation's steps, for comparison (Joshi and Sattar 2025).
 
-Written anew from its behaviour, defects included, since they are what is compared with: x and y
+Written anew from its behaviour, including its defects, which are part of the comparison: x and y
 are divided by the frame's width and height and neither centred on the torso nor scaled; reference
-and query are prepared differently; the moment vectors are standardised within themselves; the
-Fourier descriptors keep position, size and starting point; the first contour is taken, whichever
-it is. The query is drawn, described and compared once for each gesture of the language.
+and query are prepared differently; each moment vector is standardised by its own mean and
+deviation; the Fourier descriptors keep position, size and starting point; the first contour is
+taken, which may be any. The query is drawn, described and compared once for each gesture of the
+language.
 
-It also costs what the published implementation costs, for `benchmarks.cost.speed`: coordinates are
-gathered and lines drawn in plain loops over frames and keypoints, moments are those of the same two
-libraries (scikit-image and mahotas), and every voter looks for the contours by itself.
+For `benchmarks.cost.speed` it also has the cost of the published implementation: coordinates are
+gathered and lines drawn in plain loops over frames and keypoints, moments come from the same two
+libraries (scikit-image and mahotas), and every voter finds the contours for itself.
 
-Not taken over, which makes it the faster: the picture written to the working directory for every
-gesture, and what is printed. Nor is the crash of the whole language when one drawing is empty; such
-a gesture is here the farthest for every voter.
+It is faster in two respects: it writes no picture to the working directory for every gesture, and
+prints nothing. It also differs in that one empty drawing does not crash the whole language; such a
+gesture is the farthest for every voter.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ from benchmarks.methods.base import Method
 
 SIZE = 224
 MIN_MOVEMENT = 0.1
-"""Least sum of the ranges of x and y of a salient keypoint, as fractions of the frame."""
+"""Least x range plus y range of a salient keypoint, as fractions of the frame."""
 
 MAX_SALIENT = 3
 CORNER_TOLERANCE = 5.0
@@ -82,9 +83,9 @@ class PublishedCode(Method):
         return self.name(self.gather(query))
 
     def gather(self, query: PoseSequence) -> Frames:
-        """Return a query as it arrives in the published implementation, frame by frame.
+        """Convert a query to the published implementation's input, frame by frame.
 
-        Only what any gesture needs is converted.
+        Only keypoints that some gesture needs are converted.
         """
         return frames_of(query, {name for each in self._references for name in each.salient})
 
@@ -100,7 +101,7 @@ class PublishedCode(Method):
 
 
 def salient_keypoints(poses: PoseSequence) -> tuple[str, ...]:
-    """Choose at most one keypoint a group (right hand, left hand, the rest), the widest first."""
+    """Choose at most one keypoint per group (right hand, left hand, the rest), the widest first."""
     movement = np.nansum(_range(poses.xy / poses.frame_size), axis=1)
     best: dict[str, tuple[float, str]] = {}
     for name, moved in zip(poses.landmarks, movement.tolist(), strict=True):
@@ -124,7 +125,7 @@ def frames_of(poses: PoseSequence, names: Collection[str]) -> Frames:
 
 
 def picture(frames: Frames, salient: Sequence[str], edges: tuple[float, float]) -> Image:
-    """Draw a gesture, and of the drawing the simplified outer contours of its edges, thickened."""
+    """Draw a gesture, then the simplified outer contours of the drawing's edges, thickened."""
     drawn = cv2.normalize(_paths(frames, salient), np.empty(0), 0, 255, cv2.NORM_MINMAX)
     grey = cv2.cvtColor(drawn.astype(np.uint8), cv2.COLOR_BGR2GRAY)
     found = cv2.Canny(_blur(np.asarray(grey, dtype=np.uint8), 5), *edges)
@@ -158,7 +159,7 @@ def _paths(frames: Frames, salient: Sequence[str]) -> Image:
 def features(image: Image) -> tuple[FloatArray, ...] | None:
     """Describe a picture for the seven voters, Hu, Zernike and Fourier first; None: it is empty.
 
-    As published every voter finds the contours for itself, so that the time is the published one.
+    As published, every voter finds the contours for itself, so that the cost is the same.
     """
     complete = cv2.findContours(image, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)[0]
     if not complete:

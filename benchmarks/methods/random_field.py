@@ -12,8 +12,8 @@ from app.recognition.poses.sequence import FloatArray
 from benchmarks.methods.trained import TrainedOnVariants
 
 LEVELS = 7
-"""Levels that a coordinate is divided into: the field's weights are linear, and a gesture is no
-linear function of where the hand is."""
+"""Levels that a coordinate is divided into, because the field's weights are linear, but a gesture
+is not a linear function of the hand's position."""
 
 REACH = 2.0
 """Largest coordinate distinguished, in sizes."""
@@ -38,7 +38,7 @@ class RandomField(TrainedOnVariants):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "field"
             trainer.train(str(path))
-            # The tagger reads the model where it lies, and does not keep it alive.
+            # The tagger reads the model's memory without holding a reference to it.
             self._model = path.read_bytes()
         self._tagger = pycrfsuite.Tagger()
         self._tagger.open_inmemory(self._model)

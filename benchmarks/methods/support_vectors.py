@@ -15,10 +15,10 @@ PENALTY = 10.0
 
 
 class SupportVectors(TrainedOnVariants):
-    """One vector a movement, with a Gaussian kernel of the customary width.
+    """One vector per movement, with a Gaussian kernel of the customary width.
 
-    Coordinates keep their common unit: standardised one by one, what rests would count as much as
-    what moves.
+    Coordinates keep their common unit: if each were standardised, resting ones would count as much
+    as moving ones.
     """
 
     def train(self, sequences: list[FloatArray]) -> None:

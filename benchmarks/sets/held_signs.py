@@ -13,13 +13,13 @@ from app.recognition.poses.sequence import HANDS_SHAPE
 
 FILE = "scuba_hands.npz"
 FRAME = (640, 480)
-"""The file gives fractions of a picture of unknown size; a flat hand has the proportions of a hand
-if its sides are 4 to 3."""
+"""Picture size: the file gives fractions of a picture of unknown size; with sides of 4 to 3 a flat
+hand has realistic proportions."""
 RATE = 30.0
 TAKES_OF_A_RUN = 5
 """Takes in a row with the same hand, side of the hand and view."""
 SHOWN_IN_TWO_WAYS = "stop"
-"""A flat hand in the first runs and a fist in the last: two signs here."""
+"""A label whose first runs show a flat hand and whose last ones a fist: treated as two signs."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,8 @@ class HeldSigns:
     takes
         N pose sequences: a hand, and the wrist as the only landmark of a body.
     labels, runs
-        ``(N,)`` sign and run of each; hand, palm or back and view change between runs.
+        ``(N,)`` sign and run of each; the hand, its side (palm or back) and the view differ between
+        runs.
 
     """
 
@@ -51,7 +52,7 @@ def read_held_signs(folder: Path) -> HeldSigns:
 
 
 def _read(places: npt.NDArray[np.float32]) -> PoseSequence:
-    """Return the hand that is seen longer as the right one: the file's slots tell no side."""
+    """Return the hand that is seen longer, as the right one: the file does not name the sides."""
     count = HANDS_SHAPE[1]
     hands = places.astype(np.float64).reshape(len(places), 2, count, 3)[..., :2] * FRAME
     seen = np.isfinite(hands).all(axis=(2, 3)).mean(axis=0)

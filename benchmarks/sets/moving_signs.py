@@ -1,7 +1,7 @@
 """Moving signs: recorded movements, each with a recorded hand that keeps a shape on its wrist.
 
-The movement and the hand are other people's recordings; what is composed is that the hand turns
-with a forearm and that quick frames are lost.
+The movement and the hand are other people's recordings; the composition turns the hand with the
+forearm and removes it from fast frames.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from app.recognition.poses.hand_shape import normalize_hands
 from app.recognition.poses.sequence import HANDS_SHAPE, FloatArray
 
 ELBOW_DISTANCE = (1.0, 1.6)
-"""From the middle of the movement to the elbow, in its size: a figure is about as large as a
-forearm is long, and takes differ."""
+"""Distance from the movement's middle to the elbow, relative to the movement's size: a figure is
+about as large as a forearm, and takes differ."""
 
 ELBOW_SPREAD = 20.0
-"""Degrees by which the elbow's direction from the movement, mostly below it, differs."""
+"""Spread in degrees of the elbow's direction from the movement, which is mostly downwards."""
 
 ERROR = 0.03
-"""Of each landmark in each frame beside the recorded hand's own, in sizes of the hand: rendered
-moving hands are 0.02 to 0.1 from their median, recorded held ones 0.05 to 0.1."""
+"""Error added to each landmark in each frame, in hand sizes: rendered moving hands differ by 0.02
+to 0.1 from their median, recorded held ones by 0.05 to 0.1."""
 
 MOST_LOST = 0.7
 """Share of the frames at the highest speed in which no hand is seen."""
 
 HAND_SIZE = 0.03
-"""Size of the hand over that of the movement: without a torso only the hand's own travel tells that
-it moves, and a larger one would look held in narrow figures."""
+"""Size of the hand relative to the movement: without a torso only its travel in hand sizes shows
+that it moves, so that a larger hand would look held in narrow figures."""
 
 
 def compose(movement: PoseSequence, hands: FloatArray, random: np.random.Generator) -> PoseSequence:
@@ -50,7 +50,7 @@ def compose(movement: PoseSequence, hands: FloatArray, random: np.random.Generat
     """
     wrist = movement.xy[:, 0]
     shown = normalize_hands(hands[np.isfinite(hands).all(axis=(1, 2))])
-    # There and back again through the frames of the hand, as long as the movement takes.
+    # Play the frames of the hand forwards and backwards, for as long as the movement takes.
     there = np.arange(len(wrist)) % max(2 * len(shown) - 2, 1)
     frames = shown[np.where(there < len(shown), there, 2 * len(shown) - 2 - there)]
     turns = _turn_forearm(wrist, random)

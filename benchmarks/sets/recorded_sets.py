@@ -33,11 +33,11 @@ class RecordedSet:
     Attributes
     ----------
     name
-        For the report.
+        Name in the report.
     recordings
         N pose sequences.
     labels, people
-        ``(N,)`` class and person of each; one unknown person where the set does not tell.
+        ``(N,)`` class and person of each; one unknown person if the set does not name people.
 
     """
 
@@ -63,7 +63,7 @@ def recorded_sets(folder: Path, names: Collection[str] | None = None) -> Iterato
 
 
 def _content(path: Path) -> dict[str, npt.NDArray[Any]]:
-    """Read all arrays of a file once: each look into an opened one reads it again."""
+    """Read all arrays of a file once: each access to an opened file would read again."""
     with np.load(path, allow_pickle=True) as file:
         return dict(file)
 
@@ -86,6 +86,6 @@ def _recorded_set(
         for path in paths
     ]
     people = content["subject"][chosen].astype(str)
-    if name not in DOMAINS:  # the files of the other sets do not tell their people apart
+    if name not in DOMAINS:  # the files of the other sets do not name people
         people = np.full(len(chosen), "unknown")
     return RecordedSet(name, recordings, content["label"][chosen].astype(str), people)

@@ -1,9 +1,9 @@
 """Sign sequences: takes in which one hand shows held signs one after the other, composed of takes.
 
-A person shows all signs of a sequence with the same hand and side of it. The recorded takes tell
-neither, so that the takes of every run are mirrored if that brings them nearer to the first run of
-their sign; a composed take is then mirrored as a whole or not. A fifth of a recorded take is left
-out at either end, in which its hand may come or go; 0.6 s are left.
+A person shows all signs of a sequence with the same hand and the same side of it. The recorded
+takes name neither, so the takes of a run are mirrored if that brings them nearer to the first run
+of their sign; a composed take may then be mirrored as a whole. A fifth of a recorded take is cut at
+either end, where the hand may come or go; 0.6 s remain.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ON_ITS_WAY = 0.2
 """Share of a take at either end in which the hand may come or go, as in `held_hands`."""
 
 UNSEEN = 0.5
-"""Share of the changes during which no hand is found; in the others the hand goes straight."""
+"""Share of the changes during which no hand is found; in the others the hand moves straight."""
 
 
 def turn_alike(signs: HeldSigns) -> HeldSigns:

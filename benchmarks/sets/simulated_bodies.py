@@ -32,10 +32,10 @@ CARRIED = ("carried_figures", *CARRIED_DOMAINS)
 """Names of all sets."""
 
 PEOPLE, TAKES = 8, 4
-"""Of the simulated paths, as many as in UTD-MHAD."""
+"""People and takes of the simulated paths, as many as in UTD-MHAD."""
 
 EXTENT = 0.4
-"""Metres: the larger side of a usual figure."""
+"""Larger side of a usual figure in metres."""
 
 NOISE = 0.006
 """Standard deviation in metres of the error of a joint in a frame."""
@@ -53,7 +53,7 @@ class Person:
     size
         All lengths of the body as a share of the usual.
     place
-        ``(3,)``: the figures' middle from the right shoulder.
+        ``(3,)``: the figures' centre, relative to the right shoulder.
     scale
         Factor of the hand's path.
     swivel
@@ -61,7 +61,7 @@ class Person:
     raising
         Seconds to raise and to lower the arm.
     beside, before
-        From the camera's axis, and from the camera.
+        Distance from the camera's axis, and from the camera.
     lean
         Share of the hand's displacement that the shoulders follow.
 
@@ -209,7 +209,7 @@ def _reach(start: FloatArray, end: FloatArray, seconds: float) -> FloatArray:
 
 
 def _smooth(path: FloatArray) -> FloatArray:
-    """Round the corners where one movement goes over into the next."""
+    """Round the corners between one movement and the next."""
     kernel = np.exp(-0.5 * (np.arange(-4, 5) / 1.5) ** 2)
     padded = np.pad(path, ((4, 4), (0, 0)), mode="edge")
     columns = [np.convolve(column, kernel / kernel.sum(), "valid") for column in padded.T]

@@ -1,8 +1,9 @@
 """Streams: continuous recordings composed of other people's gestures and transitions.
 
-Gestures of a language, gestures that it does not have and accidental movements follow each other in
-random order. Before each the hands rest beside the body or come straight from what was before; they
-reach for the beginning with minimum jerk (Flash and Hogan 1985) and pause there for a moment.
+Gestures of a language, out-of-vocabulary gestures and accidental movements follow each other in
+random order. Before each one the hands rest beside the body or come straight from the previous
+movement; they reach for the starting point with minimum jerk (Flash and Hogan 1985) and pause there
+briefly.
 """
 
 from __future__ import annotations
@@ -20,17 +21,17 @@ from app.recognition.simulation.background_motion import simulate_background_mot
 from benchmarks.sets.recorded_sets import RATE, RecordedSet
 
 TORSO = 200.0
-"""Pixels; recordings are scaled so that the median gesture of a set is as large."""
+"""Size in pixels to which the median gesture of a set is scaled."""
 
 CENTRE = (320.0, 240.0)
 BODY = np.array([[0.33, -0.5], [-0.33, -0.5], [0.2, 0.5], [-0.2, 0.5]])
 """Shoulders and hips in torso lengths from the torso's centre."""
 
 RESTING = {"left": (0.43, 0.6), "right": (-0.43, 0.6)}
-"""Where the wrists are when the arms hang."""
+"""Places of the wrists when the arms hang."""
 
 IN_FRONT = (-0.5, -0.1)
-"""About where one hand gestures; two hands do so in the middle."""
+"""Centre of one-handed gestures; those of both hands are in the middle."""
 
 REACH = (0.5, 1.0)
 PAUSE = (0.1, 0.4)
@@ -66,7 +67,7 @@ class Stream:
 
 
 def with_body(recorded: RecordedSet) -> RecordedSet:
-    """Place a set's hands before a still torso, all at one scale."""
+    """Place a set's hands in front of a still torso, all at one scale."""
     widths = [np.ptp(each.xy, axis=0) for each in recorded.recordings]
     extents = [np.linalg.norm(width, axis=1).max() for width in widths]
     scale = TORSO / float(np.median(extents))

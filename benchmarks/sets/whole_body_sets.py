@@ -1,6 +1,6 @@
 """Whole bodies recorded by depth cameras, seen as a camera in front sees them.
 
-Only gestures of the arms are kept. Nobody has tuned anything on these sets.
+Only gestures of the arms are kept. Nothing has been tuned on these sets.
 """
 
 from __future__ import annotations
@@ -34,10 +34,10 @@ ARM_CLASSES = {
     ),
     "utkinect": ("clapHands", "pull", "push", "throw", "waveHands"),
 }
-"""Of each set the classes that arms perform, by name."""
+"""The classes performed with the arms, by set."""
 
 OUR_NAMES = {"left_hand": "left_index", "right_hand": "right_index", "head": "nose"}
-"""Joints whose nearest landmark of ours has another name."""
+"""Our landmark nearest to a joint, where the names differ."""
 
 UPPER_BODY = tuple(
     f"{side}_{part}"

@@ -15,10 +15,10 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
 
 LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")
-"""How a take looks by itself, see `looks`."""
+"""Features of a take by itself, see `looks`."""
 
 SCORE = "score"
-"""The voters' distances fused, each over its typical distance between gestures."""
+"""The fused voters' distances, each divided by its typical distance between gestures."""
 
 FEATURES = (*VOTER_NAMES, SCORE, *LOOKS)
 
@@ -47,7 +47,7 @@ class TakeComparison:
     def features(self, take: Trajectory) -> FloatArray:
         """Return ``(F,)`` numbers, named by `FEATURES`.
 
-        Distances in the traversal with the nearest path; of the looks, what they differ by.
+        Distances are in the traversal with the nearest path; `looks` are given as differences.
         """
         motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
         nearest = motion[:, motion[_PATH].argmin()]
@@ -62,17 +62,17 @@ class TakeComparison:
 
 
 def demonstration_of(gesture: Gesture) -> Trajectory:
-    """Return a gesture's demonstration, which gestures made of poses always have."""
+    """Return a gesture's demonstration; gestures made from poses always have one."""
     assert gesture.trajectory is not None
     return gesture.trajectory
 
 
 def looks(take: Trajectory, salient: tuple[str, ...]) -> FloatArray:
-    """Describe a take by itself, each as a logarithm.
+    """Describe a take by itself, by the logarithms of these features.
 
-    Its duration; the length of its way in sizes; how unevenly it runs through it (the spread of
-    its speed over the mean); how sharply it turns (mean squared angle from step to step); the gap
-    between start and end in sizes; and what smoothing takes away, in sizes.
+    Its duration; the length of its path in sizes; the unevenness of its speed (spread over mean);
+    its turning (mean squared angle from step to step); the gap between start and end in sizes; and
+    the difference to the smoothed path in sizes.
     """
     seen = build_movement(take, salient)
     steps = np.diff(seen.paths, axis=0)

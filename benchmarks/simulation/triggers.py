@@ -1,8 +1,8 @@
 """Triggers: how often poses of the arms are missed, and set off by ordinary movement.
 
-For some poses by tolerance and hold time: of simulated people the share whose pose is missed, and
-the times in an hour that simulated ordinary movement holds it. With a folder of recorded sets also
-the times in an hour of people who give signals to vehicles (`groundguide`), 30 frames a second.
+For some poses, by tolerance and hold time: the share of simulated people whose pose is missed, and
+the false alarms per hour of simulated ordinary movement. With a folder of recorded sets also the
+false alarms per hour of people who give signals to vehicles (`groundguide`), at 30 frames a second.
 
     python -m benchmarks.simulation.triggers [../shared/data]
 """
@@ -40,7 +40,7 @@ POSES = {
 
 
 def count_held(hold: float, time: FloatArray, scores: FloatArray) -> int:
-    """Return how many times a stream of scores becomes held."""
+    """Return how many times a pose becomes held in a stream of scores."""
     held = HeldTrigger(hold=hold, leave=LEAVE_SCORE)
     states = [held.update(*each) for each in zip(time.tolist(), scores.tolist(), strict=True)]
     return sum(now and not before for before, now in zip([False, *states], states, strict=False))
@@ -73,7 +73,7 @@ def compare_constants() -> Iterator[str]:
 
 
 def count_in_signals(data: Path) -> Iterator[str]:
-    """Yield a line for each pose: times in an hour of recorded signals to vehicles."""
+    """Yield a line for each pose: false alarms per hour of recorded signals to vehicles."""
     with np.load(data / "trajectories" / "groundguide.npz", allow_pickle=True) as recorded:
         names = tuple(str(name) for name in recorded["joint_names"])
         paths = [np.asarray(path, np.float64)[..., :2] for path in recorded["x"]]

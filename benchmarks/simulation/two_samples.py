@@ -17,7 +17,7 @@ def kolmogorov_smirnov(one: FloatArray, other: FloatArray) -> float:
 
 
 def coverage(real: FloatArray, varied: FloatArray, share: float = 0.95) -> float:
-    """Return how many real takes ``(N,)`` lie within that share of their variants ``(N, M)``."""
+    """Return the share of real takes ``(N,)`` up to that quantile of their variants ``(N, M)``."""
     return float((real <= np.quantile(varied, share, axis=1)).mean())
 
 

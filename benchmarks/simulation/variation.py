@@ -1,8 +1,9 @@
 """Variation: compares simulated variants with people's further takes.
 
-Of each recorded set, random pairs of takes of one class: a demonstration and a further take, by
-the same person, by another one, or by anybody where the set does not tell. Beside each stand
-variants of the demonstration, or other further takes ("people": what chance makes of the numbers).
+In each recorded set, random pairs of takes of one class are drawn: a demonstration and a further
+take, by the same person, another one, or anybody if the set does not name people. The further takes
+are compared with variants of the demonstration, or with other further takes ("people": differences
+by chance).
 
 models
     Kolmogorov and Smirnov's largest difference of cumulative distributions, averaged over the
@@ -14,7 +15,8 @@ voters
 confusion
     Accuracy of the recogniser on real takes and on variants of the demonstrations.
 refused
-    Share of real takes, and of variants, that the demonstration as the only gesture refuses.
+    Share of real takes, and of variants, rejected by a language with the demonstration as its only
+    gesture.
 scale
     Mean difference of the voters' distributions with our spreads scaled, and the scale that the
     other sets would choose for each.
@@ -49,7 +51,7 @@ from benchmarks.simulation.two_samples import coverage, kolmogorov_smirnov, sepa
 from benchmarks.simulation.variation_models import MODELS, Model, ours, scaled
 
 ARTEFACTS = {"grufba3d": ("aspect_ratio",), "natops": ("tempo", "duration")}
-"""Features that a set's authors normalised: the shape of the box, the number of frames."""
+"""Features that a set's authors normalised away: the shape of the box, the number of frames."""
 
 SCALES = (0.7, 0.85, 1.0, 1.2, 1.4)
 QUANTILES = (10, 50, 90)
@@ -104,7 +106,7 @@ class Comparison:
     varied: FloatArray
 
     def resampled(self, rows: npt.NDArray[np.intp]) -> Comparison:
-        """Take some of the pairs."""
+        """Return some of the pairs."""
         return Comparison(self.real[rows], self.varied[rows])
 
     def differences(self, names: tuple[str, ...]) -> float:
@@ -191,7 +193,7 @@ def report_voters(relation: Relation, pairs: int, count: int, seed: int) -> Iter
 
 
 def report_confusion(relation: Relation, pairs: int, _: int, seed: int) -> Iterator[str]:
-    """Report confusions of real takes and of variants in a language of all classes."""
+    """Report the confusions of real takes and of variants in a language of all classes."""
     recorded = relation.recorded
     real, variants = Share(0, 0), Share(0, 0)
     for draw in draws(recorded, max(1, pairs // QUERIES), QUERIES, seed):
@@ -224,7 +226,7 @@ def report_refusals(relation: Relation, pairs: int, count: int, seed: int) -> It
         vote = FusedVote(gestures)
         for take in takes:
             real += _refused(vote, Trajectory.from_poses(recordings[take]))
-        # Other draws than the variants that the thresholds are made from.
+        # Another seed than that of the variants from which the thresholds are computed.
         drawn = ours(demonstration_of(gestures[0]), count, 1 + seed + number, relation.person)
         for variant in drawn:
             varied += _refused(vote, variant)

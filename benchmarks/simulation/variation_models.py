@@ -1,7 +1,7 @@
 """Variation models: our model of how takes differ, and models from the literature.
 
-The others change the shape of the way in their own manner; but for stochastic resampling, habit,
-sway and tempo are ours.
+The other models change the shape of the path in their own manner; habit, sway and tempo are ours,
+except in stochastic resampling.
 """
 
 from __future__ import annotations
@@ -16,22 +16,24 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import SPREADS, Person, draw_variants, vary
 
 Model = Callable[[Trajectory, int, int, Person], tuple[Trajectory, ...]]
-"""Draws variants: of a demonstration, so many, with a seed, by whom."""
+"""Draws variants of a demonstration, given their number, the seed and the person."""
 
 RESAMPLED_POINTS, REMOVED_POINTS, INTERVAL_VARIANCE = 16, 2, 0.25
-"""Of stochastic resampling: the authors' choice."""
+"""Parameters of stochastic resampling, as chosen by its authors."""
 
 CORNER = 0.35
-"""Radians turned in two of 32 steps that make a salient point, and more than before and after."""
+"""Least turn at a salient point, in radians over two of 32 steps; it also exceeds its
+neighbours'."""
 
 POINT_SPREAD: Mapping[Person, float] = {"same": 0.14, "another": 0.20}
-"""Of salient points, in sizes of the movement: as our waver."""
+"""Spread of salient points, in sizes of the movement: the same as our waver."""
 
 STROKE_SPREAD: Mapping[Person, float] = {"same": 0.2, "another": 0.3}
-"""Of a stroke's logarithmic length and its direction: as near to people as for any value."""
+"""Spread of a stroke's logarithmic length and of its direction: the values nearest to people."""
 
 STROKE_WAVES, RISING_WAVES = 16, 4.0
-"""Cosines of the strokes' variation, and the one from which it rises: as near as for any value."""
+"""Cosines of the strokes' variation, and the one at which it rises: the values nearest to
+people."""
 
 
 def ours(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Trajectory, ...]:
@@ -42,7 +44,7 @@ def ours(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Traj
 def stochastically_resampled(
     shown: Trajectory, count: int, seed: int, _: Person
 ) -> tuple[Trajectory, ...]:
-    """Cut the way at random intervals and make them equally long (Taranta et al. 2016, GPSR)."""
+    """Cut the path into random intervals and make them equally long (Taranta et al. 2016, GPSR)."""
     random = np.random.default_rng(seed)
     flat, travelled = _flat(shown), _measure_way(shown)
     found = []
@@ -67,7 +69,7 @@ def stochastically_resampled(
 def salient_points(
     shown: Trajectory, count: int, seed: int, person: Person
 ) -> tuple[Trajectory, ...]:
-    """Move ends and corners, and strokes between by minimum jerk (Cabrera and Wachs 2017)."""
+    """Move ends and corners, with minimum-jerk strokes between them (Cabrera and Wachs 2017)."""
     random = np.random.default_rng(seed)
     found = []
     for take in _draw_steady(shown, count, seed, person):
@@ -119,7 +121,7 @@ MODELS: dict[str, Model] = {
 
 
 def scaled(factor: float) -> Model:
-    """Return our model with so many times the spread of all that concerns the shape."""
+    """Return our model with the spreads of all shape parameters multiplied by a factor."""
 
     def model(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Trajectory, ...]:
         spread = SPREADS[person]
@@ -142,7 +144,7 @@ def _flat(shown: Trajectory) -> FloatArray:
 
 
 def _measure_way(shown: Trajectory) -> FloatArray:
-    """Return ``(T,)``, strictly increasing: the joint way so far."""
+    """Return ``(T,)``, strictly increasing: the length of the joint path so far."""
     steps = np.linalg.norm(np.diff(_flat(shown), axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps + 1e-9)])
 

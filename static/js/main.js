@@ -70,7 +70,7 @@ const VIEWS = [
   { name: "live", title: "Live", load: () => import("./live/live-view.js") },
 ];
 
-/** What is drawn, and which values it depends on. */
+/** Binds each drawing to the values that it depends on. */
 function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
@@ -104,7 +104,7 @@ function drawEverything() {
   follow(["why", "timeline"], drawCosts);
 }
 
-/** What is loaded when something else is selected. */
+/** Binds loading to the selection. */
 function loadWithSelection() {
   let ready = "";
   follow(["clips", "clip", "gestures"], () => {
@@ -209,7 +209,7 @@ async function start() {
     returned: restart,
     seen: recover,
   });
-  // A link is opened for what it shows, so no tour then.
+  // No tour after a link: its reader came for the linked content.
   if (!linked) offerTour();
 }
 

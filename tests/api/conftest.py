@@ -57,5 +57,5 @@ def language_id(client: httpx.Client) -> str:
 
 @pytest.fixture
 def small_clip(tmp_path: Path) -> Path:
-    """Return a clip of twelve frames in which nobody is."""
+    """Return a clip of twelve frames without a person."""
     return write_clip(tmp_path / "small.mp4")

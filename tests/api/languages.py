@@ -1,4 +1,4 @@
-"""What tests of languages over HTTP share."""
+"""Helpers for tests of languages over HTTP."""
 
 from dataclasses import replace
 

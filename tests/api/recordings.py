@@ -11,7 +11,7 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
 if TYPE_CHECKING:
-    # What robots run is tested with these recordings where there is no studio, as on Python 3.10.
+    # The robot's code is tested with these recordings also without the studio, as on Python 3.10.
     from app.api.services.running_studio import Studio
 
 RATE = 20
@@ -21,7 +21,7 @@ FRAME_SIZE = (640, 480)
 
 
 def circle(share: FloatArray) -> FloatArray:
-    """Return ``(T, 2)`` points of a circle, `share` in [0, 1] of the way round, in radii."""
+    """Return ``(T, 2)`` points of a circle in radii; `share` in [0, 1] is the way round."""
     angle = 2 * np.pi * share
     return np.stack([np.sin(angle), -np.cos(angle)], axis=1)
 

@@ -22,19 +22,19 @@ from app.settings import Settings
 from tests.store.new_database import put_database
 
 PATIENCE_SECONDS = 60.0
-"""How long a test waits for what must happen; a loaded machine is slow, a broken one never."""
+"""Seconds that a test waits for a condition: enough for a loaded machine."""
 
 
 @dataclass(frozen=True)
 class Running:
-    """A server that runs.
+    """A running server.
 
     Attributes
     ----------
     address
         Its ``http://host:port``.
     studio
-        What its requests share.
+        State that its requests share.
 
     """
 
@@ -43,7 +43,7 @@ class Running:
 
     @property
     def port(self) -> int:
-        """Where it listens."""
+        """Port on which it listens."""
         return int(self.address.rsplit(":", 1)[1])
 
 
@@ -56,7 +56,7 @@ def running(
         put_database(settings.data_dir / "studio.db")
     app = create_app(settings)
     if wrap:
-        # Inside the app: the server asks the app itself for the guard of its connections.
+        # Added inside the app, because the server gets the guard of its connections from the app.
         app.add_middleware(wrap)
     config = uvicorn.Config(
         app, host="127.0.0.1", port=0, log_level="error", timeout_graceful_shutdown=1
@@ -99,7 +99,7 @@ def running_two(
 
 @cache
 def _certificates() -> ssl.SSLContext:
-    # Reading them takes longer than most requests, and a client reads them also without TLS.
+    # Loading certificates takes longer than most requests, and a client does so even without TLS.
     return ssl.create_default_context()
 
 
@@ -113,9 +113,9 @@ def client_of(
 
 
 def until(condition: Callable[[], object]) -> None:
-    """Wait for what must become true; fail when it does not.
+    """Wait until a condition is true; fail if it does not become true in time.
 
-    It looks less and less often: to look takes as much of the processor's time as a request.
+    It checks less and less often, since a check takes as much processor time as a request.
     """
     end = time.monotonic() + PATIENCE_SECONDS
     pause = 0.02

@@ -14,7 +14,7 @@ linux = pytest.mark.skipif(not Path("/proc/self").exists(), reason="finds proces
 
 
 def workers_of(parent: int, command: str = "record") -> list[int]:
-    """Return the process ids of the workers of `parent` that do `command`.
+    """Return the process ids of the workers of `parent` that run `command`.
 
     They are its children, or those of its fork server.
     """
@@ -24,7 +24,7 @@ def workers_of(parent: int, command: str = "record") -> list[int]:
 
 
 def hold_worker(parent: int, command: str = "record") -> int:
-    """Stop the one worker of `parent` that does `command`, once it runs, and return its id."""
+    """Suspend the one worker of `parent` that runs `command` once it has started; return its id."""
     until(lambda: workers_of(parent, command))
     (worker,) = workers_of(parent, command)
     os.kill(worker, signal.SIGSTOP)
@@ -38,7 +38,7 @@ def fork_servers_of(parent: int) -> list[int]:
 
 
 def processes(name: str) -> dict[int, int]:
-    """Return the process ids of those that run and have this name, each with its parent's."""
+    """Return the ids of running processes with this name, each with its parent's id."""
     found = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -52,7 +52,7 @@ def processes(name: str) -> dict[int, int]:
 
 
 def alive(process_id: int) -> bool:
-    """Tell whether a process runs."""
+    """Return whether a process runs."""
     try:
         os.kill(process_id, 0)
         stat = Path(f"/proc/{process_id}/stat").read_text()

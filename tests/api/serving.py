@@ -1,4 +1,4 @@
-"""A real server in a process of its own, that may be killed."""
+"""A real server in a process of its own, which may be killed."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ data = Path(sys.argv[1])
 port = int(sys.argv[2]) if len(sys.argv) > 2 else 0
 run(Settings(data_dir=data, samples_dir=data / "none", port=port), open_browser=False)
 """
-"""Serves a folder, on a free port unless one is told."""
+"""Serves a folder, on a free port unless one is given."""
 
 
 UNASSIGNED = range(20_000, 30_000)
-"""Ports that no system hands out by itself: Linux does from 32768 on, the others from 49152 on."""
+"""Ports that no system assigns by itself: Linux assigns from 32768 on, others from 49152 on."""
 
 
 def lasting_port() -> int:
-    """Return a free port that nobody takes while a server is killed and started again."""
+    """Return a free port that stays free while a server is killed and restarted."""
     while True:
         port = random.choice(UNASSIGNED)
         with socket.socket() as tried, suppress(OSError):

@@ -84,7 +84,7 @@ def test_a_job_keeps_what_it_found_until_the_object_store_is_back(
         clip = upload(client, small_clip).json()["id"]
         until(lambda: workers_of(os.getpid()))
         s3.stop()
-        # Either server may have taken the job.
+        # Either server may run the job.
         found = [server.studio.clips.place(clip, RECORDING) for server in servers]
         until(lambda: any(map(Path.is_file, found)) and not workers_of(os.getpid()))
         assert client.get(f"{CLIPS}/{clip}").json()["status"] == "running"

@@ -1,4 +1,4 @@
-"""What `/openapi.json` promises holds for requests that nobody would think of."""
+"""The API description: `/openapi.json` holds for generated requests, too."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ def lasting_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running
 def operations() -> list[Any]:
     """Return the described operations, without the stream that never ends.
 
-    The description is made, and its library loaded, by the one worker that tests it.
+    Only the test worker that needs the description makes it and loads its library.
     """
     import schemathesis
     from schemathesis.core.result import Ok
 
-    # A part of a file is plain bytes, whatever the tus protocol calls them.
+    # A part of a file is sent as plain bytes, whatever content type tus names.
     schemathesis.serializer.alias("application/offset+octet-stream", "application/octet-stream")
     schema = schemathesis.openapi.from_dict(create_app(Settings()).openapi())
     described = [found.ok() for found in schema.get_all_operations() if isinstance(found, Ok)]
@@ -98,7 +98,7 @@ def test_no_request_breaks_the_server_or_the_description(
 
 
 def test_real_objects_answer_as_described(lasting_server: Running, operations: list[Any]) -> None:
-    """Follow ids that exist, which generated requests never hit."""
+    """Request existing ids, which generated requests never hit."""
     clip_id = add_recorded_clip(lasting_server.studio, recording_of("circle"))
     with client_of(lasting_server.address) as client:
         language_id = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]

@@ -1,4 +1,4 @@
-"""Behind a proxy: the documented nginx and Caddy work, and only a trusted proxy is believed."""
+"""Reverse proxies: the documented nginx and Caddy work, and only a trusted proxy counts."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def free_port() -> int:
 @contextmanager
 def nginx(folder: Path, studio: int, own: int) -> Iterator[None]:
     """Run nginx with the documented configuration, without its certificate."""
-    # Debian keeps it where only root looks.
+    # Debian installs it outside the path of ordinary users.
     program = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
     if program is None:
         pytest.skip("needs nginx")
@@ -125,7 +125,7 @@ def answers(port: int) -> bool:
 def test_the_studio_works_behind_a_documented_proxy(proxied: str, small_clip: Path) -> None:
     address = proxied
     content = small_clip.read_bytes()
-    # From an address of its own, and claiming another one.
+    # A request from one address that claims another one.
     transport = httpx.HTTPTransport(local_address="127.0.0.2")
     headers = SIGNED_IN | {"X-Forwarded-For": "6.6.6.6"}
     with httpx.Client(base_url=address, headers=headers, timeout=60, transport=transport) as client:

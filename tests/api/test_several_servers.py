@@ -1,4 +1,4 @@
-"""Two servers on one PostgreSQL and one folder of clips: equal to a browser, whichever it asks."""
+"""Two servers on one PostgreSQL and one folder of clips: both give a browser the same answers."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def test_the_job_of_a_server_that_vanished_is_run_by_the_other(
     write_clip(tmp_path / "clip.mp4", frames=3).rename(partial)
     clip = Clip(name="dive", media_type="video/mp4", size=5, width=64, height=48)
     job_id = one.studio.clips.add(clip, partial, "diver").job.id
-    # A third server began it, and its power went.
+    # A third server began the job and then lost its power.
     with monkeypatch.context() as vanishing:
         vanishing.setattr("app.store.jobs.LEASE", timedelta(seconds=-2))
         assert JobStore(one.studio.jobs._database, "vanished").start(job_id) is not None
@@ -142,7 +142,7 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
     together = Barrier(2)
 
     def add(store: ClipStore, *clip: Any) -> Any:
-        # Both were told before their bytes were read that there is place for one.
+        # Both uploads passed the first check of the quota, which has room for one clip.
         together.wait(60)
         return add_clip(store, *clip)
 
@@ -158,7 +158,7 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
     with ThreadPoolExecutor(2) as uploaders:
         assert sorted(uploaders.map(send, servers)) == [202, 507]
     assert len(servers[0].studio.clips.all()) == 1
-    # The refused one left nothing.
+    # The refused upload left nothing behind.
     (kept,) = servers[0].studio.clips.folder.iterdir()
     assert kept.name == servers[0].studio.clips.all()[0].clip.id
 
@@ -183,7 +183,7 @@ def test_an_upload_that_one_server_receives_counts_on_the_other(
         assert first.delete(given_up).status_code == 204
         begun = second.post("/api/v1/uploads", headers=length).headers["location"]
         assert_problem(upload(first, small_clip), 507, "quota_exceeded")
-        # Its own place is what it becomes a clip in.
+        # An upload's own reserved space must not keep it from becoming a clip.
         assert second.patch(begun, headers=part, content=content).status_code == 204
         usage = one.studio.quotas.usage("Jo")
         assert (usage.clips, usage.bytes) == (1, len(content))

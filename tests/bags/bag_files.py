@@ -20,10 +20,10 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import SKELETON_2D
 
 START = 1_763_731_234_123_456_789
-"""Nanoseconds since 1970: not a round one, so that rounding shows."""
+"""Nanoseconds since 1970 of the first stamp: not a round number, so that rounding shows."""
 
 DELAY = 7_000_000
-"""Nanoseconds after which a message is received."""
+"""Nanoseconds from a message's stamp to its reception."""
 
 Storage = Literal["mcap", "sqlite3"]
 
@@ -87,7 +87,7 @@ def header(stamp: int) -> Any:
 
 
 def raw(image: Image, encoding: str, stamp: int, padding: int = 0) -> Any:
-    """Return a ``sensor_msgs/Image`` of bytes that are in `encoding` already."""
+    """Return a ``sensor_msgs/Image`` of bytes already in `encoding`."""
     height, width = image.shape[:2]
     rows = np.ascontiguousarray(image).view(np.uint8).reshape(height, -1)
     rows = np.pad(rows, ((0, 0), (0, padding)))
@@ -112,7 +112,7 @@ def compressed(image: Image, ending: str, stamp: int) -> Any:
 
 
 def published_rows(recording: Recording) -> Iterator[Row]:
-    """Give what the published port would have sent: fractions, upper-case names, a flag."""
+    """Return the published port's messages: fractions, upper-case names, a flag."""
     poses = recording.poses
     width, height = poses.frame_size
     moments = stamps(poses.time)
@@ -129,7 +129,7 @@ def published_rows(recording: Recording) -> Iterator[Row]:
 
 
 def camera_info(width: int, height: int) -> Any:
-    """Return a ``sensor_msgs/CameraInfo`` that tells the size alone."""
+    """Return a ``sensor_msgs/CameraInfo`` with only the size."""
     region = message("sensor_msgs/msg/RegionOfInterest", 0, 0, 0, 0, False)
     nine, twelve = np.zeros(9), np.zeros(12)
     fields = (header(0), height, width, "", np.zeros(0), nine, nine, twelve, 0, 0, region)
@@ -137,7 +137,7 @@ def camera_info(width: int, height: int) -> Any:
 
 
 def our_rows(recording: Recording) -> Iterator[Row]:
-    """Give what our own nodes send: pixels, confidences, hands, and when the picture was taken."""
+    """Return our own nodes' messages: pixels, confidences, hands, and the picture's time."""
     poses = recording.poses
     confidence = np.ones(poses.xy.shape[:2]) if poses.confidence is None else poses.confidence
     for index, stamp in enumerate(stamps(poses.time)):
@@ -161,7 +161,7 @@ def our_rows(recording: Recording) -> Iterator[Row]:
 
 
 def skeleton_rows(recording: Recording) -> Iterator[Row]:
-    """Give ROS4HRI's skeletons; the neck is not seen."""
+    """Return ROS4HRI's skeletons; the neck is not seen."""
     poses = recording.poses
     width, height = poses.frame_size
     kind = "hri_msgs/msg/NormalizedPointOfInterest2D"

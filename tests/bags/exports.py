@@ -1,4 +1,4 @@
-"""Reading a session back with the plain reader of MCAP, and no code of ours."""
+"""Reading a session back with MCAP's own reader, without code of ours."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Messages = dict[str, list[tuple[int, dict[str, Any]]]]
 
 
 def checked(path: Path) -> Messages:
-    """Read a session, hold every message to the file's own schema, and return them by topic."""
+    """Read a session, validate every message by the file's own schema, and return them by topic."""
     found: Messages = defaultdict(list)
     validators: dict[int, jsonschema.Draft202012Validator] = {}
     with path.open("rb") as file:

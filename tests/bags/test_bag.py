@@ -63,7 +63,7 @@ def test_topics_are_listed_with_type_count_and_duration(
             tmp_path / "one.zip", {file_of(folder).name: file_of(folder).read_bytes()}
         ),
     }[form]()
-    # What a file is, its content decides.
+    # The content decides the type of a file.
     path = path.rename(tmp_path / "received")
     recording = recording_of("line")
     with open_bag(path) as bag:

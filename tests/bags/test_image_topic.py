@@ -95,7 +95,7 @@ def deep(image: Image) -> Image:
 
 
 def bayer(image: Image, pattern: str) -> Image:
-    """Keep of each pixel the one colour that the sensor's pattern of 2 x 2 lets through."""
+    """Keep only the colour of each pixel that the sensor's 2 x 2 pattern lets through."""
     mosaic = np.zeros(image.shape[:2], np.uint8)
     for place, colour in enumerate(pattern):
         row, column = divmod(place, 2)
@@ -130,7 +130,7 @@ def test_every_encoding_gives_the_same_colours(encoding: str, padding: int) -> N
     read = raw_image(raw(written, encoding, START, padding), VideoLimits())
     assert read.shape == image.shape
     assert read.dtype == np.uint8
-    # Inside the areas of one colour: at their edges two pixels share a chroma or a colour.
+    # Compared inside areas of one colour, because at their edges pixels share a chroma or a colour.
     inside = [(slice(4, 20), slice(4, 28)), (slice(28, 44), slice(36, 60))]
     for area in inside:
         difference = np.abs(read[area].astype(int) - image[area].astype(int)).max()

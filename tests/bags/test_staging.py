@@ -1,4 +1,4 @@
-"""Archives that nobody should unpack, and what is left behind: nothing."""
+"""Staging: dangerous archives are refused, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tests.bags.bag_files import zip_of
 
 @pytest.fixture(autouse=True)
 def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Let temporary folders lie where the test can look."""
+    """Create temporary folders where the test can inspect them."""
     folder = tmp_path / "scratch"
     folder.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(folder))
@@ -54,7 +54,7 @@ def test_a_bomb_is_refused_by_what_it_says_and_by_what_it_does(
     monkeypatch.setattr(staging, "MOST_BYTES", 2_000_000)
     with pytest.raises(BagError, match="beyond the limit of"), stage(path):
         pass
-    # A lying directory: the size is written twice, and the second one is what is looked at first.
+    # A false directory entry: the size is stored twice, and readers check the second copy first.
     content = path.read_bytes()
     size, less = (3_000_000).to_bytes(4, "little"), (1_000_000).to_bytes(4, "little")
     path.write_bytes(content.replace(size, less))

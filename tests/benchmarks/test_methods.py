@@ -1,4 +1,4 @@
-"""The methods that recognition is compared with: each does what its paper says it does."""
+"""The methods that recognition is compared with: each behaves as its paper describes."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The soak's measure: a leak is told from noise, and a line has its slope."""
+"""The soak's statistics: a leak is told from noise, and a fitted line has the right slope."""
 
 import numpy as np
 import pytest

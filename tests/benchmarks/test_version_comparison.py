@@ -1,4 +1,4 @@
-"""Answers: what two versions of the program say of the same takes."""
+"""Version comparison: two versions' answers to the same takes."""
 
 from app.recognition import Recognizer
 from benchmarks.version_comparison import answer, differences

@@ -9,7 +9,7 @@ SERIOUS = {"serious", "critical"}
 
 
 def faults(page: Page) -> list[str]:
-    """Return what axe finds that is serious, with the elements."""
+    """Return the serious faults that axe finds, with their elements."""
     # viser's frame is another project's page.
     found = Axe().run(page, context={"exclude": ["#lab"]}).response["violations"]
     return [

@@ -1,4 +1,4 @@
-"""What a browser's camera shows, and what the page's own picture of it tells."""
+"""A browser's simulated camera, and reading the page's picture of it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ VIDEO = "document.querySelector('.view:not([hidden]) .camera-picture video')"
 
 
 def camera_showing(feed: Path) -> tuple[str, ...]:
-    """Return Chromium's arguments for a camera that is allowed and shows a feed again and again."""
+    """Return Chromium's arguments for a permitted camera that shows a feed in a loop."""
     return (
         "--use-fake-device-for-media-stream",
         "--use-fake-ui-for-media-stream",
@@ -22,7 +22,7 @@ def camera_showing(feed: Path) -> tuple[str, ...]:
 
 
 def write_feed(clip: Path, feed: Path, rate: int) -> Path:
-    """Write every second frame of a clip of 640 x 480 as what a camera shows, at `rate` Hz."""
+    """Write every second frame of a 640 x 480 clip as a camera's feed, at `rate` Hz."""
     with av.open(str(clip)) as source, feed.open("wb") as camera:
         camera.write(f"YUV4MPEG2 W640 H480 F{rate}:1 Ip A1:1 C420mpeg2\n".encode())
         for index, frame in enumerate(source.decode(video=0)):
@@ -32,7 +32,7 @@ def write_feed(clip: Path, feed: Path, rate: int) -> Path:
 
 
 def see_seconds(page: Page, seconds: float) -> None:
-    """Wait until the camera showed that much more: a busy machine needs longer for its frames."""
+    """Wait until the camera has shown some more seconds; a busy machine takes longer."""
     shown = f"{VIDEO}.currentTime"
     begun = float(page.evaluate(shown))
     until(lambda: page.evaluate(shown) > begun + seconds)

@@ -33,29 +33,28 @@ WEBGL = (
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
 )
-"""Lets Chromium draw WebGL in software, also as root in a container."""
+"""Arguments with which Chromium draws WebGL in software, also as root in a container."""
 
 WITHOUT_WINDOW = ("--disable-gpu-compositing",)
-"""Puts the page together as a picture in memory: where there is no graphics card, drawing it by a
-program that plays one takes several times as long."""
+"""Composes the page in memory: without a graphics card, a simulated one takes several times as
+long."""
 
 WHOLE = ("chromium", "chromium-browser")
-"""Names of the browser that people use."""
+"""Names of the full browser."""
 
 ONE_PROCESS = ("--process-per-site",)
-"""Has the pages of one server share a process, which need not be made for each."""
+"""Lets the pages of one server share a process, instead of starting one for each."""
 
 WITHOUT_NETWORK_PROCESS = ("--enable-features=NetworkServiceInProcess2,CDPScreenshotNewSurface",)
-"""Has the browser itself load what a page asks for, a hundred files: a process of its own for that
-takes a twentieth of the processor's time. The other feature is Playwright's, whose argument this
-replaces."""
+"""Lets the browser's main process load a page's hundred files: a separate network process takes a
+twentieth of the processor time. The other feature is Playwright's, whose argument this replaces."""
 
 SHELL = "chromium-headless-shell"
-"""Debian's Chromium without all that is around a page: it takes a third of the processor's time,
-but cannot be asked for a camera."""
+"""Debian's Chromium without a window: it takes a third of the processor time, but has no camera
+permission."""
 
 PATIENCE_MS = 90_000
-"""Longest wait for what must appear; a loaded machine is slow, a broken page never gets there."""
+"""Longest wait for an expected element: enough for a loaded machine."""
 
 IMAGES = ROOT / "docs" / "images"
 
@@ -72,9 +71,9 @@ OpenPage = Callable[..., Page]
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark a test of this folder as slow; if it fails, try it once more and tell it in the summary.
+    """Mark the tests of this folder as slow; a failed one is retried once and reported.
 
-    A browser on a loaded machine sometimes misses a step; what is broken fails again.
+    A browser on a loaded machine sometimes misses a step; a real fault fails again.
     """
     item.add_marker(pytest.mark.slow)
     item.add_marker(pytest.mark.flaky(reruns=1))
@@ -82,7 +81,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Function) -> None:
-    """Begin a second try with a server of its own, on which nothing of the first is left."""
+    """Begin a retry with a new server, which has no data of the first try."""
     if getattr(item, "execution_count", 1) > 1:
         for definitions in item._fixtureinfo.name2fixturedefs.values():
             for fixture in definitions:
@@ -102,7 +101,7 @@ def browser() -> Iterator[Browser]:
 
 @contextmanager
 def started(kind: BrowserType, *more: str, whole: bool = False) -> Iterator[Browser]:
-    """Run Chromium with further arguments, all of it if need be; skip where there is none."""
+    """Run Chromium with further arguments, the full browser if needed; skip where there is none."""
     names = WHOLE if whole else (SHELL, *WHOLE)
     executable = next(filter(None, map(shutil.which, names)), None)
     if executable is None:
@@ -121,7 +120,7 @@ def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
 
 @pytest.fixture(scope="module")
 def server(settings: Settings) -> Iterator[Running]:
-    """Serve the app to the tests of one file: what a test needs it adds under names of its own."""
+    """Serve the app to the tests of one file; each test adds its data under names of its own."""
     with running(settings, EmptyFrames) as server:
         yield server
 
@@ -129,7 +128,7 @@ def server(settings: Settings) -> Iterator[Running]:
 class EmptyFrames:
     """ASGI middleware: answers as viser's page does once it draws, where the cookie asks for it.
 
-    The browser could answer itself, but then caches nothing, and loads the page's modules anew.
+    A route in the browser could do this, but would disable its cache, so that modules load anew.
     """
 
     def __init__(self, app: ASGIApp) -> None:
@@ -166,7 +165,7 @@ def new_context(browser: Browser) -> BrowserContext:
 
 
 def forget_visit(context: BrowserContext, address: str) -> None:
-    """Leave nothing behind of what the pages of a context kept, but its first one and the cache."""
+    """Close a context's pages and delete their stored data, except the first page and the cache."""
     context.set_offline(False)
     context.clear_permissions()
     context.clear_cookies()
@@ -204,7 +203,7 @@ def open_page(
         alone: bool = False,
     ) -> Page:
         if not shared_context.pages:
-            # Stays open, so that the process of the others goes on between two tests.
+            # Stays open, so that the pages' shared process survives between tests.
             shared_context.new_page().goto(f"{server.address}/api/v1/server")
         kind = object() if alone else scene
         if kind not in contexts:

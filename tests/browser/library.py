@@ -19,14 +19,14 @@ from tests.recognition.damaged_clips import write_clip
 
 @dataclass(frozen=True)
 class Library:
-    """What a test works on.
+    """The data of a test.
 
     Attributes
     ----------
     clip, language
         Ids.
     client
-        Talks to the server.
+        HTTP client of the server.
 
     """
 
@@ -65,9 +65,9 @@ def add_clip(
     video: Path | None = None,
     recording: Recording | None = None,
 ) -> str:
-    """Add a clip with one take per shape, and a small video or that one; return its id.
+    """Add a clip with one take per shape and a small or the given video; return its id.
 
-    `recording`: what was seen in it, instead of these shapes.
+    `recording` replaces the recording of these shapes.
     """
     recording = recording_of(*shapes) if recording is None else recording
     clips = server.studio.clips

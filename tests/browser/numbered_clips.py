@@ -13,24 +13,25 @@ from av.video.stream import VideoStream
 
 WIDTH, HEIGHT = 320, 240
 CORNER = 40
-"""Pixels, the side of the marks in the corners and of the blocks between them."""
+"""Side in pixels of the marks in the corners and of the blocks between them."""
 
 BITS = 12
 COLUMNS = 4
 LEFT, TOP = 80, 60
-"""Where the first block stands; the others follow it line by line."""
+"""Place of the first block in pixels; the others follow line by line."""
 
 CORNERS = ((255, 0, 0), (0, 255, 0), (255, 255, 0), (0, 0, 255))
 """RGB of the marks: top left, top right, bottom right, bottom left."""
 
 TICKS = 90_000
-"""Of the clip's clock, a second, as in broadcasts: most frames begin at no whole millisecond."""
+"""Ticks per second of the clip's clock, as in broadcasts: few frames begin at a whole
+millisecond."""
 
 FIRST = 126_000
 """Ticks of the first frame. A clip cut out of a longer one often does not begin at 0."""
 
 GAPS = (3003, 1501, 4504, 9009, 2999, 1801)
-"""Ticks between frames, as a camera gives them that lengthens its exposure in the dark."""
+"""Ticks between frames, as of a camera that lengthens its exposure in the dark."""
 
 Picture = npt.NDArray[np.uint8]
 

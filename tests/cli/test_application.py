@@ -149,7 +149,7 @@ def test_exported_models_install_elsewhere_without_network(
 @pytest.mark.slow
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_a_shell_completes_commands_and_options(shell: str) -> None:
-    # Otherwise the shell is looked for among the parents of the process, which tests may lack.
+    # Otherwise the shell is detected from the parent processes, which may include none in tests.
     named = {"_TYPER_COMPLETE_TEST_DISABLE_SHELL_DETECTION": "1"}
     shown = run_with(named, "--show-completion", shell)
     assert "osg-studio" in shown

@@ -25,7 +25,7 @@ def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 WITHOUT_HANDS = ("--hands", "none", "--water", "off")
-"""There are none beside the markers, which correcting the colours would repaint."""
+"""Options: the model finds no hands, and a colour correction would change the markers' colours."""
 
 
 def arguments(model: Path) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""A received keypoint file: what it holds, and refusals in words of whoever sent it."""
+"""A received keypoint file: its content, and refusals in the sender's words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The confusion matrix: what is counted where, as text and as a picture."""
+"""The confusion matrix: its counts, as text and as a picture."""
 
 import xml.etree.ElementTree as ElementTree
 

@@ -1,4 +1,4 @@
-"""Where the labels and people of a folder's files come from."""
+"""Labelled files: the sources of the labels and people in a folder."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""One-shot accuracy: who is asked for what, on drawn movements."""
+"""One-shot accuracy: the choice of queries, on drawn movements."""
 
 from dataclasses import replace
 

@@ -25,7 +25,7 @@ def write_openpose(
     others: Sequence[PoseSequence] = (),
     first: int = 0,
 ) -> Path:
-    """Write one file a frame, as ``--write_json`` does; what is not seen is zeros."""
+    """Write one file per frame, as ``--write_json`` does; unseen landmarks are zeros."""
     folder.mkdir(exist_ok=True)
     for index in range(len(poses)):
         people = [_person(each, index, landmarks) for each in (*others, poses)]
@@ -54,7 +54,7 @@ def _person(poses: PoseSequence, index: int, landmarks: LandmarkSet) -> dict[str
 
 
 def _place(poses: PoseSequence, index: int, name: str | None) -> tuple[float, float] | None:
-    """Return where a landmark is; what has no counterpart here lies in the body's middle."""
+    """Return the place of a landmark; one without a counterpart here is in the body's middle."""
     if name is None:
         x, y = np.nanmean(poses.xy[index], axis=0).tolist()
         return x, y
@@ -101,7 +101,7 @@ def write_named(path: Path, poses: PoseSequence) -> Path:
 
 
 def write_long(path: Path, poses: PoseSequence) -> Path:
-    """Write one landmark a row, pixels, with the number of the frame."""
+    """Write one landmark per row, pixels, with the number of the frame."""
     rows = [
         [index, name, *poses.column(name)[index].tolist(), 0.5]
         for index in range(len(poses))
@@ -138,7 +138,7 @@ def write_deeplabcut(
 
 
 def renamed(poses: PoseSequence, names: dict[str, str]) -> PoseSequence:
-    """Call landmarks otherwise."""
+    """Return landmarks under other names."""
     return replace(poses, landmarks=tuple(names.get(name, name) for name in poses.landmarks))
 
 
@@ -148,7 +148,7 @@ def unseen_frames(poses: PoseSequence) -> list[int]:
 
 
 def sleap_labels(library: Any, people: list[PoseSequence], *, tracked: bool) -> Any:
-    """Return what SLEAP's own library writes of predictions, with its names of a right side."""
+    """Return predictions as written by SLEAP's own library, with its names for the right side."""
     landmarks, frames = people[0].landmarks, len(people[0])
     skeleton = library.Skeleton(nodes=[name.replace("right_", "R_") for name in landmarks])
     video = library.Video(filename="dive.mp4", open_backend=False)

@@ -1,4 +1,4 @@
-"""Keypoint files that were cut and changed: read, or refused as what they are."""
+"""Damaged keypoint files: read, or refused with the right reason."""
 
 from __future__ import annotations
 

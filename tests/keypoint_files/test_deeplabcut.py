@@ -32,7 +32,7 @@ def test_a_file_of_deeplabcut_itself_is_read(tmp_path: Path) -> None:
     assert poses.landmarks == ("right_wrist",)
     assert poses.xy[:2, 0].tolist() == [[101.5, 202.25], [102.5, 203.25]]
     assert poses.time.tolist() == pytest.approx([0, 0.04, 0.08])
-    # Less likely than DeepLabCut's own cutoff: somewhere else altogether.
+    # Below DeepLabCut's own likelihood cutoff: a place far off.
     assert poses.seen[:, 0].tolist() == [True, True, False]
     assert any("tail" in warning for warning in read.recording.warnings)
 

@@ -1,4 +1,4 @@
-"""A keypoint file's place while it is read: archives that lie are refused."""
+"""Staging of keypoint files: deceptive archives are refused."""
 
 from __future__ import annotations
 

@@ -18,12 +18,12 @@ TAKES = [
 ] + ["unfinished-triangle"]
 CLIPS = [*TAKES, "ordinary-movement"]
 SIZE_LIMIT = 150_000
-"""Bytes, so that twenty-six clips stay small beside the code."""
+"""Largest clip in bytes, so that twenty-six clips stay small beside the code."""
 
 
 @pytest.fixture(scope="module")
 def phases(sample_clips: Path) -> dict[str, list[tuple[str, float, float]]]:
-    """Return what truly happens in every clip: names of phases with their start and end."""
+    """Return the true phases of every clip: names with their start and end."""
     read: dict[str, list[tuple[str, float, float]]] = json.loads(
         (sample_clips / "phases.json").read_text()
     )
@@ -100,7 +100,7 @@ def test_ordinary_movement_is_no_take(sample_recording: Callable[[str], Recordin
 def test_a_clip_is_recognized_on_this_processor(
     sample_clips: Path, installed_models: None, label: str
 ) -> None:
-    """The one step that the landmark recordings leave out; *three* has the sides exchanged."""
+    """Landmarks are found here, the step that the recordings leave out; *three* swaps sides."""
     (take,) = find_takes(sample_clips / f"{label}-test-2.mp4")
     language = Language.load(FOLDER / "osg-table-2.json")
     assert Recognizer(language).recognize(take.poses).label == label

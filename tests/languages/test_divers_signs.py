@@ -12,8 +12,8 @@ from tests.conftest import RECORDINGS
 SIGNS = tuple(entry.label for entry in DIVERS_SIGNS)
 
 NEAREST, ACCEPTED = 21, 21
-"""Of 25 takes by other divers in other water, how many are nearest to their own sign, and accepted
-as it. The rest are refused: *cold*, *go that way*, *look* and *out of air*."""
+"""Number of 25 takes by other divers in other water that are nearest to their own sign, and number
+recognised as it. The rest are rejected: *cold*, *go that way*, *look* and *out of air*."""
 
 
 @pytest.fixture(scope="module")

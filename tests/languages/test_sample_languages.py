@@ -13,10 +13,10 @@ LABELS = tuple(entry.label for entry in TABLE_2)
 KINDS = ("demonstration", "test-1", "test-2")
 
 AT_LEAST = {"paper": 12, "full": 16}
-"""Of sixteen test takes by other divers, how many each profile must name correctly."""
+"""Number of sixteen test takes by other divers that each profile must recognise correctly."""
 
 SAME_PATH = 0.03
-"""Torso lengths, 1.5 cm of a diver, that a path may differ by between two processors."""
+"""Torso lengths (1.5 cm of a diver) by which a path may differ between two processors."""
 
 SAME_TRIM = 1
 """Frames by which the ends of a take may differ between two processors."""
@@ -61,7 +61,7 @@ def test_takes_of_other_divers_are_named(takes: Takes, table_2: Language, profil
 def test_a_triangle_without_its_third_side_is_misread(
     sample_recording: Callable[[str], Recording], table_2: Language, profile: str
 ) -> None:
-    """What the user guide explains to a new user is what the recogniser does."""
+    """The recogniser behaves as the user guide explains to new users."""
     (take,) = takes_in(sample_recording("unfinished-triangle"))
     assert take.closed
     assert Recognizer(table_2, profile).recognize(take.poses).nearest == "wedge"

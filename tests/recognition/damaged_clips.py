@@ -1,4 +1,4 @@
-"""Clips as they should not be: written by PyAV into a test's own folder, never stored.
+"""Damaged clips: written by PyAV into a test's own folder, never stored.
 
 `write_clip` makes a small clean clip; every other function spoils one in one way.
 """
@@ -22,7 +22,7 @@ from app.recognition.poses.frame import Image
 WIDTH, HEIGHT = 64, 48
 RATE = 25
 TICKS = 1000
-"""Of the clips' clock, a second: whole milliseconds."""
+"""Ticks per second of the clips' clock: whole milliseconds."""
 
 
 def picture(index: int, width: int = WIDTH, height: int = HEIGHT) -> Image:
@@ -56,7 +56,7 @@ def write_clip(
     times
         Seconds of the frames, `frames` many; None: `RATE` a second.
     rotation
-        Degrees, counter-clockwise, that the file asks players to turn the picture by.
+        Rotation stored in the file, in degrees counter-clockwise.
     extra_streams
         Count of further video streams, of one frame each.
 
@@ -70,7 +70,7 @@ def write_clip(
             each.pix_fmt = pixel_format if each is stream else "yuv420p"
         stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
         if codec == "libx264":
-            # No reordering: then decoding and display order are one, whatever the timestamps.
+            # No reordering, so that decoding and display order are the same for any timestamps.
             stream.options = {"preset": "ultrafast", "bf": "0"}
         if pixel_aspect is not None:
             stream.codec_context.sample_aspect_ratio = pixel_aspect
@@ -95,20 +95,20 @@ def _video_stream(container: OutputContainer, codec: str) -> VideoStream:
 
 
 def cut_off(clip: Path, share: float) -> Path:
-    """Keep only the first `share` of a file's bytes, as a broken transfer does."""
+    """Keep only the first `share` of a file's bytes, as after an interrupted transfer."""
     content = clip.read_bytes()
     clip.write_bytes(content[: int(len(content) * share)])
     return clip
 
 
 def joined(first: Path, second: Path) -> Path:
-    """Append one MPEG-TS clip to another, as recorders do: the clock starts anew in the middle."""
+    """Append one MPEG-TS clip to another, as recorders do: the clock restarts in the middle."""
     first.write_bytes(first.read_bytes() + second.read_bytes())
     return first
 
 
 def flipped(clip: Path, seed: int, bytes_changed: int) -> Path:
-    """Overwrite random bytes anywhere in the file, as a bad card does."""
+    """Overwrite random bytes anywhere in the file, as on a faulty memory card."""
     random = np.random.default_rng(seed)
     content = np.frombuffer(clip.read_bytes(), dtype=np.uint8).copy()
     places = random.integers(0, len(content), bytes_changed)
@@ -120,7 +120,7 @@ def flipped(clip: Path, seed: int, bytes_changed: int) -> Path:
 def huge_motion_jpeg(path: Path, side: int, *, stated: bool) -> Path:
     """Write a Motion JPEG clip whose pictures claim a size that no encoder could make.
 
-    `stated` tells whether the container claims that size too.
+    `stated`: whether the container claims that size too.
     """
     write_clip(path, codec="mjpeg", pixel_format="yuvj420p", size=(96, 96), frames=3)
     content = path.read_bytes()
@@ -179,7 +179,7 @@ IMPOSTORS: dict[str, bytes] = {
     "MP4 without media": _moov_without_media(),
     "Matroska header alone": bytes.fromhex("1a45dfa3934282886d6174726f736b614287810242858102"),
 }
-"""Contents that are no clip, whatever their file is called."""
+"""Contents that are not a clip, whatever the file's name."""
 
 PLAYLISTS: dict[str, Callable[[Path], str]] = {
     "HLS": lambda clip: f"#EXTM3U\n#EXT-X-TARGETDURATION:1\n#EXTINF:1,\n{clip}\n#EXT-X-ENDLIST\n",

@@ -1,4 +1,4 @@
-"""Recordings with keypoints as pose models get them wrong."""
+"""Recordings with typical errors of pose models."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from app.recognition.preprocessing.side_swaps import pair_sides
 
 
 def with_sides_exchanged(poses: PoseSequence, frames: Iterable[int]) -> PoseSequence:
-    """Take the left landmarks for the right ones, and these for the left, in some frames."""
+    """Exchange left and right landmarks in some frames."""
     left, right = pair_sides(poses.landmarks)
     order = np.arange(len(poses.landmarks))
     order[[*left, *right]] = [*right, *left]

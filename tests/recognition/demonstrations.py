@@ -1,4 +1,4 @@
-"""Languages of a simulated diver, with a health known beforehand."""
+"""Languages of a simulated diver, with known health."""
 
 from functools import cache
 
@@ -6,7 +6,7 @@ from app.recognition import Gesture, Language, Recognizer
 from tests.recognition.strategies import SHAPES, Shape, recording
 
 ARMS = ("left_shoulder", "right_shoulder", "left_hip", "right_hip", "left_wrist", "right_wrist")
-"""Landmarks enough for a torso and both hands."""
+"""Landmarks of a torso and both hands."""
 
 
 def shown(label: str, shape: Shape, *, frames: int = 45) -> Gesture:

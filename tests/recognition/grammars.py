@@ -16,7 +16,7 @@ from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, Slo
 LABELS = ("a", "b", "c")
 
 MOST_MESSAGES = 500
-"""Of a grammar that is drawn: all of them are written out to compare with."""
+"""Most messages of a random grammar: all of them are written out for comparison."""
 
 NUMBER = SlotType("number", "number", {"two": 2, "three": 3})
 DIRECTION = SlotType("direction", "text", {"left": "left", "right": "right"})
@@ -95,7 +95,7 @@ def phrases(draw: st.DrawFn, name: str, most_ways: int) -> Phrase:
 
 
 def _limit(part: Part, most_ways: int) -> Part:
-    """Take away from a part until it can be shown in so many ways at most."""
+    """Reduce a part until it can be shown in a given number of ways at most."""
     smaller: list[Part] = [part, replace(part, most=1), replace(part, least=1, most=1)]
     if isinstance(part, Group):
         smaller += [replace(member, least=1, most=1) for member in part.parts]
@@ -130,9 +130,9 @@ Sentence = tuple[tuple[str, ...], Parse]
 
 
 def sentences(grammar: Grammar) -> Iterator[Sentence]:
-    """Give every message of a grammar and its reading, by writing all repetitions out.
+    """Return every message of a grammar and its reading, by writing all repetitions out.
 
-    Knows nothing of automata: what the check and the parser say is compared with it.
+    Independent of automata: the results of the check and the parser are compared with it.
     """
     types = {each.name: each for each in grammar.slot_types}
     opening = () if grammar.start is None else (grammar.start,)

@@ -65,7 +65,7 @@ def hold(
     frames
         At 25 a second.
     seed
-        Of the landmarks' errors.
+        Seed of the landmarks' errors.
     left
         The left hand instead: the mirror image of everything.
     thumb
@@ -111,7 +111,7 @@ def follow(*takes: PoseSequence, transition: float = 0.4, unseen: bool = False) 
     takes
         At 25 frames a second, of the same hands.
     transition
-        Seconds from one to the next, in which body and hands go straight to their new places.
+        Seconds between two takes, in which body and hands move straight to their new places.
     unseen
         Whether no hand is seen in the meantime.
 

@@ -15,9 +15,9 @@ from app.recognition.poses.sequence import FloatArray, PoseSequence
 
 LANDMARKS = (*SHOULDERS, *HIPS, "left_wrist", "right_wrist")
 SALUTE_PLACE = np.array([-0.95, -0.8])
-"""Of the right wrist, beside the head; torso lengths from the torso's centre, y down."""
+"""Place of the right wrist, beside the head, in torso lengths from the torso's centre, y down."""
 RESTING_PLACE = np.array([0.6, 0.5])
-"""Of the left wrist, beside the thigh."""
+"""Place of the left wrist, beside the thigh."""
 TORSO = 100.0
 """Pixels."""
 
@@ -64,7 +64,7 @@ def minimum_jerk(share: FloatArray) -> FloatArray:
 
 
 def still(place: FloatArray, seconds: float) -> Movement:
-    """Stay."""
+    """Return a movement that stays in place."""
     return Movement(place, seconds)
 
 

@@ -152,7 +152,7 @@ SHAPES: dict[str, Shape] = {
     "two together": _held_together(STRAIGHT, STRAIGHT, BENT, BENT),
     "half closed": _spread_as((5, 3, -8, -14), STRAIGHT, STRAIGHT, HALF, HALF),
 }
-"""What divers' hands show: the salute, and what is easily mistaken for it."""
+"""Hand shapes of divers: the salute, and those easily mistaken for it."""
 
 
 @dataclass(frozen=True, eq=False)

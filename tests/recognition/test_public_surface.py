@@ -1,4 +1,4 @@
-"""The names that users script against are exactly those promised."""
+"""The public surface: exactly the documented names."""
 
 import app.recognition
 

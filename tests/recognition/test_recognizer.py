@@ -1,4 +1,4 @@
-"""Recognition: what is drawn alike is recognised, whatever the diver, and can be questioned."""
+"""Recognition: similar movements of any diver are recognised, and results can be inspected."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Service units: restart, watchdog, and commands that are ones."""
+"""Service units: restart, watchdog, and commands that exist."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Cameras in the network as tests have them: they serve until they are left."""
+"""Network cameras for tests: they serve until their context ends."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing_extensions import Self
 
 
 class CameraServer:
-    """Serves in a thread until it is left; then its connections break, as when a plug is pulled.
+    """Serves in a thread until its context ends; then its connections break, as if unplugged.
 
     Parameters
     ----------
     server
-        What listens; it is closed when this is left.
+        The listening server; closed when the context ends.
     off
-        Set when this is left, so that who is being served is served no longer.
+        Set when the context ends, so that serving stops.
 
     """
 

@@ -1,4 +1,4 @@
-"""A camera as many are: JPEG pictures one after the other over HTTP, on a real socket."""
+"""An MJPEG camera: JPEG pictures one after another over HTTP, on a real socket."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def picture(brightness: int) -> bytes:
 
 
 class MjpegServer(CameraServer):
-    """Sends pictures to each who watches.
+    """Sends pictures to every client.
 
     Parameters
     ----------
@@ -32,9 +32,9 @@ class MjpegServer(CameraServer):
     pause
         Seconds between two pictures.
     brightness
-        Of all its pictures.
+        Brightness of all its pictures.
     pictures
-        After so many it says nothing more, and keeps the connection.
+        Number of pictures after which it sends nothing more, but keeps the connection.
 
     """
 
@@ -71,5 +71,5 @@ class MjpegServer(CameraServer):
 
     @property
     def address(self) -> str:
-        """What a source is called that watches it, with a password."""
+        """Name of a source for this camera, with a password."""
         return f"http://diver:secret@127.0.0.1:{self.port}/"

@@ -20,7 +20,7 @@ from tests.robot.camera_server import CameraServer
 from tests.robot.mjpeg_server import FRAME_SIZE
 
 LARGEST_PACKET = 65535
-"""Bytes: what the length of an interleaved packet can say."""
+"""Largest number of bytes in an interleaved packet."""
 
 RATE = 25
 """Pictures a second, about."""
@@ -38,12 +38,12 @@ a=control:trackID=0
 
 
 class RtspServer(CameraServer):
-    """Sends pictures to each who watches.
+    """Sends pictures to every client.
 
     Parameters
     ----------
     brightness
-        Of all its pictures.
+        Brightness of all its pictures.
 
     """
 
@@ -92,7 +92,7 @@ class RtspServer(CameraServer):
 
     @property
     def address(self) -> str:
-        """What a source is called that watches it."""
+        """Name of a source for this camera."""
         return f"rtsp://127.0.0.1:{self.port}/reef"
 
 

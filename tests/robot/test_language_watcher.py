@@ -16,7 +16,7 @@ from app.robot.language_watcher import POLL_INTERVAL, LanguageWatcher
 from tests.robot.languages import language_of, spoken
 
 PATIENCE = 60.0
-"""Seconds until a test gives up; what is awaited comes within two looks at the file."""
+"""Seconds until a test gives up; the change is noticed within two checks of the file."""
 
 
 def save(path: Path, *labels: str, revision: int = 1) -> ActiveLanguage:

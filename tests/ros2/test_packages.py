@@ -1,4 +1,4 @@
-"""The packages are what colcon, rosdep and every supported distribution expect."""
+"""The packages: as colcon, rosdep and every supported distribution expect them."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ DEPENDENCIES = ("builtin_interfaces", "service_msgs", "std_msgs")
 """Message packages that ours use; the events of a service use the second."""
 
 KINDS = ("generator_c", "generator_py", "typesupport_c", "typesupport_fastrtps_c")
-"""Libraries of a message package that a message which contains its messages calls."""
+"""Libraries of a message package that are linked by messages which contain its messages."""
 
 LIBRARIES = (
     "fastcdr",

@@ -15,7 +15,7 @@ from tests.ros2.compilers import find_compilers
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ROOT / "ros2"
 OTHERS = Path(__file__).parent / "other_packages"
-"""Message packages that are not ours, not on PyPI, and that the nodes speak where they exist."""
+"""Message packages of others, not on PyPI, which the nodes use if installed."""
 
 MESSAGE_PACKAGES = (
     PACKAGES / "osg_interfaces",
@@ -25,7 +25,7 @@ MESSAGE_PACKAGES = (
 )
 NODES = PACKAGES / "osg_ros"
 CHECKED = {"ROS_PYTHON_CHECK_FIELDS": "1"}
-"""Lets messages refuse values of another type; Humble's always do, newer ones only if asked."""
+"""Makes messages refuse values of another type; Humble's always do, newer ones only on request."""
 
 KEPT = ROOT / ".pytest_cache" / "ros2"
 """What was built is kept until a definition changes."""

@@ -1,4 +1,4 @@
-"""Cameras of the scene: the way from one to the other."""
+"""Cameras of the scene: the transition from one to the other."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from tests.api.running import until
 
 
 class Screen:
-    """Keeps what was drawn, and can be made slow."""
+    """Records what was drawn, and can be made slow."""
 
     def __init__(self) -> None:
         self.drawn: list[int] = []
@@ -65,7 +65,7 @@ def test_of_many_seeks_only_the_newest_is_drawn_next(playback: Playback, screen:
         playback.seek(frame)
     screen.gate.set()
     until(shows(screen, 499))
-    # One may have been on its way when the others came.
+    # One may have been under way when the others came.
     assert len(screen.drawn) <= 3
 
 

@@ -1,4 +1,4 @@
-"""The scene, in a real viser server: what is drawn, and where it moves."""
+"""The scene in a real viser server: what is drawn, and how it moves."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from app.recognition import Gesture, GestureError, Language, PoseError, Recogniz
 from benchmarks.sets.held_signs import HeldSigns, read_held_signs
 
 REFUSED = 0.05
-"""Share of right takes that are refused where foreign takes are counted."""
+"""Share of true takes rejected by the thresholds at which foreign takes are counted."""
 
 RELATIONS = ("same view", "other view", "three")
 
@@ -40,7 +40,7 @@ class Answer:
     sign
         Of the take.
     right
-        Whether its own sign is nearest; never for a foreign take.
+        Whether the take's own sign is nearest; never for a foreign take.
     novelty
         Of the nearest sign; infinite where no held hand was found.
 
@@ -53,7 +53,7 @@ class Answer:
 
 
 def recognize(recognizer: Recognizer, signs: HeldSigns, take: int) -> tuple[str, float]:
-    """Return the nearest sign of a take, and its novelty; none where no hand is held."""
+    """Return the nearest sign of a take, and its novelty; None if no hand holds a shape."""
     try:
         result = recognizer.recognize(signs.takes[take])
     except PoseError:
@@ -81,7 +81,7 @@ def answer(signs: HeldSigns, draws: int, queries: int, seed: int) -> Iterator[An
             ):
                 nearest, novelty = recognize(language, signs, take)
                 yield Answer(relation, own, nearest == own, novelty)
-        # Takes of the demonstrated view are rare among all: one more of each sign.
+        # Takes of the demonstrated view are rare, so one more of each sign is drawn.
         for name in names:
             run = signs.runs[templates[name][0]]
             beside = free[(signs.labels[free] == name) & (signs.runs[free] == run)]

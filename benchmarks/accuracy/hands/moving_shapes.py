@@ -29,10 +29,10 @@ from benchmarks.sets.moving_signs import compose
 from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet, recorded_sets
 
 MOVEMENTS = 5
-"""In a language: about as many as a diver learns."""
+"""Movements in a language: about as many as a diver learns."""
 
 SHAPE_ALIKE = frozenset({"ascend", "descend"})
-"""One shape, held up and down: not clearly different in a hand that turns."""
+"""Signs of one shape, pointing up or down: not clearly different in a hand that turns."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ class Answer:
     relation
         Whose movement and which view of the hand, ``foreign``, ``no hand`` or ``switch off``.
     signs
-        Of the two gestures.
+        Signs of the two gestures.
     found
-        Whether the hand shape counted without being switched on.
+        Whether the switch ``auto`` made the hand shape count.
     right
-        Whether the gesture meant is nearest; of a foreign shape and without hands whether one of
-        the two is.
+        Whether the expected gesture is nearest; for a foreign shape or no hands, whether one of the
+        two is.
     accepted
-        Whether it was not refused.
+        Whether the take was not rejected.
 
     """
 
@@ -77,7 +77,7 @@ class Composer:
         return compose(self.recorded.recordings[movement], shown[:, 1], self.random)
 
     def choose(self, wanted: npt.NDArray[np.bool_]) -> int:
-        """Return the index of a random take of those wanted."""
+        """Return the index of a random take among the wanted ones."""
         return int(self.random.choice(np.flatnonzero(wanted)))
 
 
@@ -129,7 +129,7 @@ def draw(composer: Composer, count: int = MOVEMENTS) -> Draw | None:
     hands = [composer.choose(signs.labels == name) for name in names]
     shown = [composer.compose(*each) for each in zip(movements, hands, strict=True)]
     for name in classes[1:]:
-        # A hand of any sign: what the shape is of a movement without a twin must not matter.
+        # A hand of any sign: the shape must not matter for a movement without a twin.
         other = composer.choose(own & (recorded.labels == name))
         shown.append(composer.compose(other, int(random.integers(len(signs.takes)))))
     labels = (*names, *(f"movement {name}" for name in classes[1:]))
@@ -177,7 +177,7 @@ def answer(composer: Composer, drawn: Draw, queries: int) -> Iterator[Answer]:
 
 
 def _find_foreign(signs: HeldSigns, pair: tuple[str, str]) -> npt.NDArray[np.bool_]:
-    """Return the takes of a third shape, and of none that is one of the two turned round."""
+    """Return the takes of a third shape, other than the two and their turned versions."""
     taken = {*pair} | (SHAPE_ALIKE if SHAPE_ALIKE & {*pair} else set())
     return ~np.isin(signs.labels, sorted(taken))
 
@@ -188,7 +188,7 @@ def _recognize(recognizer: Recognizer, poses: PoseSequence) -> tuple[str | None,
 
 
 def count_same(composer: Composer, drawn: Draw, queries: int) -> Share | None:
-    """Count the answers of the language without twins that hands do not change.
+    """Count the answers of the language without twins that are the same with and without hands.
 
     None where a hand shape counts, because two of the movements are alike.
     """

@@ -29,16 +29,16 @@ from benchmarks.sets.held_signs import HeldSigns, read_held_signs
 from benchmarks.sets.sign_sequences import compose, turn_alike
 
 SEQUENCES = 5
-"""In a language, about as many as a diver learns."""
+"""Sequences in a language, about as many as a diver learns."""
 
 TRIES = 20
-"""Demonstrations that are drawn until one shows as many shapes as it should."""
+"""Most demonstrations drawn until one shows the right number of shapes."""
 
 ALIKE = frozenset({"ok", "stop"})
-"""Two signs 0.35 to 0.6 sizes of the hand apart, within what one sign changes by."""
+"""Two signs 0.35 to 0.6 hand sizes apart, no more than takes of one sign differ."""
 
 FOUND_OF = 10
-"""Composed takes of each two signs in which shapes are counted."""
+"""Composed takes per pair of signs in which shapes are counted."""
 
 MEANT = ("same view", "other view")
 
@@ -58,11 +58,11 @@ class Answer:
     relation
         One of `MEANT`, `FOREIGN`, or `ALONE`.
     signs
-        That the take shows.
+        Signs that the take shows.
     right
         Whether the gesture of these signs is nearest.
     accepted
-        Whether it was not refused.
+        Whether the take was not rejected.
     sequence
         Whether a sequence was accepted.
 
@@ -95,7 +95,7 @@ class Composer:
         return compose([self.signs.takes[take] for take in takes], self.random)
 
     def choose(self, wanted: Signs, beside: Sequence[int] = (), *, same_view: bool) -> list[int]:
-        """Return random takes of signs; `beside` the takes whose run they share, or do not."""
+        """Return random takes of signs, from the runs of the takes `beside` or from other runs."""
         chosen = []
         for sign, other in zip(wanted, beside, strict=True):
             runs = self.signs.runs == self.signs.runs[other]
@@ -115,7 +115,7 @@ class Composer:
         Raises
         ------
         GestureError
-            When none of `TRIES` shows as many shapes as signs.
+            When none of `TRIES` demonstrations shows as many shapes as signs.
 
         """
         for _ in range(TRIES):
@@ -180,7 +180,7 @@ def _recognize(recognizer: Recognizer, relation: str, signs: Signs, poses: PoseS
 
 
 def count_shapes(composer: Composer) -> Iterator[tuple[Signs, int]]:
-    """Yield two signs and the number of shapes that are found in a composed take of them."""
+    """Yield pairs of signs, each with the number of shapes found in a composed take of them."""
     for signs in permutations([str(name) for name in np.unique(composer.signs.labels)], 2):
         for _ in range(FOUND_OF):
             poses = composer.show(composer.choose_any(signs))

@@ -27,13 +27,13 @@ SIGNS: Final = "*true_positives*.csv"
 NO_SIGNS: Final = "*true_negatives*.csv"
 
 COLUMNS: Final = ("scenario", "stereo left", "label name", "synthetic")
-"""Columns that are read."""
+"""Columns of the table that are read."""
 
 RATE: Final = 10.0
 """Pictures a second, about as fast as they were taken."""
 
 LONGEST: Final = 10
-"""Pictures of a take. What follows in a run is nearly the same picture again."""
+"""Most pictures in a take: the following ones of a run are nearly the same."""
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ class DiverTake:
     source
         File and frames, for people.
     label
-        The sign that is shown; None: none of the set's.
+        The sign that is shown; None if it is not one of the set's.
     setting
-        What takes alike have in common beside the sign: place and view, or the clip.
+        Key shared by takes in the same setting: place and view, or the clip.
     poses
         Body and hands.
 

@@ -20,9 +20,9 @@ class PublishedSet:
     Attributes
     ----------
     name
-        As its authors call it.
+        The authors' name of the set.
     finds
-        Returns the files by which the set is known; none: the folder holds another one.
+        Returns the files that identify the set; none if the folder holds another one.
     reads
         Yields the takes of a folder.
 

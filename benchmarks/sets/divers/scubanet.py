@@ -21,7 +21,7 @@ IDLE = "Idle"
 """Label of frames without a sign."""
 
 SHORTEST = 5
-"""Frames; a shorter run is a slip of the hand that labelled."""
+"""Fewest frames of a run; a shorter one is a labelling mistake."""
 
 
 class FrameLabel(BaseModel):

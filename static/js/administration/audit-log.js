@@ -10,7 +10,7 @@ const ENTRIES_OF_A_PAGE = 100;
 const HEADS = ["Time", "Name", "Role", "Address", "Change", "Answer"];
 
 /**
- * The query of what is asked for; both days count whole, in the reader's own time.
+ * Return the query for these entries; both days are included in full, in the reader's time zone.
  *
  * @param {{ name: string, from: string, to: string }} wanted
  * @param {number} [before] id of the last entry on display
@@ -119,7 +119,7 @@ export function openAuditLog() {
     ),
   );
   form.onchange = () => load();
-  form.onsubmit = (event) => event.preventDefault(); // Enter in a field changes it.
+  form.onsubmit = (event) => event.preventDefault(); // Enter in a field triggers its change event.
   dialog.replaceChildren(form);
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;

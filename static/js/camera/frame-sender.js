@@ -1,12 +1,12 @@
-// The pictures of a video on their way to the server, which looks at them.
+// Sending the pictures of a video to the server, which finds poses in them.
 
 import { grab } from "./video-source.js";
 
 /** @import { openLink } from "./live-socket.js" */
 
 /**
- * Make a function that sends the picture on display, unless enough are on their way; it is of
- * `time` seconds, and was captured at `at` by the page's clock.
+ * Make a function that sends the picture on display, unless enough are under way. `time` is the
+ * picture's second in the video, `at` the second of its capture by the page's clock.
  *
  * @param {HTMLVideoElement} video
  * @param {ReturnType<typeof openLink>} link

@@ -32,7 +32,7 @@ export interface Recognized {
   problem: string | null;
 }
 
-/** The language that recognises the takes; `problem` says why none does. */
+/** The language that recognises the takes; without one, `problem` says why. */
 export interface Listening {
   kind: "listening";
   language: string | null;
@@ -40,13 +40,13 @@ export interface Listening {
   problem: string | null;
 }
 
-/** What is shown to a person when the source or the connection fails. */
+/** The message to the user when the source or the connection fails. */
 export interface Trouble {
   title: string;
   text: string;
 }
 
-/** Called with each message; `seconds` have passed since the frame was captured. */
+/** Called with each message; `seconds` is the time since the frame was captured. */
 export interface Handlers {
   seen: (answer: Seen, seconds: number) => void;
   recognized: (result: Recognized) => void;

@@ -21,14 +21,14 @@ export function openLink(handlers) {
   const scheme = location.protocol === "https:" ? "wss" : "ws";
   const socket = new WebSocket(`${scheme}://${location.host}/api/v1/live`);
   /** @type {Map<number, number>} */
-  const captured = new Map(); // Of the frames on their way: when, by the page's clock.
+  const captured = new Map(); // Capture time by the page's clock, by frame under way.
   /** @type {((value?: unknown) => void)[]} */
   const waiting = []; // for an answer
   /** @type {object | null} */
   let wanted = null;
   let closing = false;
   let sent = -Infinity; // s, by the page's clock
-  let rate = 0; // frames that the server looks at in a second
+  let rate = 0; // frames that the server processes per second
 
   /** @param {Seen} answer */
   function seen(answer) {
@@ -67,7 +67,7 @@ export function openLink(handlers) {
       return !captured.size || performance.now() / 1000 - sent > 1 / (PER_LOOK * rate);
     },
     /**
-     * Ask this language from now on.
+     * Recognise with this language from now on.
      *
      * @param {string | null} language
      */
@@ -76,7 +76,7 @@ export function openLink(handlers) {
       ask();
     },
     /**
-     * Send a frame of that time, captured at `at` in seconds of the page's clock.
+     * Send the frame at `time` seconds, captured at `at` in seconds of the page's clock.
      *
      * @param {number} time
      * @param {number} at

@@ -1,8 +1,8 @@
-// The preview of a camera: as in a mirror, unless the camera looks away from who watches it.
+// The preview of a camera: mirrored, unless the camera faces away from the viewer.
 
 /**
- * Whether a source is shown mirrored: a camera that faces the diver is, and one of which that is
- * not known; a phone's rear camera and a clip are not.
+ * Whether a source is shown mirrored: true for a camera that faces the diver or whose direction is
+ * unknown, false for a phone's rear camera and a clip.
  *
  * @param {HTMLVideoElement["srcObject"]} source
  */

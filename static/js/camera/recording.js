@@ -1,13 +1,13 @@
 // A clip from the camera: a countdown, the recording, and the file that it becomes.
 
-// The first that the browser supports.
+// In order of preference: the first type that the browser supports is used.
 const TYPES = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 const BITS_PER_SECOND = 6_000_000; // as a dive camera's 1080p; the default blurs a hand that moves.
 const CHUNK = 1000; // ms: what is lost at most when the tab crashes.
 
 /**
- * Count down from `from` to 1, a second each; `show(null)` at the end. Resolves false when
- * `signal` aborts.
+ * Count down from `from` to 1, one per second, and call `show(null)` at the end. Resolves to false
+ * when `signal` aborts.
  *
  * @param {number} from
  * @param {(left: number | null) => void} show
@@ -46,8 +46,8 @@ function nameAt(what, date, type) {
 }
 
 /**
- * Record a stream; `stop(what)` resolves with the file, called `what` with the time of its begin,
- * or null when nothing was recorded.
+ * Record a stream. `stop(what)` resolves to the file, whose name is `what` and the time at which it
+ * began, or to null when nothing was recorded.
  *
  * @param {MediaStream} stream
  */

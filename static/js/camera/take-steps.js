@@ -1,4 +1,4 @@
-// The steps of a take before the camera, in words: what is awaited, seen, and to be done next.
+// The steps of a take before the camera, in words: what is awaited, what is seen, what comes next.
 
 import { SALUTE } from "../clips/salute-threshold.js";
 import { state as page } from "../core/state.js";

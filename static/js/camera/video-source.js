@@ -34,7 +34,7 @@ const REASONS = {
 };
 
 /**
- * Why a camera that was watched sends nothing any more, and what can be done `instead`.
+ * Why a camera stopped sending, and what can be done `instead`.
  *
  * @param {string} instead
  */
@@ -61,7 +61,7 @@ export function whyNoCamera(error, instead) {
 }
 
 /**
- * Show a camera in a video element; `lost()` is called when it sends nothing any more.
+ * Show a camera in a video element; `lost()` is called when it stops sending.
  *
  * @param {HTMLVideoElement} video
  * @param {string} deviceId
@@ -80,8 +80,8 @@ export async function showCamera(video, deviceId, lost) {
 }
 
 /**
- * Offer the cameras that there are, of which the one on display is chosen; hidden where there is no
- * choice. The browser names them once one was allowed.
+ * List the available cameras and select the one on display; hidden if there is only one. The
+ * browser names cameras only after the user has allowed one.
  *
  * @param {HTMLSelectElement} choice
  * @param {HTMLVideoElement} video
@@ -121,7 +121,7 @@ export async function showClip(video, url) {
 }
 
 /**
- * Let go of the camera or clip.
+ * Release the camera or clip.
  *
  * @param {HTMLVideoElement} video
  */
@@ -155,8 +155,8 @@ export function grab(video) {
 }
 
 /**
- * Call `seen(time, captured)` for each new picture of a video that runs, in seconds of the camera's
- * or the clip's clock and of the page's, until the function returned is called.
+ * Call `seen(time, captured)` for each new picture of a running video, until the returned function
+ * is called. `time` is in seconds of the camera's or clip's clock, `captured` of the page's.
  *
  * @param {HTMLVideoElement} video
  * @param {(time: number, captured: number) => void} seen
@@ -166,7 +166,7 @@ export function watchFrames(video, seen) {
   const live = video.srcObject !== null;
   const next = () => {
     if (!running) return;
-    // Firefox before 132 has no such callback; it then counts what the screen shows.
+    // Firefox before 132 has no such callback; there each redraw of the screen counts.
     if (video.requestVideoFrameCallback) video.requestVideoFrameCallback(frame);
     else requestAnimationFrame((now) => frame(now, {}));
   };
@@ -184,7 +184,7 @@ export function watchFrames(video, seen) {
 }
 
 /**
- * Go through a clip without losing a frame to slowness: `seen(time)` is awaited before the next.
+ * Step through a clip without skipping frames: `seen(time)` is awaited before the next one.
  *
  * @param {HTMLVideoElement} video
  * @param {(time: number) => Promise<void>} seen

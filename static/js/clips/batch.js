@@ -4,15 +4,15 @@ import { BUSY } from "./busy.js";
 
 /** @import { Batch, Clip, Job } from "../core/types.d.ts" */
 
-const LEAST_FRAMES = 20; // before the rate is known
-const FRAMES_UNKNOWN = 200; // of a clip whose container does not count them
+const LEAST_FRAMES = 20; // frames done before a rate is computed
+const FRAMES_UNKNOWN = 200; // assumed for a clip whose container has no count
 
 /** @type {(clip: Clip) => number} */
 const framesOf = (clip) => clip.frames || FRAMES_UNKNOWN;
 
 /**
- * The batch with what is known now: it begins with the first clip that waits, takes in those that
- * are added, and ends when none waits or runs. Null where there is none.
+ * Update the batch: it begins with the first waiting clip, includes clips added later, and ends
+ * when none waits or runs; null without a batch.
  *
  * @param {Batch | null} batch
  * @param {Clip[]} clips

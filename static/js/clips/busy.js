@@ -1,3 +1,3 @@
-// The states of a clip whose poses are not found yet.
+// The states of a clip whose poses are still to be found.
 
 export const BUSY = new Set(["queued", "running"]);

@@ -12,11 +12,11 @@ import { openTopics } from "./topic-dialog.js";
 
 /** @import { Clip, Job, State } from "../core/types.d.ts" */
 
-const SEEN_AT_ONCE = 6; // Clips in the list without scrolling: more are found by name.
+const SEEN_AT_ONCE = 6; // Clips visible without scrolling; with more, the search is shown.
 let scrolling = false; // by the page itself
 const TYPING = 200; // ms without a key before the server is asked
 /**
- * The name that was looked for last, and the last clip of the page that was found if more follow.
+ * The last name searched for, and the last clip of the result page if more follow.
  *
  * @type {{ text: string, last: string | null }}
  */
@@ -33,7 +33,7 @@ async function remove(clip) {
   if (!done) return;
   const at = state.clips.findIndex(({ id }) => id === clip.id);
   forget(clip.id);
-  // The next one moves up to its place, as in every list.
+  // The focus moves to the next clip, which takes its place, as in every list.
   if (state.clip === clip.id) select((state.clips[at] ?? state.clips.at(-1))?.id ?? null);
   recordAction({ title: `Deletion of ${clip.name}`, kind: "clip", id: clip.id });
   showDone("Clip deleted", clip.name);
@@ -109,7 +109,7 @@ function posterOf(clip, element) {
 }
 
 /**
- * How far a progress bar is, where that is known.
+ * The value of a progress bar, if it is known.
  *
  * @param {Job} [job]
  */
@@ -230,7 +230,7 @@ function drawMore({ library }, wanted) {
 }
 
 /**
- * Look for a name on the server, where not all clips are known.
+ * Search for a name on the server if not all clips are known.
  *
  * @param {string} text
  * @param {string} [after]
@@ -238,7 +238,7 @@ function drawMore({ library }, wanted) {
 async function search(text, after) {
   const page =
     text && state.library.last ? await searchClips(text, after) : { clips: [], more: false };
-  if (!page || text !== wantedName()) return; // Something else is typed by now.
+  if (!page || text !== wantedName()) return; // The text has changed since.
   searched = { text, last: page.more ? (page.clips.at(-1)?.id ?? null) : null };
   drawClips(state);
 }
@@ -276,11 +276,11 @@ function bringIntoView(list, chosen) {
   }
 }
 
-/** Let the clips be found by their names. */
+/** Bind the search for clips by name. */
 export function findClips() {
   let typed = 0;
   byId("find-clip").oninput = () => {
-    inView = null; // Where the clip on display is among those found is another place.
+    inView = null; // The clip on display has another place in the results.
     if (state.library.last) {
       clearTimeout(typed);
       typed = setTimeout(() => search(wantedName()), TYPING);
@@ -290,7 +290,7 @@ export function findClips() {
   byId("more-clips").onclick = loadMore;
   const list = byId("clips");
   list.onscroll = () => {
-    // A clip that is brought into view may be the last one that is known.
+    // Scrolling by the page loads no clips, even if the clip on display is the last one loaded.
     const byItself = scrolling;
     scrolling = false;
     if (byItself) return;

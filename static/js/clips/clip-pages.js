@@ -1,4 +1,4 @@
-// The clips that are known of a library that may hold many more: they come page by page.
+// The clips loaded so far from a library that may hold many more; they are loaded in pages.
 
 import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
@@ -10,7 +10,7 @@ import { BUSY } from "./busy.js";
 const NAMED_AT_ONCE = 100; // ids in one address
 
 /** @type {Set<string>} */
-const named = new Set(); // clips that were asked for by their ids
+const named = new Set(); // clips that were requested by id
 /** @type {Set<string>} */
 let found = new Set(); // clips that the last search found
 
@@ -24,7 +24,7 @@ export const newestFirst = (one, other) =>
   other.created.localeCompare(one.created) || one.id.localeCompare(other.id);
 
 /**
- * Whether a clip belongs to the part of the library that is known without gaps.
+ * Whether a clip belongs to the part of the library that is loaded without gaps.
  *
  * @param {Clip} clip
  * @param {Pick<State, "library">} state
@@ -40,7 +40,7 @@ export const countAll = (known) =>
   known.clips.filter((clip) => isListed(clip, known)).length + known.library.older;
 
 /**
- * Clips with others, each once as it was loaded last.
+ * Merge two lists of clips; of duplicates the one loaded last is kept.
  *
  * @param {Clip[]} clips
  * @param {Clip[]} loaded
@@ -49,7 +49,7 @@ export const merged = (clips, loaded) =>
   [...new Map([...clips, ...loaded].map((clip) => [clip.id, clip])).values()].sort(newestFirst);
 
 /**
- * Load clips by their ids; those that are gone are left out.
+ * Load clips by their ids; deleted ones are left out.
  *
  * @param {string[]} ids
  */
@@ -64,8 +64,8 @@ async function loadNamed(ids) {
 }
 
 /**
- * Load the newest clips, as many as were listed before, and beyond them those that are busy, on
- * display, found by the last search or named by something.
+ * Load the newest clips, as many as were listed before, and also those that are busy, on display,
+ * found by the last search or referred to by id.
  */
 async function loadKnown() {
   const wanted = state.clips.filter((clip) => isListed(clip, state)).length;
@@ -91,8 +91,8 @@ async function loadKnown() {
 let turn = Promise.resolve();
 
 /**
- * Load one part of the list after the other: each goes on where the one before ended, and the whole
- * list, loaded anew, undoes none that came while it was on its way.
+ * Load parts of the list one after another: each continues where the previous one ended, and a
+ * reload of the whole list cannot discard a part that arrived meanwhile.
  *
  * @template T
  * @param {() => Promise<T>} load
@@ -104,7 +104,7 @@ function inTurn(load) {
   return loaded;
 }
 
-/** Load the clips; resolves to whether they came. */
+/** Load the clips; resolves to whether that succeeded. */
 export const reloadClips = () =>
   inTurn(async () => {
     const known = await attempt("Loading the clips", loadKnown);
@@ -113,7 +113,7 @@ export const reloadClips = () =>
   });
 
 /**
- * Load one clip that was added; resolves to it once it is known.
+ * Load one clip that was added; resolves to the clip.
  *
  * @param {string} id
  */
@@ -125,14 +125,14 @@ export const loadClip = (id) =>
   });
 
 /**
- * Know a clip.
+ * Add a clip to the state.
  *
  * @param {Clip} clip
  */
 export const take = (clip) => update({ clips: merged(state.clips, [clip]) });
 
 /**
- * Forget a clip that was deleted.
+ * Remove a deleted clip from the state.
  *
  * @param {string} id
  */
@@ -141,7 +141,7 @@ export const forget = (id) => update({ clips: state.clips.filter((clip) => clip.
 /** @type {Promise<void> | null} */
 let loading = null;
 
-/** Load the page of clips that follows those that are listed. */
+/** Load the page of clips after those listed. */
 export function loadOlder() {
   loading ??= inTurn(loadNext).finally(() => {
     loading = null;
@@ -165,8 +165,8 @@ async function loadNext() {
 }
 
 /**
- * Look on the server for clips whose name contains `text`, after the clip `after` if one is given;
- * resolves to the page, whose clips are known then.
+ * Search the server for clips whose name contains `text`, starting after the clip `after` if given;
+ * adds the page of results to the state and resolves to it.
  *
  * @param {string} text
  * @param {string} [after]
@@ -183,7 +183,7 @@ export const searchClips = (text, after) =>
   });
 
 /**
- * Load clips that something names, where they are not known yet.
+ * Load the clips with these ids that are not loaded yet.
  *
  * @param {Iterable<string | null | undefined>} ids
  */
@@ -202,8 +202,8 @@ export async function knowClips(ids) {
 }
 
 /**
- * Know the clips that the page refers to: the one on display, those that wait for the test, and
- * those that the demonstrations come from.
+ * Load the clips that the page refers to: the one on display, those waiting for the test, and the
+ * sources of the demonstrations.
  *
  * @param {Pick<State, "clip" | "pending" | "gestures">} state
  */

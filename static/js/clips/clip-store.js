@@ -1,4 +1,4 @@
-// The clips as the server has them: loading, selecting, and how far each one's poses are.
+// The clips as the server has them: loading, selecting, and the progress of finding their poses.
 
 import * as api from "../core/api.js";
 import { duration, plural, timeLeft } from "../core/format.js";

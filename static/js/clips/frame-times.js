@@ -22,8 +22,8 @@ export function nearestFrame(time, seconds) {
 }
 
 /**
- * A moment inside a frame, so that a video that is sent there shows that frame and not the one
- * before. Of the last frame nobody knows how long it stands: as long as the one before it.
+ * A moment in the middle of a frame, so that a video seeking there shows this frame and not the one
+ * before. The last frame, whose duration is unknown, counts as long as the one before it.
  *
  * @param {number[]} time
  * @param {number} frame
@@ -36,8 +36,8 @@ export const insideFrame = (time, frame) =>
     2;
 
 /**
- * When a video whose source was just set shows its first frame, by its own clock. That is not 0
- * where sound begins before the picture, or where the file was cut out of a longer one.
+ * The time of the first frame by the clock of a video whose source was just set. It is not 0 if
+ * sound begins before the picture, or if the file was cut from a longer one.
  *
  * @param {HTMLVideoElement} video
  * @returns {Promise<number>}
@@ -51,8 +51,8 @@ export const firstMoment = (video) =>
   });
 
 /**
- * Send a video to a moment, and draw over it once it shows that moment's frame. While a seek is
- * under way nothing is done: a seek that is cut short by the next shows nothing.
+ * Seek a video to a moment, and draw over it once it shows that frame. Does nothing while a seek is
+ * under way: a seek interrupted by the next one shows no frame.
  *
  * @param {HTMLVideoElement} video
  * @param {number} moment

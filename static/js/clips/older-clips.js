@@ -13,8 +13,8 @@ function draw(button) {
 }
 
 /**
- * Make the button; it is hidden where all clips are known. `loaded` is called when there are more
- * to choose from, where the choice does not follow the clips by itself.
+ * Make the button; it is hidden once all clips are loaded. `loaded` is called after more clips have
+ * come, for a choice that does not follow the state by itself.
  *
  * @param {() => void} [loaded]
  */

@@ -1,4 +1,4 @@
-// What is left of the quota of whoever is signed in, below the place for files.
+// What is left of the signed-in user's quota, below the drop area.
 
 import * as api from "../core/api.js";
 import { byId } from "../core/dom.js";
@@ -26,10 +26,10 @@ export function drawQuota({ quota }) {
   line.textContent = quota ? describeQuota(quota) : "";
 }
 
-let known = ""; // the clips that the quota on display counts
+let known = ""; // the clips counted in the quota on display
 
 /**
- * Read the quota again when clips or uploads have come or gone.
+ * Read the quota again when clips or uploads were added or removed.
  *
  * @param {Pick<State, "quota" | "clips" | "uploads">} state
  */
@@ -41,6 +41,6 @@ export async function followQuota({ quota, clips, uploads }) {
   try {
     update({ quota: (await api.session.get()).quota });
   } catch {
-    // The line stays as it was; the server's refusal of an upload says more.
+    // The line stays unchanged; if an upload is refused, the server's message explains it.
   }
 }

@@ -5,11 +5,11 @@ import { SALUTE } from "./salute-threshold.js";
 
 /** @import { Language } from "../core/types.d.ts" */
 
-const HOLD = 0.3; // s that a salute is held at least: `HOLD_SECONDS` in recording/salute.py.
-const OVERLAP = 0.1; // s; less of a salute in a range is the edge of the take.
+const HOLD = 0.3; // s: the shortest salute, `HOLD_SECONDS` in recording/salute.py.
+const OVERLAP = 0.1; // s; a shorter part of a salute in a range is the take's edge.
 
 /**
- * The language by whose trigger takes are found; null where that is the salute, as everywhere.
+ * The language whose trigger finds the takes; null if that trigger is the salute, the default.
  *
  * @param {Language | null} language
  */
@@ -32,7 +32,7 @@ export const heldName = (language) => HELD[language?.trigger?.kind ?? "salute"];
 export const endName = (language) => heldName(language).replace("Vulcan ", "");
 
 /**
- * The salutes of which a range contains a part: `[start, end]` in seconds of the clip.
+ * The salutes that overlap a range: `[start, end]` in seconds of the clip.
  *
  * @param {{ time: number[], salute: number[] }} timeline
  * @param {number} start

@@ -9,7 +9,7 @@ import { select } from "./clip-store.js";
 /** @import { Sample, State } from "../core/types.d.ts" */
 
 /**
- * "circle_a_demonstration.mp4" as people read it.
+ * A sample's file name as a title: "circle_a_demonstration.mp4" without underscores and ending.
  *
  * @param {string} name
  */

@@ -12,10 +12,10 @@ import { uniqueId } from "../core/unique-id.js";
 /** @type {Map<string, HTMLElement>} */
 const running = new Map(); // elements, by the name of their export
 /** @type {Map<string, HTMLElement>} */
-const elements = new Map(); // by clip; they stay when the explanation around them is drawn anew
+const elements = new Map(); // by clip; kept when the explanation is drawn anew
 
 /**
- * How far an export is, in words.
+ * The progress of an export, in words.
  *
  * @param {ExportProgress | null} progress
  */
@@ -28,14 +28,14 @@ export function exportWords(progress) {
 }
 
 /**
- * Let the browser save a file that is there.
+ * Let the browser save a complete file.
  *
  * @param {{ name: string, content: Blob }} file
  */
 export function saveFile({ name, content }) {
   const href = URL.createObjectURL(content);
   h("a", { href, download: name }).click();
-  // The download has begun by then; until it is saved the browser keeps the content itself.
+  // The download has begun by now; the browser keeps the content until it is saved.
   setTimeout(() => URL.revokeObjectURL(href), 60_000);
 }
 
@@ -50,7 +50,7 @@ function drawStart(box, clip, problem) {
     { type: "button", className: "link", onclick: () => run(box, clip) },
     problem ? "Try the session again" : "Session as MCAP",
   );
-  // Where the explanation was drawn anew in the meantime, the focus went from Cancel to nothing.
+  // If the explanation was drawn anew in the meantime, Cancel has lost the focus.
   const focused = document.activeElement;
   const had = box.contains(focused) || (box.isConnected && focused === document.body);
   box.replaceChildren(button, problem ?? h("small", { className: "dim" }, " opens in Foxglove"));
@@ -71,7 +71,7 @@ function advance(box, progress) {
 }
 
 /**
- * Write the session, and let the browser save it as it arrives: it may be larger than memory.
+ * Write the session, and let the browser save it while it downloads: it may not fit in memory.
  *
  * @param {HTMLElement} box
  * @param {string} clip

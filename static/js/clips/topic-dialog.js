@@ -55,7 +55,7 @@ export const topicsPanel = (clip) =>
   );
 
 /**
- * Let the user choose what a recording's clip is made of.
+ * Let the user choose the topic from which a dive recording's clip is made.
  *
  * @param {Clip} clip
  */

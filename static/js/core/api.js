@@ -4,7 +4,7 @@
 
 const BASE = "/api/v1";
 
-const CLIPS_OF_A_PAGE = 500; // Half a megabyte, and a twentieth of a second of the server.
+const CLIPS_OF_A_PAGE = 500; // Half a megabyte; takes the server 50 ms.
 
 export class ApiError extends Error {
   /**
@@ -72,8 +72,8 @@ async function request(method, path, options) {
 async function send(method, path, { body, headers = {}, raw = false, signal } = {}) {
   /** @type {RequestInit & { headers: Record<string, string> }} */
   const options = { method, headers: { ...headers }, signal };
-  // Chromium's cache makes a change wait, for 20 s at most, until a read of the same address has
-  // ended: a check could not be cancelled.
+  // Chromium's cache delays a change, by up to 20 s, until a read of the same address has ended;
+  // without this option a running check could not be cancelled.
   if (method !== "GET") options.cache = "no-store";
   if (body !== undefined) {
     options.body = raw ? body : JSON.stringify(body);
@@ -103,7 +103,7 @@ const matching = (language) => ({ "If-Match": `"${language.revision}"` });
 const gestureAt = (language, label, part = "") =>
   `/languages/${id(language.id)}/gestures${part}?label=${id(label)}`;
 
-/** @param {string | null} language whose trigger counts; null: the salute */
+/** @param {string | null} language whose trigger is used; null: the salute */
 const triggered = (language) => (language ? `?language_id=${id(language)}` : "");
 
 export const session = {

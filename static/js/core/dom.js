@@ -23,14 +23,14 @@ const ICONS = {
   up: "M5 12l5-5 5 5",
 };
 
-/** Marks a control that changes what others see, and that `session.js` disables for readers. */
+/** Marks a control that changes shared data; `session.js` disables it for readers. */
 export const WRITES = { "data-writes": "" };
 
 /**
- * Find an element that index.html promises.
+ * Find an element of index.html.
  *
  * @param {string} id
- * @returns {any} Typed loosely: its kind of element stands in index.html.
+ * @returns {any} Typed loosely: index.html determines the kind of element.
  */
 export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 
@@ -47,7 +47,7 @@ export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 export function h(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   const values = /** @type {any} */ (element);
-  // Assigning `src` begins to load it, in some browsers before `loading: "lazy"` is known.
+  // Assigning `src` starts loading, in some browsers before `loading: "lazy"` is set.
   const { src, ...others } = properties;
   for (const [name, value] of Object.entries({ ...others, src })) {
     if (value === undefined || value === null) continue;

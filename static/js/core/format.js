@@ -31,7 +31,7 @@ export function duration(seconds) {
 }
 
 /**
- * A duration that is an estimate of many parts: in whole minutes, or in tens of seconds.
+ * An estimated duration: in whole minutes, or in tens of seconds.
  *
  * @param {number} seconds
  */
@@ -93,7 +93,7 @@ export const readable = (identifier) => identifier.replaceAll("_", " ");
 export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
 
 /**
- * A share in [0, 1] as a percentage; "<1 %" is not nothing.
+ * A share in [0, 1] as a percentage; a small share is "<1 %", so that it is not taken for zero.
  *
  * @param {number} share
  */

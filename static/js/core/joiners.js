@@ -1,7 +1,7 @@
 // Joiners: zero-width characters that belong to the spelling of Persian, Hindi or Sinhala words.
 
 /**
- * A text to compare by: two that differ in joiners alone look alike.
+ * The text without joiners, for comparisons: texts that differ only in joiners look alike.
  *
  * @param {string} text
  */

@@ -9,10 +9,9 @@ const TYPED_IN =
   "input:not([type=range]):not([type=checkbox]):not([type=radio]), textarea, select, [contenteditable=true]";
 
 /**
- * Bind keys to a function. `keys` are as people read them, "Ctrl+Shift+Z" or "Shift+,"; the first
- * is the one shown; `when()` says whether the binding applies now, and of several the last one
- * wins. Plain keys do nothing where text
- * is typed. No key may override one of the browser.
+ * Bind keys to a function. `keys` are written as for people, "Ctrl+Shift+Z" or "Shift+,"; the first
+ * one is shown. `when()` says whether the binding applies now; of several, the last one wins. Plain
+ * keys do nothing in text fields. No key may override one of the browser's.
  *
  * @param {{ keys: string[], text: string, group: string, run: (event: KeyboardEvent) => unknown, when?: () => boolean }} binding
  */
@@ -21,7 +20,7 @@ export function bind({ keys, text, group, run, when = () => true }) {
 }
 
 /**
- * A key press in the notation of `bind`: the key's own letter or sign, also with Shift.
+ * A key press in the notation of `bind`: with Shift, too, the key's own letter or sign.
  *
  * @param {KeyboardEvent} event
  * @returns {string}
@@ -46,7 +45,7 @@ function written(event) {
 let opening = null; // A view that is being loaded: its keys are not bound yet.
 
 /**
- * Delay keys that are pressed until a promise is settled.
+ * Hold back pressed keys until a promise is settled.
  *
  * @param {Promise<unknown>} promise
  */
@@ -64,11 +63,11 @@ const meant = (combination) =>
 /** @param {KeyboardEvent} event */
 function pressed(event) {
   if (event.defaultPrevented || document.querySelector("dialog[open]")) return;
-  // An element of a frame is no Element of this window.
+  // An element of a frame is not an instance of this window's Element.
   const at =
     event.target && "closest" in event.target ? /** @type {Element} */ (event.target) : null;
   if (at?.closest(TYPED_IN)) return;
-  // A button that has the focus is pressed with the space bar.
+  // The space bar presses the focused button.
   if (event.key === " " && at?.closest("button, summary, [role=tab], [role=button]")) return;
   const combination = written(event);
   if (opening) {

@@ -36,7 +36,7 @@ function drawKeys(list) {
 }
 
 /**
- * Show all keys: those bound so far at once, those of views not opened yet once they are loaded.
+ * Show all keys: first those bound so far, then those of views that have yet to be loaded.
  *
  * @param {KeyListActions} actions
  */
@@ -90,8 +90,8 @@ function showKeys({ loadAll, startTour, showExample }) {
 }
 
 /**
- * Bind `?` and the button to the dialog. `loadAll()` loads the modules that bind keys and were not
- * needed so far; `startTour()` is what its button "Tour" does.
+ * Bind `?` and the button to the dialog. `loadAll()` loads the remaining modules that bind keys;
+ * `startTour()` is called by the dialog's button "Tour".
  *
  * @param {KeyListActions} actions
  */

@@ -3,11 +3,11 @@
 import { attempt } from "./toasts.js";
 
 /** @type {Map<string, symbol>} */
-const newest = new Map(); // per id the request that was sent last
+const newest = new Map(); // the last request sent, by id
 
 /**
- * Load a member by `load(id)`. Resolves to `{ member }`, null in it where it is gone, or to null
- * where a newer request for it has been sent since.
+ * Load a member by `load(id)`. Resolves to `{ member }`, with member null if it was deleted, or to
+ * null if a newer request for it has been sent since.
  *
  * @template T
  * @param {string} id

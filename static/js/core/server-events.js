@@ -8,18 +8,18 @@ import { state, update } from "./state.js";
 
 /** @typedef {{ opened: () => void, returned: () => void, seen: () => void, clips: (id: string) => void, languages: (id: string) => void, jobs: (job: Job) => void }} Handlers */
 
-const RETRY = 1000; // ms, as the server asks of the browser
-const UNSEEN = 30_000; // ms without being looked at after which a page gives its connection back
+const RETRY = 1000; // ms, the same as the server's `retry` field
+const UNSEEN = 30_000; // ms after which a hidden page closes its connection
 
 /** @type {EventSource | null} */
-let current = null; // null while nobody looks at the page
+let current = null; // null while the page is hidden
 
 /**
- * Listen to every change on the server. `handlers` has a function per kind of event, `clips(id)`,
- * `languages(id)` and `jobs(job)`; `opened()`, which loads what was missed, is called whenever the
- * stream opens, `returned()` when it opens after a break, and `seen()` when it opens because
- * somebody looks at the page again: a browser has six connections to a server for all its tabs, so
- * a tab in the background keeps none.
+ * Listen to every change on the server. `handlers` has a function per kind of event: `clips(id)`,
+ * `languages(id)` and `jobs(job)`. `opened()`, which loads missed changes, is called whenever the
+ * stream opens, `returned()` when it opens after a break, and `seen()` when it opens because the
+ * page is visible again. A browser has six connections to a server for all its tabs, so a tab in
+ * the background keeps none.
  *
  * @param {Handlers} handlers
  */
@@ -27,7 +27,7 @@ export function followServer(handlers) {
   let unseen = 0;
   const leaveLater = () => {
     unseen = setTimeout(() => {
-      // Clips on their way into the test set are tested in the background too.
+      // A page in the background, too, tests its clips that wait for the test set.
       if (state.pending.length) return leaveLater();
       current?.close();
       current = null;
@@ -61,7 +61,7 @@ function listen(handlers, after) {
   };
   stream.onopen = () => {
     update({ connected: true });
-    // The server sends no event twice: what changed since everything was loaded is loaded again.
+    // The server repeats no event, so everything is loaded again after a break.
     handlers.opened();
     if (after) {
       after();
@@ -86,7 +86,7 @@ function listen(handlers, after) {
   stream.addEventListener("test-sets", (event) => update({ labelled: { id: data(event).id } }));
   stream.addEventListener("tests", (event) => {
     const run = data(event);
-    // The end of a run is its answer's; a late event must not show it as running again.
+    // The answer to the request ends a run; a late event must not show it as running again.
     if (state.testing?.id === run.id) update({ testing: run });
   });
   stream.addEventListener("jobs", (event) => {

@@ -1,4 +1,4 @@
-// Who is signed in: the name and the role of the token, what that role cannot do, and log-out.
+// The session: the name and the role of the token, what that role cannot do, and log-out.
 
 import * as api from "./api.js";
 import { byId } from "./dom.js";
@@ -8,33 +8,33 @@ import { attempt } from "./toasts.js";
 /** @import { Session } from "./types.d.ts" */
 
 /**
- * The words for who is signed in; empty where the server needs no token.
+ * The name and role of the signed-in user in words; empty where the server needs no token.
  *
  * @param {Pick<Session, "name" | "role">} session
  */
 export const describeSession = ({ name, role }) => (name ? `Signed in as ${name} (${role})` : "");
 
-/** Why a reader cannot press what writes. */
+/** Why readers cannot use controls that write. */
 export const READS_ONLY =
   "Your token has the role read. Ask an administrator for one with the role edit to change this.";
 
-/** Whether what is done here may change what others see. */
+/** Whether the user may change shared data. */
 export const mayWrite = () => state.role !== "read";
 
 /**
- * Disable controls that write, and say why; one that enables itself again is disabled again.
+ * Disable controls that write, and say why; a control that gets enabled again is disabled again.
  *
  * @param {Iterable<HTMLElement>} controls
  */
 function disable(controls) {
   for (const control of controls) {
     if (control.title !== READS_ONLY) control.title = READS_ONLY;
-    control.dataset.writes = "no"; // A label of a disabled field looks as it does.
+    control.dataset.writes = "no"; // The label of a disabled field looks disabled too.
     if ("disabled" in control && !control.disabled) control.disabled = true;
   }
 }
 
-/** Disable all that writes, now and whenever something is drawn. */
+/** Disable all controls that write, now and whenever something is drawn. */
 function holdToReading() {
   const hold = () => disable(document.querySelectorAll("[data-writes]"));
   new MutationObserver(hold).observe(document.body, {

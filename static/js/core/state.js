@@ -1,4 +1,4 @@
-// The state of the page, in one place; what a link should restore is in the URL.
+// The state of the page, in one place; the part that a link restores is in the URL.
 
 /** @import { Clip, Language, SelectedRange, State } from "./types.d.ts" */
 
@@ -79,7 +79,7 @@ const values = {
 /** @type {{ names: (keyof State)[], react: (state: State) => void }[]} */
 const listeners = [];
 
-let returning = false; // to another entry of the browser's history, whose URL is there already
+let returning = false; // by Back or Forward: the URL is already set
 
 /** The present values; read only. */
 export const state = values;
@@ -88,7 +88,7 @@ export const state = values;
 const keysOf = (change) => /** @type {any} */ (Object.keys(change));
 
 /**
- * Change values, write them to the URL, and call the listeners of those that changed.
+ * Change values, update the URL, and call the listeners of the changed values.
  *
  * @param {Partial<State>} change
  */
@@ -114,7 +114,7 @@ export function follow(names, react) {
 }
 
 /**
- * Resolve once the lists of clips, samples and languages are there.
+ * Resolve once the lists of clips, samples and languages are loaded.
  *
  * @returns {Promise<void>}
  */
@@ -173,7 +173,7 @@ export const selectedClip = () => values.clips.find((clip) => clip.id === values
 export const lengthOf = (clip) => values.timeline?.time.at(-1) ?? clip.duration ?? 0;
 
 /**
- * The range in seconds on which buttons act, and whether it is a take's own.
+ * The range in seconds on which buttons act, and whether it is the range of a take.
  *
  * @returns {SelectedRange | null}
  */

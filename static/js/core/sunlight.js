@@ -27,7 +27,7 @@ function toggle() {
   try {
     localStorage.setItem(KEY, on ? SUN : "");
   } catch {
-    /* a browser that keeps nothing begins anew */
+    /* a browser without storage starts with the default */
   }
 }
 

@@ -21,7 +21,7 @@ export function cut(text, most) {
  * @returns {T}
  */
 export function limit(input, most) {
-  // In the capturing phase: who listens for the input reads the text as it stays.
+  // In the capturing phase, so that other listeners of the input read the shortened text.
   input.addEventListener(
     "input",
     () => {

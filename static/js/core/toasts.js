@@ -6,7 +6,7 @@ import { byId, h, iconButton } from "./dom.js";
 const SHOWN_FOR = { info: 6000, error: 15000 };
 
 /**
- * Reserve the height of the messages, so that they lie over nothing that is used next.
+ * Reserve the height of the messages, so that they cover no control that is used next.
  *
  * @param {HTMLElement} box
  */
@@ -25,8 +25,8 @@ export function reserveToasts() {
 }
 
 /**
- * Show a message. `action` is `{ label, run }`: an "Undo", or a way out.
- * One with the same text replaces the older one. Returns its element.
+ * Show a message. `action` is `{ label, run }`: an "Undo", or a remedy. It replaces an older
+ * message with the same text. Returns its element.
  *
  * @param {string} title
  * @param {string} [detail]
@@ -86,7 +86,7 @@ export function complain(error, doing) {
 }
 
 /**
- * Run a task and show its error, if any, as a toast; the answer is null then.
+ * Run a task; an error is shown as a toast, and the result is then null.
  *
  * @template T
  * @param {string} doing

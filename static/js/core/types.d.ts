@@ -1,4 +1,5 @@
-// What the page keeps and what the API answers; the schemas come from its OpenAPI description.
+// Types of the page's state and of the API's answers; the schemas come from its OpenAPI
+// description.
 
 import type { components } from "./api-schema.d.ts";
 
@@ -69,7 +70,7 @@ export interface Rate {
   high: number;
 }
 
-/** The estimate of what an edited gesture does to its language. */
+/** The estimated effect of an edited gesture on its language. */
 export type Outlook = Omit<Schemas["OutlookView"], "pairs" | "missed" | "refused"> & {
   pairs: { gestures: [string, string]; distance: number | null; confusion: Rate | null }[];
   missed: Rate | null;
@@ -97,13 +98,13 @@ export interface Alignment {
   costs: number[][];
 }
 
-/** How a take differs from the expected gesture; `start` is null where it does throughout. */
+/** A difference of a take from the expected gesture; `start` is null if it lasts throughout. */
 export interface Lesson {
   words: string;
   start: number | null;
 }
 
-/** What an intervention does to the other gestures of the language. */
+/** The side effect of an intervention on the other gestures of the language. */
 export interface SideEffect {
   right_before: number;
   right_after: number;
@@ -111,7 +112,7 @@ export interface SideEffect {
   lost: string[];
 }
 
-/** What an intervention changes, and in which words. */
+/** What an intervention changes, also in words. */
 export type Intervention = { words: string } & (
   | { kind: "trim"; start: number; end: number }
   | { kind: "voter_weight" | "weight_factor"; voter: string; factor: number }
@@ -123,7 +124,7 @@ export type Intervention = { words: string } & (
   | { kind: "demonstration" | "further_demonstration"; label: string }
 );
 
-/** What of a movement may count or not. */
+/** The properties of a movement that can count or not. */
 export type SwitchName = "direction" | "tempo" | "mirror" | "hand_shape";
 
 /** A change under which the take is recognised as expected. */
@@ -134,7 +135,7 @@ export interface Counterfactual {
   effect: SideEffect | null;
 }
 
-/** Why a take was recognised as it was; the fields that the page reads. */
+/** The explanation of a recognition; the fields that the page reads. */
 export interface Explanation {
   id: string;
   expected: string;
@@ -174,7 +175,7 @@ export interface Recognition {
   fault: string | null;
 }
 
-/** The answer to a take that a diver practised. */
+/** The answer to a practised take. */
 export type PracticeAnswer = Omit<Schemas["PracticeAnswerView"], "lesson"> & {
   lesson: Lesson | null;
 };
@@ -183,7 +184,7 @@ export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;
 };
 
-/** An edit that would help against a confusion, and the rate with and without it. */
+/** An edit that reduces a confusion, and the rate with and without it. */
 export interface Remedy {
   kind: string;
   gesture: string;
@@ -240,7 +241,7 @@ export interface TriggerEstimate {
   set_off_by: string[];
 }
 
-/** How far a health check is; `total` is 0 while it is not known. */
+/** The progress of a health check; `total` is 0 while it is unknown. */
 export interface CheckProgress {
   id: string;
   revision: number;
@@ -249,7 +250,7 @@ export interface CheckProgress {
   total: number;
 }
 
-/** How far the MCAP file of a clip, or a table of takes, is. */
+/** The progress of a clip's MCAP file, or of a table of takes. */
 export interface ExportProgress {
   /** The export, as the page named it. */
   id: string;
@@ -275,7 +276,7 @@ export interface HealthState {
 /** The clips whose poses are found one after the other, and how many frames are done. */
 export interface Batch {
   members: string[];
-  /** The first frames that were reported, and when, in milliseconds. */
+  /** The first reported number of frames, and its time in milliseconds. */
   began: { frames: number; at: number } | null;
   frames: number;
   left: number;
@@ -299,7 +300,7 @@ export interface Upload {
   cancel: (() => void) | null;
 }
 
-/** Where the clock of the workspace stands. */
+/** The position of the workspace's clock. */
 export interface Position {
   playing: boolean;
   frame: number;
@@ -310,7 +311,7 @@ export interface Position {
   picture: number | null;
 }
 
-/** A counterfactual that was recognised with, on a copy of the language, and is not kept yet. */
+/** A counterfactual tried on a copy of the language and not kept yet. */
 export interface Trial {
   change: Intervention;
   base: Partial<State>;
@@ -324,18 +325,18 @@ export interface PendingClip {
   expected: string | null;
 }
 
-/** How much of the library is known. */
+/** How much of the library is loaded. */
 export interface Library {
-  /** The clip up to which all newer ones are known; null where all are. */
+  /** The oldest clip of the part loaded without gaps; null if all are loaded. */
   last: Clip | null;
-  /** The number of clips older than that. */
+  /** The number of older clips. */
   older: number;
 }
 
 export interface State {
   view: string | null;
   source: string | null;
-  /** The clips that are known: the newest, those that were asked for, those that something names. */
+  /** The loaded clips: the newest, and those requested or referred to by id. */
   clips: Clip[];
   library: Library;
   uploads: Upload[];
@@ -352,21 +353,21 @@ export interface State {
   why: Explanation | null;
   trial: Trial | null;
   question: { clip: string; expected: string } | null;
-  /** What the token may do; null until the server has told. */
+  /** What the token may do; null until the server has answered. */
   role: Session["role"] | null;
-  /** What the token's name keeps and may keep; null where nothing limits it. */
+  /** What the token's name stores and may store; null without a limit. */
   quota: Quota | null;
   connected: boolean | null;
-  /** How often the server came back: what could not be asked meanwhile is asked then. */
+  /** How often the server came back; failed requests are then repeated. */
   returns: number;
   loaded: boolean;
   health: HealthState | null;
   checking: CheckProgress | null;
   exporting: ExportProgress | null;
-  /** How far a table of takes is; its id is the table's. */
+  /** The progress of a table of takes; its id is the table's. */
   tabling: ExportProgress | null;
   testSet: TestSet | null;
-  /** How far the run of the test set is; null while none runs. */
+  /** The progress of the test set's run; null while none runs. */
   testing: { id: string; done: number; total: number } | null;
   /** The language whose test set changed on the server. */
   labelled: { id: string } | null;
@@ -389,7 +390,7 @@ export interface State {
   paused: string | null;
 }
 
-/** Something done that can be undone: plain data of a registered kind. */
+/** An action that can be undone: plain data of a registered kind. */
 export interface Action {
   title: string;
   kind: string;
@@ -411,11 +412,11 @@ export interface Field {
   required?: boolean;
   hint?: string;
   multiline?: boolean;
-  /** Characters at most. */
+  /** The greatest number of characters. */
   most?: number;
 }
 
-/** A gesture to be made of a clip's take; `takes` is null while the clip's poses are being found. */
+/** A gesture to make from a clip's take; `takes` is null while the clip's poses are being found. */
 export interface GestureRow {
   key: string;
   clip: Clip;
@@ -454,7 +455,7 @@ export type MenuItem =
   | { text: string; run: () => unknown; href?: undefined; writes?: boolean }
   | { text: string; href: string; run?: undefined; writes?: undefined };
 
-/** The range in seconds on which buttons act, the part of it to show, and the take it is, if any. */
+/** The range in seconds on which buttons act, the part of it to show, and its take, if any. */
 export interface SelectedRange {
   start: number;
   end: number;
@@ -462,7 +463,7 @@ export interface SelectedRange {
   take: Take | null;
 }
 
-/** How far an upload is: its address, the bytes received, and the clip's id once it is whole. */
+/** The progress of an upload: its address, the bytes received, and the clip's id once complete. */
 export interface Stand {
   place: string;
   offset: number;

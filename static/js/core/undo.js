@@ -24,8 +24,8 @@ let { done, undone } = stored() ?? { done: [], undone: [] };
 const kinds = new Map();
 
 /**
- * Register how actions of a kind are undone: `undo(action)` and `redo(action)` ask the server and
- * resolve when it is done; `record(action)`, if given, is called when one is recorded.
+ * Register how actions of a kind are undone: `undo(action)` and `redo(action)` call the server and
+ * resolve when it has answered; `record(action)`, if given, is called when one is recorded.
  *
  * @param {string} kind
  * @param {{ undo: (action: any) => Promise<unknown>, redo: (action: any) => Promise<unknown>, record?: (action: any) => void }} handlers
@@ -70,7 +70,7 @@ async function step(from, to, how, words) {
   }
 }
 
-// Sequential: a second key press may come while the first still waits for the server.
+// One after another: a second key press may come while the first waits for the server.
 let working = Promise.resolve();
 
 /** Undo the newest action; resolves when that is done. */

@@ -1,5 +1,5 @@
-// Names for what the page has the server do, by which it knows the progress as its own.
+// Names for tasks that the page starts on the server, so that it recognises their progress events.
 
-/** A name that no other tab gives. Over plain HTTP browsers have no `crypto.randomUUID`. */
+/** A unique name across tabs. Over plain HTTP browsers have no `crypto.randomUUID`. */
 export const uniqueId = () =>
   Array.from(crypto.getRandomValues(new Uint32Array(4)), String).join("-");

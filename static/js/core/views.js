@@ -113,13 +113,13 @@ async function show() {
   await loading;
 }
 
-/** Load every view's module, also of those that were not opened so far. */
+/** Load the modules of all views, also of those not opened yet. */
 export const loadViews = () => Promise.allSettled(views.map(({ load }) => load?.()));
 
 /**
- * Show the selected one of `list`. `load()` imports the view's
- * module, which exports `open(section)`, called when the view is first shown. A passing view has a
- * tab only while it is open: elsewhere there is nothing it could show.
+ * Show the selected view of `list`. `load()` imports the view's module, which exports
+ * `open(section)`, called when the view is first shown. A passing view has a tab only while it is
+ * open, since it has nothing to show otherwise.
  *
  * @param {View[]} list
  */

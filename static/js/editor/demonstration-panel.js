@@ -19,7 +19,7 @@ import { chosenIn } from "./salient-keypoints.js";
 /** @import { Proposal } from "./salient-keypoints.js" */
 
 /**
- * What is on display: of a clip, or as the language keeps it.
+ * The demonstration on display: from a clip, or as stored in the language.
  *
  * @typedef {{ id: string, poses: Poses, takes: Take[], timeline: Timeline } | { id: null, poses: Poses, takes: Take[] }} Source
  */
@@ -38,7 +38,7 @@ export function take({ language, gesture, drawn, pick }) {
   /** @type {Source | null} */
   let source = null;
   /** @type {string | null | undefined} */
-  let opening; // the clip of what is on its way; null is what the language keeps
+  let opening; // the clip being loaded; null: as stored in the language
   let frame = 0;
   /** @type {string[]} */
   let chosen = [];
@@ -286,7 +286,7 @@ export function take({ language, gesture, drawn, pick }) {
 
   const wantedClip = () => draft().clip?.clip_id ?? null;
 
-  /** Show a demonstration: of a clip, or as the language keeps it. */
+  /** Show a demonstration: from a clip, or as stored in the language. */
   async function open() {
     const id = wantedClip();
     if ((source && source.id === id) || opening === id) return;
@@ -294,7 +294,7 @@ export function take({ language, gesture, drawn, pick }) {
     opening = id;
     const none = id === null && (gesture === null || drawn);
     const loaded = none ? null : await load(id);
-    if (opening !== id) return; // Another one is on its way, or this one is shown already.
+    if (opening !== id) return; // Another one is loading, or this one is already shown.
     opening = undefined;
     if (!loaded || wantedClip() !== id) {
       element.classList.toggle("bare", !loaded);

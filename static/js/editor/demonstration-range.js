@@ -15,7 +15,7 @@ const SAME_MOMENT = 1e-3; // s, as the server compares a range with a take
 const near = (one, other) => Math.abs(one - other) <= SAME_MOMENT;
 
 /**
- * The take whose own range, from salute to salute, is meant; null for a range by hand.
+ * The take whose whole range, from salute to salute, is selected; null for a range by hand.
  *
  * @param {Where | null} where
  * @param {Take[]} takes
@@ -25,7 +25,7 @@ export const takeOf = (where, takes) =>
   null;
 
 /**
- * First and last frame of what is meant; of null, a demonstration as the language keeps it, all.
+ * First and last frame of a range; null, a demonstration stored in the language, means all.
  *
  * @param {Where | null} where
  * @param {Take[]} takes
@@ -41,7 +41,7 @@ export function framesOf(where, takes, time) {
 }
 
 /**
- * A whole take of a clip, or where nobody salutes all of it.
+ * A whole take of a clip, or the whole clip if it has no salutes.
  *
  * @param {string} clip
  * @param {Take[]} takes

@@ -20,7 +20,7 @@ const SWITCHES = ["direction", "tempo", "mirror", "hand_shape"];
 const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
 
 /**
- * Whether a draft shows the gesture by another demonstration than the one that is saved.
+ * Whether a draft has another demonstration than the saved gesture.
  *
  * @param {string | null} gesture
  * @param {Pick<Draft, "clip">} values
@@ -30,7 +30,7 @@ const isAnew = (gesture, { clip }, saved) =>
   Boolean(clip) && (gesture === null || !same(clip, saved.clip));
 
 /**
- * What of a draft changes what is recognised.
+ * The values of a draft that affect recognition.
  *
  * @param {Draft} draft
  * @param {boolean} anew
@@ -44,7 +44,7 @@ function content({ clip, salient, ...values }, anew) {
 }
 
 /**
- * What is asked of the preview. A drawing without its demonstration keeps its keypoints.
+ * The request for a preview. A drawing without its demonstration keeps its keypoints (`fixed`).
  *
  * @param {string | null} gesture
  * @param {Draft} values
@@ -57,7 +57,7 @@ export const requestOf = (gesture, values, saved, fixed = false) => ({
 });
 
 /**
- * Only what was changed: the rest may meanwhile be another's.
+ * Only the changed values: somebody else may meanwhile have edited the others.
  *
  * @param {string} gesture
  * @param {Draft} values
@@ -78,7 +78,7 @@ function changeOf(gesture, values, saved) {
 }
 
 /**
- * Save a draft as one revision of the language, which can be taken back.
+ * Save a draft as one revision of the language, which can be undone.
  *
  * @param {Language} language
  * @param {string | null} gesture

@@ -9,17 +9,18 @@
  */
 
 /**
- * What is edited; no keypoints are those proposed, and no clip is the demonstration as saved.
+ * The edited values; `salient` null means the proposed keypoints, `clip` null the saved
+ * demonstration.
  *
  * @typedef {Pick<Gesture, "label" | "description" | SwitchName> & { command: string, salient: string[] | null, clip: Where | null }} Draft
  */
 
 const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.
 const MOST_STEPS = 200; // Of undo: an hour of tireless clicking, a few hundred bytes each.
-const SHELF_LIFE = 30 * 24 * 3600e3; // ms. Nobody remembers what a draft of last month was for.
+const SHELF_LIFE = 30 * 24 * 3600e3; // ms. An older draft is dropped.
 
 /** @type {string | null} */
-let place = null; // under which the draft is kept
+let place = null; // the key under which the draft is stored
 /** @type {Draft | null} */
 let base = null;
 /** @type {Draft | null} */
@@ -51,7 +52,7 @@ function begun(values) {
 /** The draft as it is; read only. */
 export const draft = () => begun(now);
 
-/** What the draft began from; read only. */
+/** The values that the draft began from; read only. */
 export const saved = () => begun(base);
 
 export const isChanged = () => now !== null && !same(now, base);
@@ -62,7 +63,7 @@ export const canUndo = () => past.length > 0;
 export const canRedo = () => future.length > 0;
 
 /**
- * The key of the draft of a gesture of a language; of a new one, by where it is shown.
+ * The storage key of a gesture's draft; a new gesture is identified by where it is shown.
  *
  * @param {string} language
  * @param {string} gesture
@@ -102,7 +103,7 @@ export function change(values, field = null) {
   turn(next);
 }
 
-/** The text field was left: what is typed next is another step. */
+/** Called when the text field loses the focus: further typing is another step. */
 export const rest = () => {
   typing = null;
 };
@@ -132,7 +133,7 @@ function turn(next, steps = past) {
   listener();
 }
 
-/** Forget the draft: it was saved, or is not wanted. */
+/** Delete the draft, after it was saved or dropped. */
 export function forget() {
   if (place) localStorage.removeItem(place);
 }
@@ -148,7 +149,7 @@ function keep() {
       localStorage.setItem(place, JSON.stringify({ values: now, time: Date.now() }));
     else forget();
   } catch {
-    /* A full or forbidden store: the draft lives as long as its tab. */
+    /* Storage is full or forbidden: the draft lives as long as its tab. */
   }
 }
 

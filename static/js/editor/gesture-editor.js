@@ -38,7 +38,7 @@ import { keypoints, toggle } from "./salient-keypoints.js";
 /** @import { Draft, Where } from "./gesture-draft.js" */
 
 /**
- * What is edited; no gesture is a new one.
+ * The gesture that is edited; `gesture` is null for a new one.
  *
  * @typedef {{ language: Language, gesture: string | null, key: string }} Subject */
 
@@ -225,7 +225,7 @@ function build(section, about) {
       showDone("Gesture saved", `${label}, in ${now.name}`);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
-      else abandon(); // Somebody else's change was preferred to this one.
+      else abandon(); // The user kept somebody else's edit.
     } finally {
       saving.disabled = false;
     }
@@ -296,7 +296,7 @@ function close() {
   editor = null;
 }
 
-/** After leaving by the browser's Back: show that the draft is kept. */
+/** After the browser's Back: show that the draft is kept. */
 function left() {
   if (!editor) return;
   const { gesture, language } = editor.about;
@@ -370,7 +370,7 @@ function explain(section) {
 const isKnown = ({ language, gesture }) =>
   gesture === null || language.gestures.some((each) => each.label === gesture);
 
-/** Whether all is loaded, and nothing of it can be edited. */
+/** Whether everything is loaded and there is nothing to edit. */
 const nothingComes = () =>
   state.loaded && (state.gestures || !state.languages.length) && (state.gesture || !state.clip);
 
@@ -409,7 +409,7 @@ export function open(section) {
       return build(section, about);
     },
   );
-  // What could not be asked while the server was away is asked now.
+  // The server is back: repeat the requests that failed meanwhile.
   follow(["returns"], () => editor?.changed());
   guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
 }
@@ -435,7 +435,7 @@ keys(["["], "Let the demonstration start here", () => editor?.take.setHere("star
 keys(["]"], "Let the demonstration end here", () => editor?.take.setHere("end"));
 
 /**
- * The language has another revision: where this gesture stayed as it was, that one is changed.
+ * Continue on a newer revision of the language, if it left this gesture unchanged.
  *
  * @param {Subject} edited
  * @param {Subject} about

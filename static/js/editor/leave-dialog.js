@@ -4,7 +4,7 @@ import { byId, h } from "../core/dom.js";
 import { forget } from "./gesture-draft.js";
 
 /**
- * Ask. Resolves to whether to leave.
+ * Ask whether to leave the editor; resolves to the answer.
  *
  * @returns {Promise<boolean>}
  */

@@ -1,4 +1,4 @@
-// Asking the server what the draft would be: shortly after the last change, the newest answer wins.
+// Requesting the preview of a draft, shortly after its last change; only the newest answer counts.
 
 import * as api from "../core/api.js";
 
@@ -7,8 +7,8 @@ import * as api from "../core/api.js";
 const SETTLED = 120; // ms without a change: dragging a slider makes many.
 
 /**
- * Return `ask(request)`; `shown(preview, null)` is called with what the gesture would be, then
- * `shown(preview, estimate)` with its estimated rates, `failed(error)` instead of them.
+ * Return a function that requests a preview: `shown(preview, null)` is called with the gesture,
+ * then `shown(preview, estimate)` with its estimated rates too; `failed(error)` if either fails.
  *
  * @param {{ shown: (preview: Preview, estimate: Outlook | null) => void, failed: (error: Error) => void }} answers
  * @returns {(language: string, body: object) => void}
@@ -31,7 +31,7 @@ export function previewing({ shown, failed }) {
         if (asked === newest) shown(preview, estimate);
       } catch (error) {
         if (asked !== newest) return;
-        newest = ""; // The same again may succeed.
+        newest = ""; // The same request may succeed later.
         failed(error);
       }
     }, SETTLED);

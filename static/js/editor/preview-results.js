@@ -11,7 +11,7 @@ const HEIGHT = 22; // of a descriptor's drawing, in its own units
 const percent = (share) => `${share > 0 && share < 0.01 ? "under 1" : Math.round(100 * share)} %`;
 
 /**
- * A descriptor of many numbers as bars around a line, of one as the number.
+ * A descriptor: bars around a line, or the number itself if there is only one.
  *
  * @param {Descriptor} descriptor
  */
@@ -94,7 +94,7 @@ export function image() {
 }
 
 /**
- * One estimated rate, as a bar, a number and a mark.
+ * An estimated rate as a bar, a number and a mark.
  *
  * @param {string | HTMLElement} words
  * @param {Rate} share

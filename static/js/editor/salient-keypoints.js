@@ -1,4 +1,4 @@
-// The choice of the salient keypoints: a bar each for how far it moves, with a checkbox.
+// The choice of salient keypoints: for each a checkbox, and a bar that shows how far it moves.
 
 import { h, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
@@ -21,7 +21,7 @@ export function chosenIn(preview) {
 }
 
 /**
- * Switch a keypoint on or off. The last one stays: without any there is no gesture.
+ * Switch a keypoint on or off. The last one stays on: a gesture needs at least one.
  *
  * @param {string} landmark
  * @param {Proposal | null} preview
@@ -36,7 +36,7 @@ export function toggle(landmark, preview) {
 }
 
 /**
- * What the bars mean, or why there are none.
+ * The legend of the bars, or why there are none.
  *
  * @param {Preview | null} preview
  * @param {number} count

@@ -1,4 +1,4 @@
-// The table of all takes of clips: recognised at once, sorted, filtered, and kept as CSV.
+// The table of all takes of clips: recognised at once, sorted, filtered, and saved as CSV.
 
 import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/session-export.js";
@@ -47,7 +47,7 @@ function advance(progress) {
 }
 
 /**
- * Show a take in the studio, where its votes and reasons are.
+ * Show a take in the studio, with its votes and explanation.
  *
  * @param {TakeRow} row
  */
@@ -79,7 +79,7 @@ function cellsOf(row) {
 }
 
 /**
- * The table with its filter, its order and its file.
+ * The table with its filter, its order and its export.
  *
  * @param {TakeTable} table
  */
@@ -165,7 +165,7 @@ function clipChoice() {
   };
   const words = h("b");
   const rows = h("div", { className: "take-clip-rows" });
-  /** Offer the clips that are known; what is chosen among them stays. */
+  /** Offer the loaded clips; the choice among them stays. */
   const offer = () => {
     const ready = state.clips.filter(({ status }) => status === "done");
     for (const { id } of ready)

@@ -1,4 +1,4 @@
-// The takes of the library's clips, of which gestures are made: loaded a few clips at a time.
+// The takes of the library's clips, for making gestures: loaded a few clips at a time.
 
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
@@ -8,7 +8,7 @@ import { triggerKey } from "../languages/language-trigger.js";
 
 /** @import { Take } from "../core/types.d.ts" */
 
-const AT_ONCE = 4; // A library has hundreds of clips, and what else is asked for must not wait.
+const AT_ONCE = 4; // A library has hundreds of clips; other requests must not wait.
 
 /** @type {Map<string, Take[]>} */
 export const takesByClip = new Map(); // they change with the language's trigger alone
@@ -19,17 +19,17 @@ const failed = new Set();
 let foundBy = ""; // the trigger by which they were found
 let loading = 0;
 
-/** Ask again, at the next time, for the takes that could not be loaded. */
+/** Let the next call retry the takes that could not be loaded. */
 export function forgetFailures() {
   for (const id of failed) asked.delete(id);
   failed.clear();
 }
 
 /**
- * Load the takes of the clips that have poses by now, as long as somebody wants them.
+ * Load the takes of the clips whose poses are found, as long as `wanted()` is true.
  *
  * @param {() => boolean} wanted
- * @param {() => void} found  what to do when those of a clip are there
+ * @param {() => void} found  called when the takes of a clip are loaded
  */
 export function loadTakesOfClips(wanted, found) {
   const key = triggerKey(state);
@@ -51,12 +51,13 @@ export function loadTakesOfClips(wanted, found) {
 }
 
 /**
- * Load the takes of one clip; those that come for a former trigger are dropped.
+ * Load the takes of one clip; an answer for a former trigger is dropped.
  *
  * @param {string} id
  * @param {string | null} by  the language whose trigger it is
  * @param {string} key  of that trigger
- * @returns {Promise<boolean>} whether the server is away, which is no failure of this clip
+ * @returns {Promise<boolean>} whether the server is away, which does not count as a failure of this
+ * clip
  */
 async function loadOne(id, by, key) {
   asked.add(id);

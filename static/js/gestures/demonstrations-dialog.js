@@ -37,7 +37,7 @@ export const withMarks = (thumbnail) =>
   `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
 
 /**
- * The fault of a demonstration in two words; its clause says the rest.
+ * The fault of a demonstration in two words; `fault` has the full text.
  *
  * @param {Pick<Source, "salutes" | "fault">} source
  */
@@ -245,7 +245,7 @@ function draw() {
   const gesture = state.gestures && gestureShown();
   if (!gesture) return byId("dialog").close();
   const { demonstrations } = gesture;
-  // Only what changed is drawn anew: a link or button that has the focus stays.
+  // Only changed content is drawn anew, so that a focused link or button stays.
   const now = JSON.stringify(demonstrations.map((each) => [each, clipOf(each.source)?.name]));
   if (now !== shown.drawn) {
     shown.drawn = now;

@@ -110,7 +110,7 @@ function draw(gesture, element) {
 }
 
 /**
- * The revision and the code by which a robot's language is compared with this one.
+ * The revision and the short code, for comparison with the language on a robot.
  *
  * @param {Language | null} language
  */
@@ -145,7 +145,7 @@ export function drawGestures({ gestures, result, languages, loaded }) {
 let shown = { result: null, clip: null };
 
 /**
- * Fill the choice of the expected label; a recognition that is opened brings its own.
+ * Fill the choice of the expected label; opening a recognition selects its label.
  *
  * @param {Gesture[]} members
  * @param {Recognition | null} result
@@ -160,7 +160,7 @@ function drawExpected(members, result) {
       clip?.name ?? "",
       members.map(({ label }) => label),
     );
-  // Without labels nothing was proposed: the language may come after the clip.
+  // The language may be loaded after the clip: until then there was no label to propose.
   shown = { result: result?.id ?? null, clip: members.length ? clip?.id : null };
   expected.replaceChildren(
     h("option", { value: "" }, "not known"),

@@ -25,7 +25,7 @@ export function labelOf(name) {
 }
 
 /**
- * The clips of which the language's demonstrations were taken.
+ * The clips that the language's demonstrations come from.
  *
  * @param {Language | null} language
  */
@@ -48,8 +48,8 @@ export function withoutGesture(clips, language) {
 }
 
 /**
- * The rows of clips, in their order. A row is chosen at first unless its clip shows a gesture of
- * the language already, or its label is one of the language's or of a row before.
+ * The rows of clips, in their order. A row is initially selected, unless its clip is already the
+ * source of a gesture of the language, or its label occurs in the language or an earlier row.
  *
  * @param {Clip[]} clips
  * @param {Map<string, Take[]>} takes by clip, of those whose poses are found
@@ -89,7 +89,7 @@ export function rangeText({ clip, takes, take, number }) {
 }
 
 /**
- * What to look at before a row is saved; empty where its take lies between two salutes.
+ * What to check before a row is saved; empty if its take lies between two salutes.
  *
  * @param {GestureRow} row
  * @param {string} [name] what a diver holds before and after a gesture
@@ -104,8 +104,8 @@ export function rangeWarning({ takes, take }, name = "Vulcan salute") {
 }
 
 /**
- * Why the chosen rows cannot be saved yet, by key, and in one sentence; `others` are the labels
- * that the language has.
+ * Why the selected rows cannot be saved yet: per key, and as one sentence; `others` are the labels
+ * of the language.
  *
  * @param {GestureRow[]} rows
  * @param {string[]} others

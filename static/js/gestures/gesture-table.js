@@ -50,11 +50,11 @@ let drawing = false;
 /** The language to save into; null for a new one. */
 const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.gestures : null);
 
-/** The clips of which gestures can be made, now or as soon as their poses are found. */
+/** The clips from which gestures can be made, now or as soon as their poses are found. */
 const usable = () => state.clips.filter(({ status }) => status === "done" || BUSY.has(status));
 
 /**
- * Show the button that opens the table, which stands out as long as several clips show no gesture.
+ * Show the button that opens the table; it is highlighted while several clips show no gesture.
  *
  * @param {State} state
  */
@@ -136,7 +136,7 @@ function drawRow(row, problem, element) {
   return drawn;
 }
 
-/** Draw once for all that comes before the next picture on the screen. */
+/** Draw once for all changes before the next repaint. */
 function drawSoon() {
   if (drawing) return;
   drawing = true;
@@ -172,7 +172,7 @@ const draftOf = ({ clip, take, label }) => ({
 });
 
 /**
- * Save into a new language; where the gestures are refused, there is none afterwards.
+ * Save into a new language; if the gestures are refused, the language is removed again.
  *
  * @param {string} name
  * @param {ReturnType<typeof draftOf>[]} drafts

@@ -1,9 +1,9 @@
-// What a gesture is made of: the keypoints that are followed, or one or two held hand shapes.
+// The content of a gesture in words: the salient keypoints, or one or two held hand shapes.
 
 import { readable } from "../core/format.js";
 
 /**
- * Whether nothing moves in it, and the hand's shape is the gesture.
+ * Whether the gesture is a held hand shape, without movement.
  *
  * @param {{ held_shapes: number }} shown
  */
@@ -18,7 +18,7 @@ export function listFollowed(shown) {
 }
 
 /**
- * How a held gesture is drawn, for those who do not see the picture.
+ * The alternative text of a held gesture's picture.
  *
  * @param {{ held_shapes: number }} shown
  */

@@ -8,8 +8,8 @@ import { percent, rateText } from "./rates.js";
 const RADIUS = 30;
 
 /**
- * The end of the ray at an angle, 0 straight down towards the camera, as seen from above; a diver
- * turned to the own left looks to the right of the picture.
+ * The end of the ray at an angle, seen from above: 0 points straight down, towards the camera; a
+ * diver turned to their own left points to the right of the picture.
  */
 function place(/** @type {number} */ degrees, /** @type {number} */ share) {
   const angle = (degrees * Math.PI) / 180;
@@ -18,7 +18,7 @@ function place(/** @type {number} */ degrees, /** @type {number} */ share) {
   );
 }
 
-/** What the plot shows, in words, for those who do not see it. */
+/** The alternative text of the plot. */
 export function anglesInWords(/** @type {GestureEstimate["angles"]} */ angles) {
   return angles
     .map(({ degrees, missed, read_as: other }) => {

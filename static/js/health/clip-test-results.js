@@ -4,7 +4,7 @@
 
 /** @typedef {ReturnType<typeof testedOf>[number]} TestedTake */
 
-/** Of a take that no revision has recognised yet. */
+/** The result of a take that no revision has recognised yet. */
 const UNKNOWN = {
   label: null,
   nearest: null,
@@ -16,8 +16,8 @@ const UNKNOWN = {
 };
 
 /**
- * The takes of a test set with their newest results, sorted as people count; `change` says whether
- * a take is better or worse since the revision before.
+ * The takes of a test set with their newest results, in natural order (2 before 10); `change` says
+ * whether a take is better or worse than with the previous revision.
  *
  * @param {TestSet | null} testSet
  */
@@ -54,7 +54,7 @@ const COLUMNS = [
 ];
 
 /**
- * A value as CSV (RFC 4180); a text that a spreadsheet would calculate is marked as text.
+ * A value as CSV (RFC 4180); a text that a spreadsheet would read as a formula is marked as text.
  *
  * @param {unknown} value
  */

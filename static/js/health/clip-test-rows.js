@@ -40,7 +40,7 @@ function labelSelect(name, value, onchange) {
 
 export const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded);
 
-/** What is not in the test yet, as `{ key, text, total, done }`: how far each is. */
+/** The progress of each clip that is not in the test yet, as `{ key, text, total, done }`. */
 function advances() {
   const uploads = uploadsHere().map(({ key, status, error, total, loaded }) => ({
     key: `upload ${key}`,
@@ -71,7 +71,7 @@ function advances() {
 }
 
 /**
- * Move texts and bars on in the rows that are there: what is just being pressed stays where it is.
+ * Update texts and bars in the existing rows, so that a control being pressed stays in place.
  *
  * @param {HTMLElement} content
  */
@@ -138,7 +138,7 @@ export function uploadRow({ key, file, status, cancel }) {
 }
 
 /**
- * Where a take and its recognition are shown.
+ * The address that shows a take and its recognition.
  *
  * @param {TestedTake} take
  * @param {TestedTake[]} takes
@@ -157,7 +157,7 @@ export function placeOf(take, takes) {
 }
 
 /**
- * How a take was recognised, and whether that is better or worse than before.
+ * The result of a take in words, and whether it is better or worse than before.
  *
  * @param {TestedTake} take
  */

@@ -28,7 +28,7 @@ import { rateText } from "./rates.js";
 
 /** @import { TestedTake } from "./clip-test-results.js" */
 
-const SAVED_BY = 60000; // ms. A busy browser reads the file some time after the click.
+const SAVED_BY = 60000; // ms. A busy browser may read the file long after the click.
 
 function drop() {
   const input = h("input", {
@@ -61,7 +61,7 @@ function drop() {
 }
 
 /**
- * The counts, meant by read; a cell opens its clip, or the list of its clips.
+ * The counts, expected by recognised label; a cell opens its clip, or the list of its clips.
  *
  * @param {TestedTake[]} takes
  */
@@ -109,7 +109,7 @@ function download(takes) {
 }
 
 /**
- * A measured share in words; empty where nothing was asked.
+ * A measured share in words; empty without takes.
  *
  * @param {TestSet["overall"]} share
  */
@@ -131,7 +131,7 @@ const rates = ({ gestures }) =>
   );
 
 /**
- * What is said of takes that count nothing.
+ * The note on takes that are not counted.
  *
  * @param {number} count
  */
@@ -145,7 +145,7 @@ const leftOutNote = (count) =>
     : null;
 
 /**
- * The clips of the library that can be tested, to be chosen.
+ * The choice among the clips of the library that can be tested.
  *
  * @param {Map<string, boolean>} ticks Clips that the user has chosen or not; more are added.
  */
@@ -187,7 +187,7 @@ function libraryChoice(ticks) {
 }
 
 /**
- * The progress of a run with its Cancel; where takes wait, the button that begins one.
+ * The progress of a run with a button that cancels it; if takes wait, the button that starts one.
  *
  * @param {TestSet} testSet
  */
@@ -326,7 +326,7 @@ export function batchSection() {
   const draw = () => {
     /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
     const testSet = state.testSet?.language_id === state.language ? state.testSet : null;
-    // The server may tell of a take before it answers the request that added its clip.
+    // The event about a take may arrive before the answer to the request that added its clip.
     const waiting = new Set(waitingClips().map(({ clip }) => clip.id));
     const takes = testedOf(testSet).filter(({ clip_id: clip }) => !waiting.has(clip));
     const demonstrations = takes.filter(({ demonstration }) => demonstration).length;

@@ -83,7 +83,7 @@ export const means = (clip, expected) =>
   setPending(state.pending.map((each) => (each.clip === clip ? { ...each, expected } : each)));
 
 /**
- * A clip that was waiting is recognised, or is no part of the test any more.
+ * Remove a clip from the waiting ones, because it is recognised or was left out.
  *
  * @param {string} clip
  */
@@ -132,7 +132,7 @@ export async function workOff() {
     try {
       await putIntoTestSet([{ clip_id: clip, expected }]);
       const kept = state.pending.find(isSame(each));
-      // Before it is recognised, so that it never stands in two rows.
+      // Before the recognition, so that the clip is never in two rows.
       forget(clip);
       if (!kept)
         await removeClip(clip); // Left out in the meantime.
@@ -140,7 +140,7 @@ export async function workOff() {
         await putIntoTestSet([{ clip_id: clip, expected: meantBy(kept) }]);
       await runWithNews();
     } catch (error) {
-      if (api.isAway(error)) break; // It is kept for when the server is back.
+      if (api.isAway(error)) break; // It stays pending until the server is back.
       complain(error, `Testing ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
       forget(clip);
     }

@@ -6,8 +6,8 @@ import { h } from "../core/dom.js";
 
 /** @typedef {{ text: string, amount: number, label: string, className?: string, open?: (() => void) | null }} Cell */
 
-const MANY = 12; // Columns; more fit into a page only when their names are written upwards.
-const STRONGEST = 55; // Per cent of the accent in a full cell: the number on it stays readable.
+const MANY = 12; // Columns; with more, their names are written upwards to fit the page.
+const STRONGEST = 55; // Per cent of the accent in a full cell; its number must stay readable.
 
 /** @type {Record<string, [number, number]>} */
 const STEPS = {

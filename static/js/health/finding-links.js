@@ -5,7 +5,7 @@ import { state, update } from "../core/state.js";
 import { address, go, here, knows } from "../core/views.js";
 
 /**
- * Two labels as the address names them; a comma in a label is not the one between them.
+ * Two labels as they are in the address, separated by a comma; commas in labels are escaped.
  *
  * @param {string} one
  * @param {string} other

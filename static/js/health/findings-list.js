@@ -1,4 +1,4 @@
-// What was found, the worst first, each with what would help and where to do it.
+// The findings, the worst first, each with its remedies and links to where to apply them.
 
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";

@@ -17,8 +17,8 @@ export const isCurrent = (health) =>
   Boolean(health && state.gestures && health.key === keyOf(state.gestures));
 
 /**
- * Check the revision on display, into `state.health`; the
- * report of the revision before stays on display until the new one is there.
+ * Check the revision on display and put the report into `state.health`; until it is complete, the
+ * previous revision's report stays on display.
  */
 export async function check() {
   const language = currentLanguage();
@@ -49,7 +49,7 @@ export async function check() {
 }
 
 /**
- * Check again where what is on display is not what was checked, or the server was away.
+ * Check again if another revision is on display than was checked, or if the server was away.
  *
  * @param {State} state
  */

@@ -161,8 +161,8 @@ function matrix(report) {
 }
 
 /**
- * Open what a thumbnail of the map stands for: the gesture beside the one that it is confused with
- * most, or the gesture alone where it was compared with none.
+ * Open the gesture of a thumbnail: beside the one that it is most often confused with, or alone if
+ * it was compared with none.
  *
  * @param {HealthReport} report
  * @param {string} label

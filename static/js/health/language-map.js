@@ -13,7 +13,7 @@ const LABEL = 18; // Height of the line under a thumbnail.
 const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
 
 /**
- * A size of which all fit with room to spare.
+ * A size at which all thumbnails fit with room to spare.
  *
  * @param {number} count
  */
@@ -21,7 +21,7 @@ const sizeOf = (count) =>
   Math.max(30, Math.min(72, Math.sqrt((WIDTH * HEIGHT) / (4 * count)) - LABEL / 2));
 
 /**
- * Bring coordinates into the drawing, one scale for both axes.
+ * Scale coordinates to the drawing, by the same factor on both axes.
  *
  * @param {Point[]} places
  * @param {number} margin
@@ -64,7 +64,7 @@ function pushApart(one, other, index, width, height) {
 }
 
 /**
- * Move thumbnails of a size apart until none hides another, staying in the drawing.
+ * Move thumbnails of a size apart, within the drawing, until none covers another.
  *
  * @param {Point[]} places
  * @param {number} size
@@ -86,8 +86,8 @@ export function apart(places, size) {
 }
 
 /**
- * The gesture that one is confused with most; null where it was compared with none. `pairs` are
- * the report's, the most confused first.
+ * The gesture that `label` is most often confused with; null if it was compared with none. `pairs`
+ * are the report's, the most confused first.
  *
  * @param {Pick<PairEstimate, "gestures">[]} pairs
  * @param {string} label
@@ -98,8 +98,8 @@ export function nearestOf(pairs, label) {
 }
 
 /**
- * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined
- * by a line; `imageOf(label)` and `open(label)` are what a thumbnail shows and does.
+ * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined by a
+ * line; a thumbnail shows the image `imageOf(label)` and calls `open(label)` when pressed.
  *
  * @param {{ points: HealthReport["map"], worst: PairEstimate[], imageOf: (label: string) => string, open: (label: string) => void }} map
  */

@@ -1,4 +1,4 @@
-// A demonstration drawn as it moves: the diver's arms at one moment, and the way its hands went.
+// A demonstration as a drawing: the diver's arms at one moment, and the paths of the hands.
 
 import { svg } from "../core/dom.js";
 
@@ -21,7 +21,7 @@ const BONES = [
 ];
 
 /**
- * The box that holds every place of some gestures, so that both are drawn in one scale.
+ * The box around all places of some gestures, so that all are drawn at one scale.
  *
  * @param {Paths[]} gestures
  */
@@ -59,7 +59,7 @@ function placeAt({ time }, path, seconds) {
 }
 
 /**
- * A line along places, interrupted where there is none.
+ * A line through places, interrupted where one is missing.
  *
  * @param {Place[]} places
  */

@@ -9,8 +9,8 @@ import { state } from "../core/state.js";
 
 /** @typedef {{ seconds: number[], cost: number }} Step */
 
-const FREE = 60; // Steps of the cursor where the two cannot be aligned: each shows its own share.
-const LONGEST = 0.5; // Seconds of one step while playing: where one of the two rests, nobody waits.
+const FREE = 60; // Steps of the cursor if the two cannot be aligned: both advance by equal shares.
+const LONGEST = 0.5; // Most seconds of a step while playing; longer rests are cut short.
 const HEIGHT = 24; // of the strip, in its own units
 
 /** @type {{ toggle: () => void, step: (by: number) => void, element: HTMLElement } | null} */

@@ -24,7 +24,7 @@ bind({
 });
 
 /**
- * The estimated confusion of two gestures, from the first's side.
+ * The estimated confusion of two gestures, seen from the first.
  *
  * @param {HealthReport | null} report
  * @param {string} one
@@ -148,7 +148,7 @@ function sideBySide(found, imageOf) {
 }
 
 /** @type {(() => void) | null} */
-let fill = null; // Draws the estimates; the report may come later than the gestures.
+let fill = null; // Draws the estimates; the report may arrive after the gestures.
 
 follow(["health"], () => fill?.());
 

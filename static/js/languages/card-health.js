@@ -1,5 +1,5 @@
-// The health line of the cards: requested when a card becomes visible, one after the other,
-// since the first answer about a revision takes the server seconds.
+// The health line of the cards: requested when a card becomes visible, one after another, since the
+// first report on a revision takes the server seconds.
 
 import * as api from "../core/api.js";
 import { plural } from "../core/format.js";
@@ -31,7 +31,7 @@ function promise(line) {
 }
 
 /**
- * The line under a card: what was found, in words and with a mark of its own.
+ * The line under a card: the findings in words and as a mark.
  *
  * @param {HTMLElement} line
  * @param {HealthReport | undefined} report
@@ -61,7 +61,7 @@ async function next() {
       reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
     write(line, reports.get(keyOf(language)));
   } catch (error) {
-    // A card without a report is no worse than before; one that is deleted is not shown any more.
+    // A card may stay without a report; a deleted language's card is about to disappear.
     line.hidden = true;
     if (error.status === 404) offered = false;
   }
@@ -73,7 +73,7 @@ const seen = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
     const line = /** @type {HTMLElement | null} */ (target.querySelector(".health"));
     const at = waiting.findIndex((each) => each.card === target);
-    // Whoever scrolls past a hundred cards does not ask for a hundred reports.
+    // Scrolling past a hundred cards must not request a hundred reports.
     if (at >= 0) waiting.splice(at, 1);
     const language = languageOf.get(target);
     if (isIntersecting && line && language) waiting.push({ card: target, language, line });

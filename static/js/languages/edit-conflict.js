@@ -68,8 +68,9 @@ async function deedsSince(from) {
 }
 
 /**
- * Let the user pick. Resolves to `{ before, language }`: the revision that was changed, and the
- * language as it is now. Throws `cancelled` when theirs is kept, and a 412 when nothing is chosen.
+ * Let the user choose. Resolves to `{ before, language }`: the revision that was edited, and the
+ * language after the edit. Throws `cancelled` if the other edit is kept, and a 412 without a
+ * choice.
  *
  * @param {{ doing: string, title: string, from: Language, mine: Language, change: (base: Language) => Promise<Language> }} edit
  */

@@ -77,7 +77,7 @@ export async function remove(language) {
 }
 
 /**
- * Show a language's history, compared with what was before its newest change.
+ * Show a language's history, with its newest revision compared to the one before.
  *
  * @param {LanguageSummary} language
  */

@@ -12,7 +12,7 @@ import { choose } from "./language-store.js";
 
 /** @import { LanguageSummary } from "../core/types.d.ts" */
 
-const PICTURES = 5; // A row of a card; the others are given as a number.
+const PICTURES = 5; // One row of a card; the others are only counted.
 
 /** @param {LanguageSummary} language */
 function pictures({ id, revision, labels }) {
@@ -60,7 +60,7 @@ function commands(language) {
 }
 
 /**
- * Draw a card, or leave the one that shows the same.
+ * Draw a card, or keep the existing one if nothing has changed.
  *
  * @param {LanguageSummary} language
  * @param {HTMLElement} [element]

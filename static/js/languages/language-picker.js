@@ -14,7 +14,7 @@ export function drawPicker({ languages, language, loaded }) {
   picker.value = language ?? "";
 }
 
-/** Bind what the header offers. */
+/** Bind the choice of the language in the header. */
 export function bindPicker() {
   /** @param {Event & { target: HTMLSelectElement }} event */
   byId("language").onchange = (event) => choose(event.target.value);

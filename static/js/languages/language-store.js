@@ -41,11 +41,11 @@ export const reloadOneLanguage = (id) =>
     },
   });
 
-/** What the sample clip that is misread shows, and what it is read as. */
+/** The misread sample clip: its name, the gesture that it shows, and the one recognised instead. */
 export const MISREAD = { name: "unfinished-triangle.mp4", expected: "triangle", read: "wedge" };
 
 /**
- * Whether a language misreads the sample clip, as it knows what the sample clips show.
+ * Whether a language misreads the sample clip, because it has both gestures.
  *
  * @param {LanguageSummary} language
  */
@@ -53,7 +53,7 @@ export const knowsSampleClips = ({ labels }) =>
   labels.includes(MISREAD.expected) && labels.includes(MISREAD.read);
 
 /**
- * The language of a first visit: with it the sample clips are recognised.
+ * The language of a first visit: one that recognises the sample clips, or else the first.
  *
  * @param {LanguageSummary[]} languages
  * @returns {LanguageSummary | null}
@@ -71,8 +71,7 @@ export async function reloadLanguage() {
 }
 
 /**
- * Show a language unless a newer revision of it is shown: of two answers on their way the older one
- * may come last.
+ * Show a language, unless a newer revision of it is on display: answers may arrive out of order.
  *
  * @param {Language} language
  */
@@ -93,7 +92,7 @@ export function choose(id) {
 }
 
 /**
- * Work on a language that was just made; it can be taken back.
+ * Select a language that was just made; this can be undone.
  *
  * @param {Language} language
  * @param {string} title

@@ -17,7 +17,7 @@ const SPOTTED = new Set(["gesture", "none"]); // Kinds of triggers that are not 
 const NO_POSES = { start: null, stop: null, start_label: "", stop_label: "" };
 
 /**
- * What the takes of clips depend on; the page finds them anew when it changes.
+ * The value that the takes of clips depend on; when it changes, takes are loaded again.
  *
  * @param {Pick<State, "gestures">} state
  */
@@ -37,7 +37,7 @@ function heldPose() {
 }
 
 /**
- * A gesture of the language as trigger, with those of now chosen.
+ * The choice of a gesture as trigger, with the current start and stop gestures selected.
  *
  * @returns {Choice}
  */
@@ -59,7 +59,7 @@ function gestureChoice() {
 }
 
 /**
- * What can be chosen; without a draft it needs a range of a clip first.
+ * The possible triggers; one without a draft first needs a range of a clip.
  *
  * @returns {Choice[]}
  */
@@ -118,7 +118,7 @@ async function save(draft) {
 }
 
 /**
- * The gestures that begin and end a take; the same one unless another is chosen.
+ * The fields for the gestures that begin and end a take; by default both are the same.
  *
  * @param {Choice} choice
  * @param {() => void} changed
@@ -165,7 +165,7 @@ function openTrigger() {
   const rows = offered.map((choice) => {
     const input = h("input", { type: "radio", name: "trigger", value: choice.name });
     input.disabled = !choice.draft;
-    // Choosing a pose again takes it from the range on display, so it must be possible to choose.
+    // A pose can be chosen again: it is then taken from the range on display.
     input.checked = choice.name === present && choice.name !== "pose";
     const choose = () => {
       input.checked = true;

@@ -20,7 +20,7 @@ const differs = (language) =>
   language !== null && (language.profile !== UNTUNED.profile || language.tuning !== null);
 
 /**
- * How a language is recognised, after "recognised"; nothing where that is as any other is.
+ * The words that follow "recognised" for a language's profile and tuning; empty for the default.
  *
  *
  * @param {Language} language

@@ -55,7 +55,7 @@ function row({ kind, before, after, words }) {
 const heading = (revision) => (revision ? `Revision ${revision.revision}` : "Nothing");
 
 /**
- * Draw what `GET /languages/{id}/comparison` answered.
+ * Draw the answer of `GET /languages/{id}/comparison`.
  *
  * @param {HTMLElement} box
  * @param {RevisionDiff} diff

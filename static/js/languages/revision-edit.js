@@ -18,7 +18,7 @@ const stored = () => {
   }
 };
 
-// Per language its newest revision as this tab left it, and the one whose content that shows.
+// Per language the newest revision that this tab made, and the revision whose content it has.
 /** @type {Record<string, { revision: number, shows: number }>} */
 const heads = stored() ?? {};
 
@@ -60,8 +60,8 @@ registerUndo("edit", {
 });
 
 /**
- * Edit the language by `change(base)`, which calls the API with the revision `base`; undo names it
- * `title`. `from` is what the user saw when beginning, `mine` what the edit makes of it: on a
+ * Edit the language by `change(base)`, which calls the API with the revision `base`; undo shows it
+ * as `title`. `from` is the language that the user began with, `mine` the same after the edit: on a
  * conflict the user chooses between `mine` and the newer revision.
  *
  * @param {string} doing

@@ -13,8 +13,8 @@ export const written = (command) =>
       : JSON.stringify(command, null, 2);
 
 /**
- * Read what was typed: `{ command, kind }`, or `{ problem }`. What begins like an object must be
- * one: a missing brace must not reach the robot as words.
+ * Parse a typed command: `{ command, kind }`, or `{ problem }`. Text that begins like an object
+ * must be one, so that an object with a missing brace does not reach the robot as words.
  *
  * @param {string} text
  * @returns {{ command?: string | Record<string, unknown> | null, kind?: string, problem?: string }}

@@ -14,10 +14,10 @@ const MOST_UNASKED = 30; // Takes that are recognised again unasked: a few secon
 /** @type {Promise<unknown> | null} */
 let running = null;
 
-let changes = 0; // Answered so far: what was asked for before such an answer is older than it.
+let changes = 0; // Number of changes so far; an answer requested before the last one is outdated.
 
 /**
- * Show the test set as it is after a change, by the answer to that.
+ * Show the test set that a change returned.
  *
  * @param {TestSet | null} testSet
  */
@@ -51,7 +51,7 @@ export function runTestSet() {
   return running;
 }
 
-/** Run after a change of the takes, of which a run that is under way does not know. */
+/** Run after a change of the takes, which a run under way does not include. */
 export async function runWithNews() {
   await running;
   await runTestSet();
@@ -76,7 +76,7 @@ export const cancelTestRun = () =>
 /** @typedef {{ clip_id: string, expected: string, start?: number, end?: number }} LabelledRange */
 
 /**
- * Add takes, or give those that are there another label; they are not recognised yet.
+ * Add takes, or relabel existing ones, without recognising them yet.
  *
  * @param {LabelledRange[]} takes
  */
@@ -85,7 +85,7 @@ export async function putIntoTestSet(takes) {
 }
 
 /**
- * Add takes, or give those that are there another label, and recognise them.
+ * Add takes, or relabel existing ones, and recognise them.
  *
  * @param {LabelledRange[]} takes
  */
@@ -127,7 +127,7 @@ export const changeWords = ({ better, worse }) =>
     .filter(Boolean)
     .join(", ");
 
-/** A change of the language was made: recognise the takes again, and say what came of it. */
+/** After an edit of the language: recognise the takes again, and show which got better or worse. */
 async function testAgain() {
   await loadTestSet();
   const { testSet } = state;
@@ -141,7 +141,7 @@ async function testAgain() {
     });
 }
 
-/** Keep the test set in step with the language on display, and with other pages. */
+/** Keep the test set up to date with the language on display and with other pages. */
 export function followTestSet() {
   let shown = "";
   follow(["gestures"], ({ gestures }) => {

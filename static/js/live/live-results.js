@@ -25,7 +25,7 @@ function verdict(result) {
 }
 
 /**
- * A recognition's entry; one of a clip leads to the place where to ask why.
+ * The list entry of a recognition; for a clip, a link to the take and its explanation.
  *
  * @param {Recognized} result
  * @param {Clip | null} clip

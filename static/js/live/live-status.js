@@ -7,9 +7,11 @@ import { state as page } from "../core/state.js";
 
 /** @import { Seen } from "../camera/live-messages.d.ts" */
 
-const FEW = 6; // frames a second: below, a gesture of a second has at most five points.
+const FEW = 6; // frames a second; with fewer, a gesture of 1 s has at most five points.
 
-/** Name what begins and ends a take by the language's trigger; no steps where nothing is held. */
+/**
+ * Show what begins and ends a take with the language's trigger; without a held trigger, no steps.
+ */
 export function nameTrigger() {
   const kind = page.gestures?.trigger?.kind ?? "salute";
   const held = kind === "salute" ? "Salute" : "Pose";
@@ -20,7 +22,7 @@ export function nameTrigger() {
 }
 
 /**
- * Show where the diver is between the salutes; null while nothing is watched.
+ * Show the diver's step between the salutes; null while no source is watched.
  *
  * @param {Seen | null} answer
  */

@@ -42,7 +42,7 @@ const BETWEEN = {
   none: "Anywhere",
 };
 
-const AFTER_SALUTE = 1000; // ms: the closing salute is let go on the clip as well.
+const AFTER_SALUTE = 1000; // ms, so that the clip shows the end of the closing salute.
 const LONGEST = 5 * 60 * 1000; // ms of one recording: a dozen gestures; memory is finite.
 
 /** @type {ReturnType<typeof openLink> | null} */
@@ -58,18 +58,18 @@ let counting = null;
 let ending = 0; // timer of a recording's end
 let recognised = 0; // takes that were recognised since the source was started
 /** @type {number | null} */
-let rate = null; // frames a second that were looked at of late
+let rate = null; // frames recently processed per second
 
 const video = () => byId("live-video");
 const fromClip = () => state.source === "clip";
-// In a drawn skeleton the models find nobody.
+// The models find nobody in a drawn skeleton.
 const pictured = () => state.clips.filter((clip) => clip.shows_pictures);
 const chosenClip = () => pictured().find((clip) => clip.id === state.clip) ?? pictured()[0] ?? null;
 
 /** @param {Trouble | null} trouble */
 const problem = (trouble) => drawTrouble(byId("live-problem"), trouble, start);
 
-/** Bring the buttons in line with what goes on. */
+/** Update the buttons to the current state. */
 function drawControls() {
   const watching = link !== null;
   const begin = byId("live-start");
@@ -191,12 +191,12 @@ async function start() {
         ? { title: "The clip cannot be played", text: error.message }
         : whyNoCamera(error, INSTEAD),
     );
-    if (cameraPossible()) drawCameraChoice(); // The one that was chosen may be gone.
+    if (cameraPossible()) drawCameraChoice(); // The chosen camera may be gone.
     return false;
   } finally {
     button.disabled = false;
   }
-  // The browser may ask for long whether the camera is allowed.
+  // The user may take long to allow the camera.
   if (state.view !== "live") {
     stop();
     return false;

@@ -4,8 +4,7 @@ import { byId, h, icon, WRITES } from "../core/dom.js";
 import { limit } from "../core/text-limit.js";
 
 /**
- * A labelled text field; `commit(text)` saves what was typed, and resolves to false where it could
- * not be.
+ * A labelled text field; `commit(text)` saves the typed text, and resolves to false if that failed.
  *
  * @typedef {object} TextField
  * @property {string} id
@@ -23,7 +22,7 @@ import { limit } from "../core/text-limit.js";
 let drawing = false;
 
 /**
- * What is typed in a field and not saved, and where its caret stands; null for nothing.
+ * The unsaved text of a field and the position of its caret; null without any.
  *
  * @param {Element | null} field
  */
@@ -82,7 +81,7 @@ export function textField({
   const leave = async () => {
     if (drawing || input.value === input.defaultValue) return;
     const before = input.defaultValue;
-    input.defaultValue = input.value; // a second "leave" has nothing more to save
+    input.defaultValue = input.value; // a second blur has nothing more to save
     if ((await commit(input.value)) === false && input.isConnected) {
       input.defaultValue = before;
       input.value = before;
@@ -157,7 +156,7 @@ export function checkbox({ id, label, checked, commit }) {
 }
 
 /**
- * A small button that shows only an icon; disabled where it can do nothing.
+ * A small button that shows only an icon; `disabled` if it would have no effect.
  *
  * @param {string} id
  * @param {string} name

@@ -8,7 +8,7 @@
 export const ROLES = ["start", "end", "cancel"];
 
 /**
- * A name that none of `taken` is: `stem`, or `stem` with a number.
+ * A name that is not in `taken`: `stem`, or `stem` with a number.
  *
  * @param {string} stem
  * @param {string[]} taken
@@ -55,7 +55,7 @@ export function moved(list, index, by) {
 const renamed = new Map();
 
 /**
- * Remember a new name: what was pressed before the form showed it still means the same entry.
+ * Remember a new name: a button pressed before the form shows it must still find its entry.
  *
  * @param {string} before
  * @param {string} after
@@ -63,7 +63,7 @@ const renamed = new Map();
 export const rememberName = (before, after) => renamed.set(before, after);
 
 /**
- * The name of the entry that has that name, or was given another one since.
+ * The present name of an entry, which may have been renamed.
  *
  * @param {{ name: string }[]} list
  * @param {string} name
@@ -105,8 +105,8 @@ export const inSlotType = (name, change) => (whole) => ({
 });
 
 /**
- * Change the list of parts that `path` leads to: [] the phrase's own, [2] that of the group in
- * third place.
+ * Change the list of parts at `path`: [] is the phrase's own list, [2] that of the group in third
+ * place.
  *
  * @param {number[]} path
  * @param {(parts: PhrasePart[]) => PhrasePart[]} change
@@ -157,7 +157,7 @@ function withSlots(parts, change) {
 const framing = (whole) => ROLES.map((role) => whole[role]);
 
 /**
- * The gesture to begin with: one that nothing uses yet, if there is one.
+ * The gesture proposed for a new entry: one that is not used yet, if there is one.
  *
  * @param {Grammar} whole
  * @param {string[]} labels
@@ -224,8 +224,7 @@ export function withSlotType(whole, labels) {
 }
 
 /**
- * Add a slot to the parts at `path` of a phrase, and something to fill it with where there is
- * nothing yet.
+ * Add a slot to the parts at `path` of a phrase, and a slot type if there is none yet.
  *
  * @param {Grammar} whole
  * @param {string} phraseName
@@ -311,7 +310,7 @@ export function withSlotTypeRenamed(whole, before, after) {
 }
 
 /**
- * A value as it was typed: a number where the slot type reads numbers.
+ * The value of a typed text: a number if the slot type reads numbers.
  *
  * @param {string} text
  * @param {SlotType["reads_as"]} [readsAs]

@@ -24,7 +24,7 @@ export const labels = () => state.gestures?.gestures.map(({ label }) => label) ?
 let drawAgain = () => {};
 
 /**
- * Call `react` when a step was refused: the form then shows what is not.
+ * Call `react` when a step was refused: the form then shows an unsaved value.
  *
  * @param {() => void} react
  */
@@ -32,13 +32,13 @@ export const followRefusals = (react) => {
   drawAgain = react;
 };
 
-// One after the other: a field may be left by pressing the next button.
+// Saved one after another: pressing a button may also leave a field, which saves it.
 /** @type {Promise<boolean>} */
 let working = Promise.resolve(true);
 
 /**
- * Save what `step(grammar)` returns, as one revision; null takes the phrases out. Resolves to
- * whether it was.
+ * Save what `step(grammar)` returns as one revision; null removes the phrases. Resolves to whether
+ * it was saved.
  */
 /** @type {(title: string, step: (grammar: Grammar) => Grammar | null) => Promise<boolean>} */
 export function save(title, step) {

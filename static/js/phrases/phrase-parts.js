@@ -155,7 +155,7 @@ function group(phrase, path, part) {
 const nounOf = (part) => ("parts" in part ? "group" : "slot" in part ? "slot" : "gesture");
 
 /**
- * What is shown, of a part of any kind.
+ * The fields of a part of any kind.
  *
  * @param {Phrase} phrase
  * @param {number[]} path
@@ -248,7 +248,7 @@ function partRow(phrase, path, part, count) {
 }
 
 /**
- * Draw the parts that `path` leads to.
+ * Draw the parts at `path`.
  *
  * @param {Phrase} phrase
  * @param {number[]} path
@@ -266,7 +266,7 @@ export function partList(phrase, path, parts) {
 }
 
 /**
- * Draw the buttons that add a part there; a group holds no groups.
+ * Draw the buttons that add a part at `path`; a group holds no groups.
  *
  * @param {Phrase} phrase
  * @param {number[]} [path]

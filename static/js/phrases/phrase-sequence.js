@@ -34,7 +34,7 @@ function chip(part) {
 const frame = (label) => (label ? h("span", { className: "chip frame" }, label) : null);
 
 /**
- * Draw a phrase with what opens and closes it.
+ * Draw a phrase with its start and end gestures.
  *
  * @param {Phrase} phrase
  */

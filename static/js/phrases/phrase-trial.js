@@ -9,30 +9,30 @@ import { grammar, saved } from "./grammar-store.js";
 
 /** @import { Gesture, PhraseEvent, PhrasesAnswer } from "../core/types.d.ts" */
 
-/** After these a message is over, and the next gesture begins another one. */
+/** The events that end a message; the next gesture begins another one. */
 const OVER = new Set(["complete", "ambiguous", "cancelled", "timed_out", "unexpected", "outside"]);
 /** @type {Record<string, string>} */
 const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
 
-// `{ key, view, settled }`: the server's answer, and whether it is about the gestures shown now
+// The server's answer; `settled` says whether it is about the gestures shown now.
 /** @type {{ key: string, view: PhrasesAnswer | null, settled: boolean } | null} */
 let answer = null;
 /** @type {(() => void)[]} */
 const listeners = [];
 
-/** What is known of the phrases on display, or null. */
+/** The latest answer about the phrases on display, or null. */
 export const found = () => answer?.view ?? null;
 
 /**
- * Call `react` whenever something new is known.
+ * Call `react` after each new answer.
  *
  * @param {() => void} react
  */
 export const followFound = (react) => listeners.push(react);
 
 /**
- * The gestures shown, "" for one that was not recognised. In the URL a line each: no label has
- * two.
+ * The gestures shown, "" for one that was not recognised. The URL has one per line, since a label
+ * has no line breaks.
  */
 const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
@@ -40,10 +40,10 @@ const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 export const show = (gestures) =>
   update({ shown: gestures.length ? gestures.join("\n") : null, paused: null });
 
-let loading = Promise.resolve(); // what is asked of the server now
+let loading = Promise.resolve(); // the current request
 
 /**
- * Show a phrase with all its parts, as it is once what was pressed before is saved.
+ * Show a phrase with all its parts, after pending edits are saved.
  *
  * @param {string} name
  */
@@ -61,7 +61,7 @@ function add(gesture) {
   show(over ? [gesture] : [...shown(), gesture]);
 }
 
-/** Ask what the gestures shown mean, whenever they or the phrases change. */
+/** Request the meaning of the gestures shown, whenever they or the phrases change. */
 async function load() {
   const { gestures: language, view, shown: gestures, paused } = state;
   if (view !== "phrases" || !language) return;
@@ -129,7 +129,7 @@ function commands(event) {
 }
 
 /**
- * A gesture to click; one that is drawn stays the same button, so that no click on it gets lost.
+ * A gesture to click; an existing button is reused, so that no click on it is lost.
  *
  * @param {Gesture} gesture
  * @param {boolean} next

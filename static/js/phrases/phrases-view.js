@@ -32,7 +32,7 @@ async function takeOut() {
   showDone("Phrases taken out", "Every gesture is a message of its own.");
 }
 
-/** What is ambiguous, each with the message that shows it. */
+/** The ambiguities, each with a message that shows it. */
 function ambiguities() {
   const list = found()?.ambiguities ?? [];
   if (!list.length) return null;
@@ -179,7 +179,7 @@ export function open(section) {
     const { gestures, loaded, view } = state;
     if (view !== "phrases" || (!gestures && !loaded)) return;
     const now = shownKey();
-    if (now === drawn) return; // a button that is just being pressed stays where it is
+    if (now === drawn) return; // a button being pressed stays in place
     drawn = now;
     title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
     const able = Boolean(gestures?.gestures.length);

@@ -30,7 +30,7 @@ const inValues = (name, change) =>
   inSlotType(name, (each) => ({ ...each, values: change(each.values) }));
 
 /**
- * What a value becomes where the slot type reads its gestures otherwise.
+ * Convert values when the slot type reads its gestures as another kind.
  *
  * @param {SlotValue[]} values
  * @param {SlotType["reads_as"]} readsAs

@@ -1,4 +1,4 @@
-// The camera of practice: it is recorded all the time, and each take that ends becomes a clip.
+// The camera of practice: it records all the time, and each completed take becomes a clip.
 
 import { frameSender } from "../camera/frame-sender.js";
 import { openLink } from "../camera/live-socket.js";
@@ -22,13 +22,13 @@ import { state } from "../core/state.js";
 /** @import { Recognized, Seen } from "../camera/live-messages.d.ts" */
 
 const INSTEAD = "show the gesture by a clip";
-const AFTER_TAKE = 1000; // ms: where nothing is held at the end, the gesture runs out on the clip.
-const LONGEST_WAIT = 60_000; // ms that are recorded at most before a take begins: memory is finite.
+const AFTER_TAKE = 1000; // ms, so that the clip shows the whole end of a gesture.
+const LONGEST_WAIT = 60_000; // ms: longest recording before a take begins; memory is finite.
 const LONGEST = 5 * 60_000; // ms of one recording.
 
 /**
- * Make the camera. `started()` is called when it is, `nameOf()` names the clip of a take, and
- * `taken(file)` is given it.
+ * Make the camera. `started()` is called when it starts; `nameOf()` returns the name of a take's
+ * clip, and `taken(file)` receives the clip.
  *
  * @param {{ started: () => void, nameOf: () => string, taken: (file: File) => void }} options
  */
@@ -67,7 +67,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   /** @type {SVGSVGElement | null} */
   let drawing = null;
   let ending = 0; // timer of a take's end
-  let ended = false; // a take ended, and what ends takes is still held
+  let ended = false; // a take ended, and its closing trigger is still held
 
   function draw() {
     const running = recording !== null;
@@ -79,7 +79,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     if (!running) words.textContent = howTo();
   }
 
-  /** Begin a recording, in place of the one that runs. */
+  /** Begin a new recording and drop the running one. */
   function renew() {
     recording?.stop();
     const { srcObject } = video;
@@ -87,7 +87,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     since = performance.now();
   }
 
-  /** Hand out what was recorded, and record on. */
+  /** Pass on the recorded file, and begin a new recording. */
   async function finish() {
     clearTimeout(ending);
     ending = 0;
@@ -104,7 +104,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     if (drawing) drawSeen(drawing, answer);
     const [, text] = situation(answer);
     if (words.textContent !== text) words.textContent = text;
-    // A closing salute is waited out: on the next clip it would begin a take.
+    // Wait until the closing salute is over: on the next clip it would begin a take.
     if (ended && answer.state !== "done") finish();
     ended = answer.state === "done";
     const lasted = performance.now() - since;
@@ -119,7 +119,8 @@ export function practiceCamera({ started, nameOf, taken }) {
   }
 
   /**
-   * The camera goes on without the server's eyes; only the end of a take is not seen any more.
+   * Show that the connection has failed: the camera goes on, but the end of a take is no longer
+   * detected.
    *
    * @param {string} reason
    */
@@ -160,7 +161,7 @@ export function practiceCamera({ started, nameOf, taken }) {
       toggle.disabled = false;
       if (cameraPossible()) offerCameras(choice, video);
     }
-    // The browser may ask for long whether the camera is allowed.
+    // The user may take long to allow the camera.
     if (state.view !== "practice") {
       stop();
       return;
@@ -188,10 +189,10 @@ export function practiceCamera({ started, nameOf, taken }) {
     element,
     stop,
     draw,
-    /** Ask this language from now on. */
+    /** Recognise with this language from now on. */
     listen: () => link?.listen(state.language),
     /**
-     * Whether it may be started.
+     * Set whether the camera may be started.
      *
      * @param {boolean} possible
      */

@@ -1,4 +1,4 @@
-// What a diver is told about a take that was just shown.
+// The feedback to a diver about the last take.
 
 import { h } from "../core/dom.js";
 import { moment } from "../core/format.js";
@@ -6,7 +6,7 @@ import { moment } from "../core/format.js";
 /** @import { PracticeAnswer } from "../core/types.d.ts" */
 
 /**
- * Whether it was right, and what to change.
+ * The feedback: whether the take was right, and what to change.
  *
  * @param {PracticeAnswer} answer
  */

@@ -1,4 +1,4 @@
-// The records of practice: what the takes of each diver prove, and the takes themselves.
+// The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
 import { h, iconButton, WRITES } from "../core/dom.js";
 import { percent, plural } from "../core/format.js";
@@ -10,7 +10,7 @@ import { address, go, here } from "../core/views.js";
 /** @typedef {(take: PracticeTake) => void} Remove */
 
 /**
- * What the evidence says, and what is missing, in words.
+ * The evidence of a record in words, and what is missing.
  *
  * @param {Omit<PracticeRecord, "diver" | "older" | "shown">} record
  */

@@ -1,5 +1,5 @@
-// Practice: a diver shows a gesture to the camera or by a clip, learns what to change, and has a
-// record of it.
+// The practice view: a diver shows a gesture to the camera or by a clip, reads what to change, and
+// gets a record.
 
 import { labelInName } from "../clips/clip-label.js";
 import { statusText } from "../clips/clip-store.js";
@@ -18,7 +18,7 @@ import { recordCard } from "./practice-records.js";
 /** @import { PracticeRecord, PracticeTake } from "../core/types.d.ts" */
 
 /**
- * What a diver shows, and to which language.
+ * A diver's attempt at a gesture of a language.
  *
  * @typedef {{ language: string, diver: string, expected: string }} Attempt
  */
@@ -26,7 +26,7 @@ import { recordCard } from "./practice-records.js";
 const KEY = "osg-studio.diver"; // sessionStorage: one diver practises in a tab.
 const LONGEST_NAME = 80;
 
-/** The clips that can be shown: their poses are found, and they are no demonstrations. */
+/** The clips that can be chosen: their poses are found, and they are not demonstrations. */
 function shownClips() {
   const demonstrations = new Set(
     (state.gestures?.gestures ?? []).flatMap(({ demonstrations: all }) =>
@@ -37,7 +37,7 @@ function shownClips() {
 }
 
 /**
- * The last take of a clip that has an end; without one the last that was begun.
+ * The last completed take of a clip, or else the last one begun.
  *
  * @param {string} clip
  */
@@ -96,7 +96,7 @@ export function open(section) {
     );
   const [byCamera, byClip] = [sourceButton("camera", "Camera"), sourceButton("clip", "Clip")];
   /** @type {Map<string, Attempt>} */
-  const awaited = new Map(); // by clip of the camera, until its poses are found
+  const awaited = new Map(); // attempts by their clip, until its poses are found
   /** @returns {Attempt} */
   const attempted = () => ({
     language: state.language ?? "",
@@ -156,7 +156,7 @@ export function open(section) {
     picture.alt = `Trajectory of ${chosen.label}, from the dot along the arrow`;
   }
 
-  /** Offer the gestures and clips there are; what is chosen among them stays. */
+  /** Offer the gestures and clips; the choice among them stays. */
   function offer() {
     const labels = state.gestures?.labels ?? [];
     const clips = shownClips();
@@ -206,7 +206,7 @@ export function open(section) {
   const say = (text) => answer.replaceChildren(h("p", { className: "dim" }, text));
 
   /**
-   * Recognise what a diver shows, and tell what to change.
+   * Recognise an attempt, and show the feedback.
    *
    * @param {Attempt} shown
    * @param {string} id of the clip
@@ -245,7 +245,7 @@ export function open(section) {
       );
   }
 
-  /** Go on with the clips of the camera whose poses are found, and tell how far the others are. */
+  /** Recognise the camera's clips whose poses are found, and show the progress of the others. */
   function workOff() {
     for (const [id, shown] of awaited) {
       const found = state.clips.find((each) => each.id === id);

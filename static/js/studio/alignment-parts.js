@@ -1,4 +1,4 @@
-// What of an alignment is drawn: the role of its gesture, and the joint.
+// The parts of an alignment that are drawn: the role of its gesture, and the joint.
 
 /** @import { Alignment, Explanation } from "../core/types.d.ts" */
 
@@ -8,7 +8,7 @@ const AT_REST = 0.2; // Share of the largest joint's extent below which a joint 
 export const sum = (numbers) => numbers.reduce((total, each) => total + each, 0);
 
 /**
- * The joints that were compared, those that differ most from what was expected first.
+ * The compared joints, those that differ most from the expected gesture first.
  *
  * @param {Pick<Alignment, "parts" | "costs">} alignment
  */
@@ -41,8 +41,8 @@ function extentOf({ query }, part) {
 }
 
 /**
- * The joint to draw: the one chosen, or the one drawn before, or the one that differs most. A joint
- * at rest is drawn only when it is chosen: enlarged, its tremor looks like a movement.
+ * The joint to draw: the one chosen, or else the one drawn before, or else the one that differs
+ * most. A joint at rest is drawn only if chosen, because its enlarged tremor looks like a movement.
  *
  * @param {ReturnType<typeof partsOf>} parts
  * @param {Pick<Alignment, "query">[]} alignments

@@ -22,10 +22,10 @@ const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)} %`;
 /** @type {{ joint: string, draw: () => void, show: (seconds: number) => void } | null} */
 let follower = null; // Moves the cursor of the drawings on display.
 /** @type {string | null} */
-let shown = null; // The joint that was drawn last: another recognition of the take keeps it.
+let shown = null; // The joint drawn last; kept for another recognition of the take.
 
 /**
- * The alignments of the paths, that with the expected gesture first.
+ * The alignments of the paths, the one with the expected gesture first.
  *
  * @param {Explanation} why
  */
@@ -76,7 +76,7 @@ const between = (from, to) => (from && to ? `M${at(from)}L${at(to)}` : "");
 const dot = (place) => (place ? `M${at(place)}h0` : "");
 
 /**
- * What each pair of moments costs at one joint, as a share of the whole distance.
+ * The cost of each pair of moments at one joint, as a share of the whole distance.
  *
  * @param {Alignment} alignment
  * @param {number} part
@@ -237,7 +237,7 @@ function joints(parts, chosen) {
 }
 
 /**
- * Draw which moments correspond; null where the take and the gestures have no paths to compare.
+ * Draw which moments correspond; null if there are no paths to compare.
  *
  * @param {Explanation | null} why
  */

@@ -1,5 +1,5 @@
-// The trial of a counterfactual's intervention: recognised again with a copy of the language, which
-// is edited only when the intervention is kept.
+// The trial of a counterfactual's intervention: the take is recognised again with a changed copy of
+// the language; the language itself is edited only when the intervention is kept.
 
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
@@ -15,14 +15,14 @@ import { rangeOf, recogniseWith } from "./stage.js";
 const currentResult = () => /** @type {Recognition} */ (state.result);
 
 /**
- * What differs from the profile in the recognition on display.
+ * The tuning of the recognition on display.
  *
  * @returns {Tuning}
  */
 const tuning = () => currentResult().tuning ?? currentLanguage().tuning ?? { weights: {} };
 
 /**
- * The weight factors with another one for a voter; 1 is none.
+ * The weight factors with another one for a voter; a factor of 1 is left out.
  *
  * @param {string} voter
  * @param {number} factor
@@ -79,7 +79,7 @@ function requestOf(change) {
   }
 }
 
-/** Changes of how the whole language is recognised. */
+/** Changes that affect the whole language. */
 const TUNING = new Set([
   "voter_weight",
   "weight_factor",
@@ -116,7 +116,7 @@ export async function tryOut({ change }) {
 const discard = ({ base }) => update({ trial: null, ...base });
 
 /**
- * Edit the gesture as the trial changed its copy.
+ * Apply the trial's change of the gesture to the language.
  *
  * @param {NonNullable<Recognition["trial"]>} trial
  */
@@ -139,7 +139,7 @@ async function keep({ change }) {
   }
   update({ trial: null });
   if (result.trial || TUNING.has(change.kind)) {
-    // By the saved language, so that the page shows the robot's result.
+    // Recognise again with the saved language, so that the page shows the robot's result.
     await recogniseWith();
     showDone("Change kept", where);
   } else toast("Range kept", "It is selected now: save it as a gesture, or recognise it again.");

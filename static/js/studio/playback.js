@@ -42,7 +42,7 @@ function connect(id) {
     for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish));
   };
   opened.onmessage = ({ data }) => received(JSON.parse(data));
-  // A workspace that is gone is opened anew by whoever shows something next.
+  // A closed workspace is opened again when something is shown next.
   opened.onclose = () => {
     if (socket !== opened || workspace !== id) return;
     cut = true;
@@ -52,7 +52,7 @@ function connect(id) {
   };
 }
 
-/** Whether the connection broke since the workspace was opened; that of the 3D view did too. */
+/** Whether the connection broke since the workspace was opened; the 3D view's broke with it. */
 export const wasCut = () => cut;
 
 /** @param {Position} position */
@@ -68,7 +68,7 @@ function ask(wish) {
 }
 
 /**
- * Keep the frame that a link names, for `frameShown`.
+ * Keep the frame number from a link, for `frameShown`.
  *
  * @param {number | null} frame
  */
@@ -76,7 +76,7 @@ export function rememberFrame(frame) {
   wantedFrame = frame;
 }
 
-/** The clip is on display: go to the frame that the link named, once. */
+/** Called when the clip is on display: go to the frame from the link, once. */
 export function frameShown() {
   if (wantedFrame !== null) seek(wantedFrame);
   wantedFrame = null;
@@ -90,21 +90,21 @@ export function frameShown() {
 export const seek = (frame) => ask({ do: "seek", frame: Math.max(0, Math.round(frame)) });
 
 /**
- * Pause, and go some frames on or back.
+ * Pause, and step some frames forward or back.
  *
  * @param {number} frames
  */
 export const step = (frames) => ask({ do: "step", frames });
 
 /**
- * Play that many times as fast as the camera saw it; backwards if negative, 0 pauses.
+ * Play at a multiple of the recorded speed; backwards if negative, 0 pauses.
  *
  * @param {number} speed
  */
 export const play = (speed) => ask({ do: "play", speed });
 
 /**
- * Repeat the range on display, or play on.
+ * Set whether the range on display is repeated.
  *
  * @param {boolean} on
  */

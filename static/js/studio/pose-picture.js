@@ -27,7 +27,7 @@ export function figure(onPick) {
   /** @type {number | null} */
   let wanted = null; // the moment of the clip to seek to as soon as the last seek is done
   /** @type {number | null} */
-  let start = null; // of the clip by the video's clock, as soon as that is known
+  let start = null; // the clip's start by the video's clock, once known
 
   const seek = () => {
     if (wanted === null || start === null || video.seeking) return;
@@ -72,7 +72,7 @@ export function figure(onPick) {
   }
 
   /**
-   * Every landmark where `drawPose` of the page's skeleton expects it, as shares of the picture.
+   * The landmarks of a frame in the order of `drawPose`, as shares of the picture.
    *
    * @param {Poses} poses
    * @param {number} frame

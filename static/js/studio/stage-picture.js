@@ -1,4 +1,4 @@
-// The picture of the clip: flat or as a space-time cube by viser, or without it by the page itself.
+// The picture of the clip: flat or as a space-time cube by viser, or drawn by the page itself.
 
 import { figure } from "./pose-picture.js";
 import * as api from "../core/api.js";
@@ -11,7 +11,7 @@ import { movingWrists } from "./wrist-motion.js";
 
 /** @import { Clip, Poses } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.cube"; // localStorage: the cube was shown last.
+const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
 let cube = localStorage.getItem(KEY) !== null;
 let own = false; // whether the page draws the picture itself
@@ -20,7 +20,7 @@ let send = () => {};
 
 export const isFlat = () => own || !cube;
 
-/** Show the view that is chosen, and the button that changes it. */
+/** Show the chosen view, and the button that changes it. */
 function draw() {
   byId("lab-area").classList.toggle("is-flat", isFlat());
   byId("lab").hidden = own;
@@ -55,8 +55,8 @@ export const cubeButton = () =>
   );
 
 /**
- * Follow the choice: `changed(flat)` tells the workspace; `play()` is called by a click on the
- * flat picture.
+ * Bind the choice: `changed(flat)` is called when it changes, `play()` by a click on the flat
+ * picture.
  *
  * @param {{ changed: (flat: boolean) => void, play: () => void }} options
  */
@@ -88,7 +88,8 @@ let shown = null;
 let loading = null;
 
 /**
- * Draw the flat picture by the page, and say why; `retry` tries viser again where it may help.
+ * Draw the flat picture by the page, and show the reason; `retry` tries viser again if that may
+ * help.
  *
  * @param {string} reason
  * @param {(() => unknown) | null} [retry]

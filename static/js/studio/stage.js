@@ -19,13 +19,13 @@ import { show } from "./workspace.js";
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
 
 let viewTimer = 0;
-let asking = 0; // Counts the questions for takes.
+let asking = 0; // Counts the requests for takes.
 let shownView = "";
 
 /** Load the takes of the clip on display as soon as it has any. */
 export async function loadTakes() {
   const clip = selectedClip();
-  // Those of the clip before must not be taken for this one's while its own are on their way.
+  // Takes of the previous clip must not be shown for this one while its own are loading.
   update({ takes: null, timeline: null });
   if (!clip || clip.status !== "done") return undefined;
   const by = takesLanguage(state.gestures);
@@ -34,7 +34,7 @@ export async function loadTakes() {
   const loaded = await attempt("Loading the takes", () =>
     Promise.all([api.clips.takes(clip.id, by), api.clips.timeline(clip.id, by)]),
   );
-  // An answer by the trigger before may come last.
+  // An answer for the previous trigger may arrive last.
   if (!loaded || mine !== asking) return undefined;
   const [takes, timeline] = loaded;
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
@@ -42,7 +42,7 @@ export async function loadTakes() {
   return update({ takes, timeline, take: kept ?? (takes.length && !byHand ? 0 : null) });
 }
 
-/** Let the workspace show what is selected, once the selection rests. */
+/** Show the selection in the workspace, once it has settled. */
 export function showSelection() {
   clearTimeout(viewTimer);
   const clip = selectedClip();
@@ -50,7 +50,7 @@ export function showSelection() {
   const { shown } = /** @type {SelectedRange} */ (selectedRange());
   /** @type {{ clip_id: string, start?: number, end?: number, recognition_id?: string }} */
   const view = { clip_id: clip.id, start: shown[0], end: shown[1] };
-  // Without a take or a choice the whole clip is meant, to its very last frame.
+  // Without a take or a range the whole clip is shown, to its very last frame.
   if (state.take === null && state.start === null) delete view.start;
   if (state.take === null && state.end === null) delete view.end;
   if (state.recognition) view.recognition_id = state.recognition;
@@ -146,7 +146,7 @@ async function recognise() {
 }
 
 /**
- * Recognise a clip that was asked about, as soon as its takes are there.
+ * Recognise a clip as requested, as soon as its takes are loaded.
  *
  * @param {State} state
  */
@@ -172,7 +172,7 @@ export async function loadResult() {
 }
 
 /**
- * The confidence, the weight of the voters that chose the nearest gesture, and a trial.
+ * The confidence, the weight of the voters for the nearest gesture, and the trial.
  *
  * @param {Recognition} result
  */

@@ -13,7 +13,7 @@ const CURVES = [
 ];
 
 /**
- * The path of a line through `values`, interrupted where there is none.
+ * The path of a line through `values`, interrupted where one is missing.
  *
  * @param {(number | null)[]} values
  * @param {number} top
@@ -36,7 +36,7 @@ export function linePath(values, top, share) {
 }
 
 /**
- * The largest of what ordinary frames show: a landmark that jumps must not flatten the rest.
+ * The largest speed of ordinary frames: a jumping landmark must not flatten the rest.
  *
  * @param {Pick<Timeline, "speed">} timeline
  */
@@ -85,7 +85,7 @@ export function curves(timeline) {
 }
 
 /**
- * What the curves are, in words.
+ * The legend of the curves.
  *
  * @param {string} held what begins and ends a take
  */

@@ -139,7 +139,7 @@ function handle(which) {
     seek(frame);
   };
   input.oninput = () => to(frameAt(Number(input.value)));
-  // The browser's own step would be a share of the length, not a frame.
+  // The browser's default step is a share of the length, not a frame.
   input.onkeydown = (event) => {
     const way = WAYS[event.key];
     if (!way) return;
@@ -214,7 +214,7 @@ function summary(range, takes) {
 }
 
 /**
- * Follow the pointer along the thumbnails or curves with the clock.
+ * Let the clock follow the pointer along the thumbnails or curves.
  *
  * @param {HTMLElement} area
  */
@@ -270,7 +270,7 @@ export function drawTimeline() {
     },
   });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
-  // Gestures that are found anywhere have nothing held at their ends.
+  // Takes found without a trigger have nothing held at their ends.
   const marked = held() === "gesture" ? [] : state.takes;
   const salutes = marked.flatMap((take) => saluteMarks(take, duration));
   const warning = range.take

@@ -5,10 +5,10 @@ import { follow, selectedClip } from "../core/state.js";
 import { go } from "../core/views.js";
 import { showExample } from "./welcome.js";
 
-/** `onClip`: it is about a clip, so that without one the example is offered. */
+/** `onClip`: the step needs a clip; without one the example is offered. */
 /** @typedef {{ title: string, text: string, places: string[], onClip?: boolean }} Step */
 
-const KEY = "osg-studio.tour"; // localStorage: a visitor is shown around once.
+const KEY = "osg-studio.tour"; // localStorage: the tour starts by itself once.
 const GAP = 12; // px between the card and what it points at.
 
 /**
@@ -52,7 +52,7 @@ let pointed = null; // what the card points at
 /** @type {HTMLElement | null} */
 let came = null; // where the focus was
 let at = 0; // the step on display
-let offering = false; // the example, on it
+let offering = false; // whether it offers the example
 
 const seen = () => {
   try {
@@ -66,7 +66,7 @@ function remember() {
   try {
     localStorage.setItem(KEY, "seen");
   } catch {
-    /* a browser that keeps nothing shows it again */
+    /* a browser without storage shows it again */
   }
 }
 
@@ -80,7 +80,7 @@ const placeOf = (step) =>
 /** @param {Step} step */
 const offersExample = ({ onClip }) => Boolean(onClip) && !selectedClip();
 
-/** Put the card where it hides nothing of what it points at, as far as the window has room. */
+/** Place the card so that it does not cover its target, as far as the window has room. */
 function position() {
   if (!card) return;
   const [ring, place] = [byId("tour-ring"), pointed];
@@ -182,7 +182,7 @@ function show(number, focus) {
   if (focus) onward.focus();
 }
 
-/** Point at what appeared meanwhile, such as the example. */
+/** Point at elements that appeared since, such as the example. */
 function refresh() {
   if (!card) return;
   if (placeOf(STEPS[at]) !== pointed || offersExample(STEPS[at]) !== offering)
@@ -190,7 +190,7 @@ function refresh() {
   else position();
 }
 
-// Once all else is drawn.
+// After everything else is drawn.
 follow(["clip", "clips", "takes", "result", "why"], () => requestAnimationFrame(refresh));
 
 /** @param {boolean} focus */
@@ -210,14 +210,14 @@ function begin(focus) {
   addEventListener("keydown", escape);
 }
 
-/** Show around, on request. */
+/** Start the tour on request. */
 export function startTour() {
   end();
   go("studio");
   begin(true);
 }
 
-/** Offer it on a first visit, without taking the focus away. */
+/** Start the tour on a first visit, without taking the focus. */
 export function offerTour() {
   if (!seen()) begin(false);
 }

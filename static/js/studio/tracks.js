@@ -11,7 +11,7 @@ import { movingWrists, tracksOf } from "./wrist-motion.js";
 
 /** @import { Poses } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.tracks"; // localStorage: the tracks were shown last.
+const KEY = "osg-studio.tracks"; // localStorage: whether the tracks were shown last.
 
 let open = localStorage.getItem(KEY) !== null;
 

@@ -21,7 +21,7 @@ const speed = () => Number(byId("speed").value);
 const toggle = () => play(state.position?.playing ? 0 : speed());
 
 /**
- * J and L: the other way at normal speed, or twice as fast the same way.
+ * Handle J and L: reverse at normal speed, or double the speed in the same direction.
  *
  * @param {1 | -1} direction
  */
@@ -63,7 +63,7 @@ const button = (name, label, keys, onclick) =>
     icon(name),
   );
 
-/** Build the bar, and let the keys do what it does. */
+/** Build the bar, and bind its keys. */
 export function buildTransport() {
   byId("transport").replaceChildren(
     h(
@@ -162,7 +162,7 @@ export function drawTransport({ position }) {
     toggles.setAttribute("aria-label", label);
     toggles.title = `${label} (Space)`;
   }
-  // The number is never taken for that of a picture which is another frame's.
+  // If the picture on display is another frame's, its number is shown too.
   const other = !playing && position.picture !== null && position.picture !== frame;
   byId("picture-of").textContent = other ? `picture of frame ${position.picture}` : "";
   byId("do-loop").setAttribute("aria-pressed", String(position.loop));

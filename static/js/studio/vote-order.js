@@ -4,7 +4,7 @@ import { supportOf } from "./vote-support.js";
 
 /** @import { Recognition } from "../core/types.d.ts" */
 
-/** Gestures in the table; farther gestures of a larger language explain nothing. */
+/** Most gestures in the table; farther ones do not help to explain the decision. */
 export const MOST_COLUMNS = 40;
 
 /**
@@ -58,8 +58,8 @@ export function orderOf(result) {
 }
 
 /**
- * Split rows into voters that had a say, and voters without weight: their distances explain nothing
- * of the decision. A voter whose weight a person changed is always among the first.
+ * Split rows into voters with weight, and voters without, whose distances had no influence on the
+ * decision. A voter whose weight a person changed is always among the former.
  *
  * @param {Pick<Recognition, "voters" | "weights">} result
  * @param {number[]} rows

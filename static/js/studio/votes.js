@@ -1,5 +1,5 @@
 // The decision beside the picture: the compared images, and every voter's distance to every
-// gesture, with the voters' weights, which can be tried out there.
+// gesture, with weight factors to try.
 
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
@@ -13,7 +13,7 @@ import { MOST_COLUMNS, nearnessOf, orderOf, shortNumber, splitByWeight } from ".
 /** @import { Recognition, State } from "../core/types.d.ts" */
 
 /**
- * What tells the two numbers of a decision apart.
+ * The explanation of the two numbers of a decision, per profile.
  *
  * @type {Record<Recognition["profile"], string>}
  */
@@ -39,7 +39,7 @@ const wordsOf = (voter, factor) =>
     : `with ${factor} times the weight on the voter ${readable(voter)}`;
 
 /**
- * The factors of the voters' weights in the recognition on display; 1 where there is none.
+ * The weight factors in the recognition on display; 1 by default.
  *
  * @param {Recognition} result
  * @returns {Record<string, number>}
@@ -47,7 +47,7 @@ const wordsOf = (voter, factor) =>
 const factorsOf = (result) => (result.tuning ?? state.gestures?.tuning)?.weights ?? {};
 
 /**
- * The weight of a voter, over which lies the choice of another weight factor.
+ * The cell of a voter's weight, with the choice of another weight factor over it.
  *
  * @param {Recognition} result
  * @param {string} voter
@@ -178,7 +178,7 @@ function table(result, rows, columns) {
 let whole = false; // Whether voters without weight are shown, too.
 
 /**
- * The table of the voters that had a say, and a line that shows those without weight.
+ * The table of the voters with weight, and a line that shows those without.
  *
  * @param {Recognition} result
  */
@@ -207,7 +207,7 @@ function ballot(result) {
 }
 
 /**
- * Load the images that were compared into a box.
+ * Load the compared images into a box.
  *
  * @param {HTMLElement} box
  * @param {Recognition} result
@@ -255,7 +255,7 @@ export function drawVotes({ result }) {
     : `undecided ${state.gestures?.labels.length}`;
   if (box.hidden || key === drawn) return;
   drawn = key;
-  // As wide before the decision as with it, so that the picture stays where it is.
+  // The same width before and after the decision, so that the picture stays in place.
   const columns = (result?.gestures ?? state.gestures?.labels ?? []).length;
   box.style.setProperty("--columns", String(Math.min(columns, MOST_COLUMNS)));
   if (!result) return box.replaceChildren(undecided());

@@ -32,8 +32,8 @@ const STEPS = [
 ];
 
 /**
- * A few clips to begin with, one of each kind; all of them are in the library. Those to recognise
- * come first, since the sample languages hold the demonstrations already.
+ * A few clips to begin with, one of each kind; the library lists all. Clips to recognise come
+ * first, since the sample languages already contain the demonstrations.
  *
  * @param {Sample[]} samples
  */
@@ -66,7 +66,7 @@ const salutePicture = () =>
   );
 
 /**
- * A button that shows why the misread sample is misread; null where it, or its language, is gone.
+ * A button that opens the explanation of the misread sample; null if it or its language is gone.
  *
  * @param {Sample[]} samples
  * @param {LanguageSummary[]} languages
@@ -124,7 +124,7 @@ async function ask({ sample, language }, button) {
   if (clip) update({ question: { clip, expected: MISREAD.expected } });
 }
 
-/** Show the misread sample, from wherever the user is. */
+/** Show the misread sample, from any view. */
 export async function showExample() {
   await whenLoaded();
   const found = exampleOf(state.samples, state.languages);
@@ -168,7 +168,7 @@ function welcome(samples, languages) {
   ];
 }
 
-/** For when the clip on display was deleted elsewhere. */
+/** The panel after the clip on display was deleted elsewhere. */
 const noClip = () =>
   h(
     "div",
@@ -178,7 +178,7 @@ const noClip = () =>
   );
 
 /**
- * The clip's own picture under the skeleton; `showProgress` moves both on.
+ * The clip's own picture under the skeleton; `showProgress` updates both.
  *
  * @param {Clip} clip
  */
@@ -234,7 +234,7 @@ function showPose(panel, clip, { time, pose }) {
 }
 
 /**
- * Change what moves in the panel, and keep the rest: the video would be loaded anew.
+ * Update the moving parts of the panel, and keep the rest, so that the video is not reloaded.
  *
  * @param {HTMLElement} panel
  * @param {Clip} clip
@@ -253,7 +253,7 @@ function showProgress(panel, clip, job) {
 }
 
 /**
- * What there is to show: `{ key, panel }`, or null when the workspace has something to show.
+ * The panel as `{ key, panel }`, or null when the workspace has something to show.
  *
  * @param {State} state
  * @param {Clip | null} clip
@@ -271,7 +271,7 @@ function contentOf({ clips, uploads, samples, languages, loaded, role }, clip) {
 }
 
 /**
- * Draw it, or hide it when the workspace has something to show.
+ * Draw the panel, or hide it when the workspace has something to show.
  *
  * @param {State} values
  */

@@ -16,7 +16,7 @@ import { recogniseWith } from "./stage.js";
 
 /** @import { Counterfactual, Explanation, Recognition, SideEffect, State } from "../core/types.d.ts" */
 
-const MOST_PARTS = 3; // Joints shown over time: those that cost most.
+const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
 /**
@@ -101,7 +101,7 @@ function lane({ time, steps }, { part, name }, most, last) {
 }
 
 /**
- * Under the curves: where along the take it differs from what was expected, and in which joint.
+ * Draw, under the curves, when and in which joint the take differs from the expected gesture.
  *
  * @param {State} state
  */
@@ -137,7 +137,7 @@ const effectOf = (effect) =>
     : null;
 
 /**
- * The result of an intervention; a take is recognised by its own demonstration by construction.
+ * The result of an intervention; for a take added as a demonstration it is right by construction.
  *
  * @param {Counterfactual} found
  */
@@ -175,7 +175,7 @@ const shared = (href, title, note) =>
   );
 
 /**
- * The take for people without a studio, and the whole clip for the tools of a robot's team.
+ * The exports: the take as a page for people without a studio, the whole clip for robot tools.
  *
  * @param {Recognition} result
  * @param {Explanation | null} why
@@ -227,7 +227,7 @@ async function keepAsTest({ clip_id, start, end, expected }) {
 const note = (text) => h("p", { className: "dim" }, text);
 
 /**
- * What to show differently the next time, with its moment.
+ * The advice what to show differently next time, with its moment.
  *
  * @param {Explanation} why
  */
@@ -249,7 +249,7 @@ function lesson(why) {
 }
 
 /**
- * What would have helped, as buttons that try it out; what to show differently stands first.
+ * The counterfactuals as buttons that try them; advice to the diver comes first.
  *
  * @param {Explanation} why
  */
@@ -290,7 +290,7 @@ const ASK_RECOGNITION =
   "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
 
 /**
- * The question what was meant; an answer shows the reasons at once.
+ * The question which gesture was meant; an answer shows the explanation at once.
  *
  * @param {string[]} labels
  */

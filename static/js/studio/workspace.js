@@ -22,8 +22,8 @@ let opened = null; // promise of the workspace's id
 let wanted = null; // the view to show
 let shown = Promise.resolve();
 
-// A duplicated tab begins with a copy of the first one's sessionStorage. So the workspace's id lies
-// there only while no page is there to hold it, and the copy has none.
+// A duplicated tab begins with a copy of the first one's sessionStorage. So the workspace's id is
+// stored there only while no page is open to hold it, and the copy has none.
 let mine = sessionStorage.getItem(KEY);
 sessionStorage.removeItem(KEY);
 addEventListener("pagehide", () => {
@@ -33,7 +33,7 @@ addEventListener("pageshow", ({ persisted }) => {
   if (persisted) sessionStorage.removeItem(KEY);
 });
 
-/** The workspace of this tab, where the server still knows it. */
+/** The workspace of this tab, if it still exists on the server. */
 const remembered = async () =>
   mine
     ? api.workspaces.find(mine).catch((error) => {
@@ -68,7 +68,7 @@ function loadFrame(url) {
 }
 
 /**
- * The frame loaded something: is it viser, and does it draw?
+ * Called when the frame has loaded: check that it is viser and that it draws.
  *
  * @param {HTMLIFrameElement} frame
  * @param {number} late
@@ -149,8 +149,8 @@ export async function restart() {
 }
 
 /**
- * Open the 3D view again if it is lost: a page in the background is not told that the server has
- * closed its workspace, or that the network was away.
+ * Open the 3D view again if it is lost: a page in the background does not notice when the server
+ * closes its workspace or the network fails.
  */
 export async function recover() {
   if (!opened) return;
@@ -182,7 +182,7 @@ async function send(view, again = true) {
   try {
     await api.workspaces.show(id, view);
   } catch (error) {
-    // A restarted server knows no workspaces: open another one, once.
+    // A restarted server has no workspaces: open another one, once.
     if (error.status !== 404 || !again || (await remembered())) throw error;
     await openWorkspace();
     await send(view, false);

@@ -1,4 +1,4 @@
-// The wrists that move in a range of a clip, and where they are over its time.
+// The wrists that move in a range of a clip, and their places over time.
 
 /** @import { Poses } from "../core/types.d.ts" */
 
@@ -44,8 +44,8 @@ export function movingWrists(poses, [first, last]) {
 }
 
 /**
- * The tracks of landmarks: per landmark x to the right and y upwards in every frame, from 0 to 1 of
- * the largest extent of all, so that they compare; null where it was not seen.
+ * The tracks of landmarks: per landmark x (to the right) and y (upwards) in every frame, as shares
+ * 0 to 1 of the largest extent of all, so that they are comparable; null where it was not seen.
  *
  * @param {Pick<Poses, "landmarks" | "xy">} poses
  * @param {string[]} names

@@ -1,8 +1,8 @@
-// Keypoint files of other programs: recognising them, and asking for what they lack.
+// Keypoint files of other programs: identifying them, and asking the user for missing data.
 
 import { ask } from "../core/dialogs.js";
 
-const HEAD = 65536; // bytes of a file that are looked at: what it is stands at its beginning.
+const HEAD = 65536; // bytes at the beginning of a file, which show its kind.
 
 /**
  * The kind of a .json file: "language", "keypoints", or "frame", one frame of OpenPose.

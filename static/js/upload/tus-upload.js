@@ -14,7 +14,7 @@ const cancelled = () =>
   new ApiError({ title: "Cancelled", detail: "The upload was cancelled.", code: "cancelled" }, 0);
 
 /**
- * Where the address of a file's upload is kept, so that the same file goes on after a reload.
+ * The key under which a file's upload address is stored, to resume it after a reload.
  *
  * @param {File} file
  */
@@ -29,7 +29,7 @@ function keep(file, place) {
     if (place) localStorage.setItem(keyOf(file), place);
     else localStorage.removeItem(keyOf(file));
   } catch {
-    /* A full or forbidden store: the upload goes on as long as its tab lives. */
+    /* Storage is full or forbidden: the upload can be resumed only in this tab. */
   }
 }
 
@@ -59,7 +59,7 @@ async function ask(method, place, headers = {}) {
 }
 
 /**
- * How far an upload is, by the headers of an answer.
+ * The progress of an upload, from the headers of an answer.
  *
  * @param {string} place
  * @param {{ get: (name: string) => string | null }} headers
@@ -99,7 +99,7 @@ async function begin(file, fields) {
 }
 
 /**
- * Ask how much of a file the server has; begin anew where it knows nothing of it.
+ * Ask how much of a file the server has; begin anew if it has none.
  *
  * @param {File} file
  * @param {Record<string, string>} fields

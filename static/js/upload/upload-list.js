@@ -14,7 +14,7 @@ import { upload as send } from "./tus-upload.js";
 
 /** @import { State, Upload } from "../core/types.d.ts" */
 
-const AT_ONCE = 2; // More only share the same line, and each would finish later.
+const AT_ONCE = 2; // More would share the same bandwidth, and each would finish later.
 
 let counter = 0;
 
@@ -65,7 +65,7 @@ export async function addFiles(files, uploaded = null) {
     return;
   }
   const added = [];
-  // A list of its own: the browser empties the one of a drop, or of the field, meanwhile.
+  // A copy: the browser soon empties the list of a drop or of the field.
   for (const file of [...files]) {
     if (!/\.json$/i.test(file.name) || (await isClip(file)))
       added.push(waiting(file, !added.length, uploaded));
@@ -99,13 +99,13 @@ function startNext() {
 
 /** @param {Upload} upload */
 async function start(upload) {
-  // The rate counts from where this attempt found the file, which may be its middle.
+  // The rate counts from where this attempt began, which may be the middle of the file.
   /** @type {Upload["began"]} */
   let began = null;
   /** @type {(loaded: number, away: boolean) => void} */
   const advanced = (loaded, away) => {
     began = away ? null : (began ?? { loaded, at: performance.now() });
-    // How much of the last part an absent server kept is not known: what was sent counts.
+    // While the server is away, the stored bytes are unknown: the bytes sent are shown.
     const sent = state.uploads.find(({ key }) => key === upload.key)?.loaded ?? 0;
     change(upload.key, { loaded: away ? Math.max(loaded, sent) : loaded, away, began });
   };
@@ -122,7 +122,7 @@ async function start(upload) {
     const id = await call.done;
     forget(upload.key);
     const clip = await loadClip(id);
-    // Of several files the first is shown; the others must not take its place one after the other.
+    // Of several files only the first is shown; the others must not replace it.
     if (upload.uploaded) upload.uploaded(id);
     else if (upload.first) select(id);
     if (needsTopic(clip)) openTopics(clip);
@@ -156,7 +156,7 @@ function retry({ key, refused }) {
 }
 
 /**
- * What is wrong; which file it is stands above already.
+ * The error without the file's name, which is already shown above it.
  *
  * @param {string} error
  * @param {string} name
@@ -181,7 +181,7 @@ function stage(upload) {
 }
 
 /**
- * Draw an upload. Its bar moves on in place: a button must not be replaced under the pointer.
+ * Draw an upload. Its bar is updated in place: a button must not be replaced under the pointer.
  *
  * @param {Upload} upload
  * @param {HTMLElement} [element]

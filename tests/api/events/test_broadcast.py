@@ -1,4 +1,4 @@
-"""News reach every listener, from any thread, and never pile up."""
+"""Events reach every listener, from any thread, and never pile up."""
 
 import asyncio
 import threading

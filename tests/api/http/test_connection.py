@@ -1,4 +1,4 @@
-"""Work for a client ends when the client leaves, in threads too."""
+"""Work for a client ends when the client disconnects, in threads too."""
 
 import json
 import socket

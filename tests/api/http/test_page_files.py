@@ -1,4 +1,4 @@
-"""Page files: kept by the browser for as long as they are the same."""
+"""Page files: the browser caches them until they change."""
 
 import re
 from collections.abc import Iterator
@@ -59,7 +59,7 @@ def test_after_an_update_the_page_names_all_files_anew(client: httpx.Client, fol
     after = script(client)
     assert after != before
     assert "immutable" in client.get(after).headers["cache-control"]
-    # For a page that was opened before: the file of today, and not for long.
+    # A page that was opened before gets today's file, cached only briefly.
     old = client.get(before)
     assert (old.status_code, old.headers["cache-control"]) == (200, "no-cache")
 

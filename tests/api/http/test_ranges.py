@@ -1,4 +1,4 @@
-"""Ranges of a video: what browsers ask for is served, what attackers ask for costs nothing."""
+"""Ranges of a video: browsers' requests are served, attackers' requests cost nothing."""
 
 import httpx
 import pytest

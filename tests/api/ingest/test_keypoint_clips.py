@@ -34,7 +34,7 @@ BOTH = {"frame_rate": "30", "frame_size": "640x480"}
 
 
 def packed(folder: Path, *, prefix: str = "dive/") -> Path:
-    """Pack a folder as a person would, into the zip beside it."""
+    """Pack a folder into a zip beside it, as a person would."""
     path = folder.with_suffix(".zip")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in sorted(folder.iterdir()):

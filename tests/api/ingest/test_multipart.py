@@ -1,4 +1,4 @@
-"""Receiving a file: names that lie, forms that are broken, senders that stall or vanish."""
+"""Receiving a file: misleading names, broken forms, senders that stall or disconnect."""
 
 import socket
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The extraction queue: its jobs end although the database cannot be written for a while."""
+"""The extraction queue: its jobs end even if the database cannot be written for a while."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
         until(lambda: status(client, job_id) in ("done", "failed"))
         job = client.get(f"{JOBS}/{job_id}").json()
         assert job["error_code"] != "internal"
-        # The next one runs as well.
+        # The next job runs as well.
         other = upload(client, small_clip)
         until(lambda: status(client, other) in ("done", "failed"))
 
@@ -78,7 +78,7 @@ def test_a_job_that_cannot_be_started_starts_later(
         clip = Clip(name="dive", media_type="video/x-matroska", size=5, width=64, height=48)
         job = studio.clips.add(clip, partial, "test").job
         with locked(settings):
-            # As a new clip does, on the loop of the server.
+            # On the server's event loop, as for a new clip.
             loop = studio.broadcast._loop
             loop.call_soon_threadsafe(loop.create_task, studio.extractions.submit(job))
             time.sleep(1)

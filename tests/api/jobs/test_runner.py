@@ -1,4 +1,4 @@
-"""The job runner: one run per key, progress as events, cancel for everybody who waits."""
+"""The job runner: one run per key, progress as events, cancelling for all who wait."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from app.api.jobs.runner import JobRunner
 
 
 class Counting:
-    """A job that reports a step, then waits to be let go; counts how often it runs."""
+    """A job that reports a step, then waits until it is released; counts its runs."""
 
     def __init__(self, key: str = "count", *, resumable: bool = False) -> None:
         self.key = key

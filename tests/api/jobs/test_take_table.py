@@ -1,4 +1,4 @@
-"""The job that makes the table of takes: it tells how far it is, and ends between two takes."""
+"""The job that makes the table of takes: it reports progress, and can end between two takes."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_cancelled_table_recognises_no_further_take() -> None:
         waiting = asyncio.create_task(runner.run(job))
         await asyncio.to_thread(begun.wait, 60)
         cancelling = asyncio.create_task(runner.cancel(job.key))
-        await asyncio.sleep(0.05)  # the thread goes on only after it was told
+        await asyncio.sleep(0.05)  # the cancellation comes before the thread continues
         cancelled.set()
         assert await cancelling
         with pytest.raises(JobCancelled):

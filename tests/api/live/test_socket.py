@@ -31,7 +31,7 @@ from tests.conftest import ROOT
 pytestmark = pytest.mark.usefixtures("installed_models")
 
 EVERY = 3
-"""Frames of a 25 Hz clip of which one is sent: what a slow machine manages."""
+"""One frame of a 25 Hz clip out of this many is sent: what a slow machine can process."""
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Who is let in: our host names, our own pages, and whoever has the token; websockets too."""
+"""Access: only by our host names, from our own pages, and with the token; websockets too."""
 
 from collections.abc import Iterator
 
@@ -26,7 +26,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
 
 @pytest.fixture(scope="module")
 def guarded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running]:
-    """Return one server that wants a token."""
+    """Return one server that requires a token."""
     folder = tmp_path_factory.mktemp("guarded")
     settings = Settings(
         data_dir=folder / "data", samples_dir=folder / "none", token=SecretStr(TOKEN)

@@ -1,4 +1,4 @@
-"""Connections on which no request comes are closed, and nobody can take them all."""
+"""Connections without a request are closed, and nobody can occupy all of them."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def connected(server: Running, said: str) -> Iterator[socket.socket]:
 
 
 def ended(connection: socket.socket) -> bytes:
-    """Wait until the server closes a connection, and return what it said before."""
+    """Wait until the server closes a connection, and return the data received before."""
     said = b""
     try:
         while piece := connection.recv(10_000):

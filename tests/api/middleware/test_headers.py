@@ -1,4 +1,4 @@
-"""What every answer tells browsers to distrust."""
+"""Security headers that every answer has."""
 
 import httpx
 import pytest

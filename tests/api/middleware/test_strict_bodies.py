@@ -1,4 +1,4 @@
-"""JSON bodies mean one thing to every reader, or are refused."""
+"""JSON bodies are unambiguous, or refused."""
 
 import httpx
 import pytest

@@ -1,4 +1,4 @@
-"""Metrics: what a scrape of Prometheus reads."""
+"""Metrics: the values that Prometheus scrapes."""
 
 from __future__ import annotations
 

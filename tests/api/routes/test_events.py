@@ -1,4 +1,4 @@
-"""One stream tells every page what changed."""
+"""Events: one stream informs every page of changes."""
 
 import json
 from contextlib import ExitStack

@@ -1,4 +1,4 @@
-"""Health is told at the root and under the API."""
+"""Server health: reported at the root and under the API."""
 
 import httpx
 

@@ -1,4 +1,4 @@
-"""Which part of a clip a request means."""
+"""Clip ranges: the part of a clip that a request refers to."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A gesture remembers the clip that it came from, whatever is done to its language."""
+"""Demonstration sources: a gesture keeps the reference to its clip, whatever edits follow."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def source(client: httpx.Client, language_id: str) -> Any:
 
 @pytest.fixture
 def saved(client: httpx.Client, language_id: str, circle_clip: str) -> dict[str, Any]:
-    """Return where the demonstration of a saved gesture is said to come from."""
+    """Return the source recorded for a saved gesture's demonstration."""
     (take,) = client.get(f"{CLIPS}/{circle_clip}/takes").json()
     (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
     expected = {"start": take["start"], "end": take["end"], "keep_transit": False, "salutes": 0}

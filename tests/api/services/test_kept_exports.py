@@ -1,4 +1,4 @@
-"""Exports that wait to be fetched: each once, and no more than fit."""
+"""Exports that wait to be fetched: each can be fetched once, and their number is limited."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def test_the_oldest_goes_when_there_are_too_many_and_all_at_the_end(tmp_path: Pa
         assert kept.take("clip", paths[-1].stem) == paths[-1]
         assert kept.take("clip", paths[-1].stem) is None
         kept.clear()
-        # What was taken is the taker's.
+        # A fetched export belongs to its caller.
         assert [*tmp_path.iterdir()] == [paths[-1]]
 
     asyncio.run(keep_too_many())

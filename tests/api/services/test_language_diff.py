@@ -1,4 +1,4 @@
-"""What differs between two languages, in words."""
+"""Language diff: the differences of two languages, in words."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""The store of a server: one server a data folder, and one a file of SQLite."""
+"""The store of a server: one server per data folder, and one per SQLite file."""
 
 from __future__ import annotations
 

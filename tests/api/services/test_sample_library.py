@@ -1,4 +1,4 @@
-"""Samples: there at the first start, once, and gone when deleted."""
+"""Samples: added once, at the first start, and not again after deletion."""
 
 from pathlib import Path
 

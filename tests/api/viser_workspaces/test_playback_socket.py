@@ -1,4 +1,4 @@
-"""Playback over the websocket: what one client asks for is done and sent to all."""
+"""Playback over the websocket: one client's commands are executed and sent to all."""
 
 from __future__ import annotations
 

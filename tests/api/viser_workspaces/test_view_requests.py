@@ -1,4 +1,4 @@
-"""What a workspace is asked to show is looked up in the store."""
+"""View requests: the requested view is looked up in the store."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The server dies, in bad order and in good; what it acknowledged is there when it comes back."""
+"""Crashes and shutdowns of the server: acknowledged changes are there after its restart."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ from tests.recognition.strategies import circle, line, square, wedge
 pytestmark = [pytest.mark.slow, linux]
 
 STOP_SECONDS = 90
-"""What systemd waits for after SIGTERM; alone on a machine it takes one or two."""
+"""Seconds that systemd waits after SIGTERM; on an idle machine the server needs one or two."""
 
 
 def working_on(clip: Path, process: subprocess.Popen[str], client: httpx.Client) -> tuple[str, int]:
-    """Upload a clip and freeze its worker; return the job's id and the worker's."""
+    """Upload a clip and suspend its worker; return the job's id and the worker's."""
     job_id: str = upload(client, clip).json()["job_id"]
     worker = hold_worker(process.pid)
     until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "running")
@@ -59,7 +59,7 @@ def test_after_a_kill_the_job_is_taken_up_again(tmp_path: Path) -> None:
         until(finished(client, job_id))
         (kept,) = client.get(CLIPS).json()
         assert client.get(f"{CLIPS}/{kept['id']}/video").content == clip.read_bytes()
-        # Done, or, on a machine without models, failed for that reason: it was run again.
+        # Done, or failed on a machine without models: in both cases the job ran again.
         assert kept["error_code"] in (None, "model_missing")
         assert [path.name for path in (data / "clips").iterdir()] == [kept["id"]]
 
@@ -84,8 +84,8 @@ def test_a_stop_in_the_middle_of_work_is_told_and_leaves_no_traceback(
     tmp_path: Path, ending: signal.Signals
 ) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=2)
-    # More than the sockets of both sides hold, in a box that players skip: nobody reads it to the
-    # end, and so its answer is still under way.
+    # More bytes than both sockets buffer, in a box that players skip: the client does not read to
+    # the end, so the answer is still under way.
     free = 16_000_000
     clip.write_bytes(clip.read_bytes() + struct.pack(">I4s", free, b"free") + bytes(free - 8))
     with (tmp_path / "errors").open("w+") as errors, ThreadPoolExecutor(1) as other:

@@ -1,4 +1,4 @@
-"""Jobs on a real Dask cluster: each has its effect once, whatever is killed."""
+"""Jobs on a real Dask cluster: each takes effect exactly once, whatever is killed."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
 
 
 def workers_at_work(cluster: Cluster, command: str = "record") -> dict[int, int]:
-    """Return the worker processes that do `command`, with the Dask workers that run them."""
+    """Return the worker processes that run `command`, with their Dask workers."""
     return {child: dask.pid for dask in cluster.workers for child in workers_of(dask.pid, command)}
 
 

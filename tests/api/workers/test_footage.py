@@ -1,4 +1,4 @@
-"""The landmarks of many clips: each content once, and never half."""
+"""The landmarks of many clips: found once per content, and never stored incomplete."""
 
 from __future__ import annotations
 

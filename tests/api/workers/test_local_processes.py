@@ -1,4 +1,4 @@
-"""Worker processes on this machine, which behave alike forked and started from the beginning."""
+"""Worker processes on this machine, which behave alike whether forked or started anew."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ for _ in range(2):
 
 @pytest.fixture(params=["forked", "started"])
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Fork the workers, or start them as where processes cannot be forked."""
+    """Run a test with forked workers, and with workers started as where forking is impossible."""
     way = str(request.param)
     monkeypatch.setattr(local_processes, "can_fork", lambda: way == "forked")
     return way
@@ -111,7 +111,7 @@ def test_a_fork_server_that_was_killed_is_started_again(clip: Path) -> None:
     assert asyncio.run(probe(clip)) == "probed"
     (killed,) = fork_servers_of(os.getpid())
     os.kill(killed, signal.SIGKILL)
-    # The worker that is asked for while it dies is started from the beginning.
+    # A worker requested while the fork server dies is started anew.
     assert asyncio.run(probe(clip)) == "probed"
     until(lambda: not alive(killed))
     assert asyncio.run(probe(clip)) == "probed"

@@ -1,4 +1,4 @@
-"""Tasks in folders of their own: clips come from the object store, what is written goes back."""
+"""Tasks in folders of their own: clips come from the object store, written files go back."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def test_what_is_written_for_a_clip_that_is_gone_is_left_out(
 
 @pytest.fixture
 def cluster(s3: S3Server, tmp_path: Path) -> Iterator[Cluster]:
-    """Return a cluster of one machine, which knows the bucket by its environment."""
+    """Return a cluster of one machine, which finds the bucket by its environment."""
     with dask_cluster(tmp_path, workers=1) as cluster:
         yield cluster
 
@@ -122,7 +122,7 @@ def test_every_kind_of_job_runs_without_a_folder_in_common(
     machine = cluster.workers[0].pid
     os.kill(machine, signal.SIGSTOP)
     ids = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()
-    # What cannot be fetched now is asked for again.
+    # A failed download is tried again.
     kept = (studio.clips.place(ids["id"], "video"), f"{ids['id']}/video")
     s3.client().delete_object(Bucket=BUCKET, Key=f"pool/{kept[1]}")
     os.kill(machine, signal.SIGCONT)

@@ -1,4 +1,4 @@
-"""What workers tell survives the way through the pipe; anything else is refused."""
+"""Worker messages: they survive the way through the pipe; other data is refused."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Bars on the novelty: each refuses as many true takes as it says."""
+"""Thresholds of the novelty: each rejects the share of true takes that it promises."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ QUERIES = 2000
 
 
 def drawn(true: float, foreign: float, seed: int) -> Outcomes:
-    """Draw novelties about two means; a language refuses what is above 1."""
+    """Draw novelties about two means; a language rejects those above 1."""
     generator = np.random.default_rng(seed)
     known = np.arange(QUERIES) % 2 == 0
     novelty = generator.normal(np.where(known, true, foreign), 0.2)
@@ -35,7 +35,7 @@ def test_a_sets_own_bar_refuses_its_share_of_the_true_takes() -> None:
 
 
 def test_one_bar_for_all_is_a_compromise() -> None:
-    """The set whose true takes lie farther out needs a wider bar, and gets less than it needs."""
+    """A set whose true takes are farther away needs a higher threshold than the common one."""
     assert accepted_at_one_bar([NEAR]) == pytest.approx(accepted_at_own_bars([NEAR]), abs=0.01)
     assert accepted_at_one_bar([NEAR, LOOSE]) > accepted_at_own_bars([NEAR, LOOSE])
 

@@ -1,4 +1,4 @@
-"""The water that test clips are put into."""
+"""Simulated water in test clips."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The runtime for hours: a stream that repeats itself is heard the same, in the same memory."""
+"""The runtime for hours: a repeated stream gives the same answers, in constant memory."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.recognition.recording.test_live_segmentation import frames_of
 from tests.robot.languages import spoken
 
 MINUTES = 6
-"""Of stream time: what grew by one frame's landmarks a frame would have grown by 20 MB."""
+"""Stream time: a leak of one frame's landmarks per frame would amount to 20 MB."""
 
 
 class LoopedLandmarks:
@@ -65,10 +65,10 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
         assert [answer.label for answer in lap.answers] == ["circle", "line"]
         for one, first in zip(lap.answers, laps[0].answers, strict=True):
             assert one.is_same(first)
-            # The last bits of later times move the edge of a stroke by one frame, which makes a
-            # confidence of 1.00 one of 0.94.
+            # Rounding of later times moves the edge of a stroke by one frame, which changes a
+            # confidence from 1.00 to 0.94.
             assert one.confidence == pytest.approx(first.confidence, abs=0.1)
-        # And the frame whose stamp ends the longest take.
+        # Plus the frame whose stamp ends the longest take.
         assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE + 1
     settled = laps[len(laps) // 2 :]
     assert settled[-1].memory - settled[0].memory < 4e6

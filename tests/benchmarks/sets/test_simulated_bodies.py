@@ -15,9 +15,9 @@ def test_every_person_draws_every_figure_with_arms_of_one_length() -> None:
         )
         torso = poses.torso_length()
         assert torso is not None
-        # Seen from the front an arm is never longer than it is, up to noise and perspective.
+        # Seen from the front, an arm never appears longer than it is, up to noise and perspective.
         assert whole.max() < 1.35 * torso
-        # It hangs at both ends: the wrist is below the hip's height or close.
+        # The arm hangs at both ends: the wrist is at about the hip's height or lower.
         wrist, hip = poses.column("right_wrist")[:, 1], poses.column("right_hip")[:, 1]
         assert min(wrist[0] - hip[0], wrist[-1] - hip[-1]) > -0.2 * torso
 

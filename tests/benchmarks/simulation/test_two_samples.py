@@ -1,4 +1,4 @@
-"""What tells two samples apart."""
+"""Two-sample statistics."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Models of variation: all give takes that can stand beside ours."""
+"""Models of variation: all give takes comparable with ours."""
 
 from typing import get_args
 

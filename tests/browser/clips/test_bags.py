@@ -110,7 +110,7 @@ def test_the_topic_is_chosen_in_a_dialogue(
     page.emulate_media(color_scheme="light")
     assert faults(page) == []
 
-    # Whoever decides later finds the question at the clip, and can answer it by keyboard.
+    # A user who decides later finds the question at the clip, and can answer it by keyboard.
     dialog.get_by_role("button", name="Later").click()
     card = page.get_by_role("list", name="Clips", exact=True).get_by_role("listitem").first
     expect(card.get_by_text("2 topics: choose one")).to_be_visible()
@@ -127,7 +127,7 @@ def test_the_topic_is_chosen_in_a_dialogue(
     expect(dialog).to_have_count(0)
     assert labels_of(library, clip_shown(page)) == ["circle"]
 
-    # What was seen and recognised leaves as a file that Foxglove opens.
+    # Poses and recognitions are exported as a file that Foxglove opens.
     page.get_by_role("button", name="Recognise", exact=True).click()
     why = page.get_by_role("region", name="Why")
     with page.expect_download() as download:

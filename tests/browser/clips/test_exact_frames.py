@@ -1,4 +1,4 @@
-"""The number and the seconds that are shown are those of the very picture on the screen."""
+"""Exact frames: the number and seconds shown belong to the picture on the screen."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Screen:
     Attributes
     ----------
     picture, clock
-        Where they are on the page.
+        Their locators on the page.
     times
         Seconds of the clip's frames.
 
@@ -53,7 +53,7 @@ class Screen:
         return int(frame), float(seconds)
 
     def steps_and_plays(self, page: Page, at: int) -> None:
-        """Check the keys, from a frame on."""
+        """Check the keys, starting at a frame."""
         keys = ((".", 1), (",", 0), (",", -1), ("Shift+.", 9), (".", 10), ("Shift+,", 0))
         for pressed, moved in keys:
             page.keyboard.press(pressed)
@@ -80,7 +80,7 @@ def drag_to(page: Page, share: float) -> None:
 def test_number_and_seconds_are_those_of_the_picture_on_the_screen(
     open_page: OpenPage, clips: Path, tmp_path: Path
 ) -> None:
-    del clips  # It is only asked for because it skips where there are no models.
+    del clips  # This fixture is requested only because it skips the test where there are no models.
     times = numbered_clip(tmp_path / "numbered.mp4", FRAMES)
     page = open_page(size=(1280, 800))
     drop(page, tmp_path / "numbered.mp4")

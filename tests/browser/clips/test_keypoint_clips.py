@@ -37,7 +37,7 @@ def test_a_folder_of_openpose_becomes_a_clip_and_a_gesture(
     archive = packed(write_openpose(tmp_path / "dive", poses, BODY_25))
     page = open_page({"language": library.language}, scene=False)
     drop(page, archive)
-    # What the files do not tell is asked for; whoever does not know it now finds Retry.
+    # The page asks for data missing in the files; a user who does not know it now finds Retry.
     dialog = page.get_by_role("dialog", name="What was the video like?")
     expect(dialog).to_contain_text("dive.zip holds keypoints and no video")
     assert faults(page) == []

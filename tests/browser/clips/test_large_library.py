@@ -79,7 +79,7 @@ def test_a_link_to_an_older_clip_opens_it_and_scrolling_loads_those_between(
     page.locator("#clips").evaluate("list => list.scrollTo(0, 0)")
     page.locator("#clips").evaluate("list => list.scrollTo(0, list.scrollHeight)")
     expect(page.locator("#clips > li")).to_have_count(CLIPS + 1)
-    # What the open table asked of a clip, it asked once; what is left when it closes, not at all.
+    # The open table requests a clip's takes once; requests left when it closes are not sent.
     takes = list_takes(asked)
     assert 0 < len(takes) == len(set(takes)) < CLIPS_OF_A_PAGE
     assert len(takes) <= by_then + AT_ONCE

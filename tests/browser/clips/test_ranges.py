@@ -37,7 +37,7 @@ def test_a_second_click_on_the_selected_clip_keeps_its_take(
     expect(take).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#outcome")).to_contain_text("Recognised as circle")
     page.locator("#clips .chosen .clip-open").click()
-    # What the click would change is drawn at once.
+    # The controls that the click would change are drawn at once.
     expect(take).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#range-text")).to_contain_text("Take 1 of 1")
     expect(page.locator("#outcome")).to_contain_text("Recognised as circle")

@@ -1,4 +1,4 @@
-"""A clip leaves as MCAP: the page shows how far it is, cancels it, and says what went wrong."""
+"""A clip's export as MCAP: the page shows its progress, cancels it, and reports errors."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     open_page: OpenPage, server: Running, library: Library, tmp_path: Path
 ) -> None:
     page = recognised(open_page, library)
-    # Whatever the page says while it is written, since that may be short.
+    # Any text during the writing will do, since that may be short.
     page.evaluate(
         "window.said = []; new MutationObserver(() => { const now = document.querySelector("
         "'.session-export [role=status]'); if (now) window.said.push(now.textContent); })"
@@ -44,7 +44,8 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     )
     with page.expect_download() as download:
         page.get_by_role("button", name="Session as MCAP").click()
-    # The browser saves it as it arrives: the page itself never holds what may be gigabytes.
+    # The browser saves it while it downloads: the page itself never holds the file, maybe
+    # gigabytes.
     assert f"/clips/{library.clip}/session.mcap?export=" in download.value.url
     assert download.value.url.startswith(server.address)
     assert download.value.suggested_filename == "exported.mcap"
@@ -67,7 +68,7 @@ def test_a_session_can_be_cancelled(
     page = open_page(address, scene=False)
     page.get_by_role("button", name="Session as MCAP").click()
     page.get_by_text("Writing the session").wait_for()
-    # It takes as long as this test wants.
+    # The export takes as long as this test needs.
     hold_worker(os.getpid(), "session")
     assert faults(page) == []
     page.get_by_role("button", name="Cancel the session").click()

@@ -19,7 +19,7 @@ EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip on a loaded machine."""
 
 SECONDS = 4.0
-"""Of the clip: enough frames for progress and an estimate of the time left."""
+"""Length of the clip: enough frames for progress and an estimate of the time left."""
 
 
 @linux
@@ -39,7 +39,7 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     )
     clip = shortened(thin_clip("line-test-2"), tmp_path / "short.mp4", SECONDS)
     drop(page, *[clip] * 3, names=names)
-    # The first one takes as long as this test looks at the queue.
+    # The first job runs as long as this test inspects the queue.
     worker = hold_worker(os.getpid())
     card = page.locator("#batch")
     expect(card).to_contain_text("0 of 3 clips done")

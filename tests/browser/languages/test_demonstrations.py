@@ -16,7 +16,7 @@ from tests.browser.library import Library, add_clip, library_of
 
 @pytest.fixture
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
-    # The documentation's picture shows the name.
+    # The name is visible in the documentation's picture.
     name = "Reef" if "compared" in request.node.name else "Wreck"
     with client_of(server.address) as client:
         yield library_of(server, client, name)

@@ -39,7 +39,7 @@ def presses(page: Page) -> int:
 
 
 def counting(page: Page) -> Page:
-    """Count from now on."""
+    """Start counting."""
     page.evaluate(COUNT_PRESSES)
     return page
 
@@ -90,7 +90,7 @@ def test_eight_clips_become_eight_gestures_in_one_step_that_can_be_undone(
     dialog = open_table(page)
     for row in dialog.get_by_role("listitem").all():
         if "IMG_" not in row.inner_text():
-            row.get_by_role("checkbox").uncheck()  # Clips of other tests: no part of this one.
+            row.get_by_role("checkbox").uncheck()  # Clips of other tests, which are left out here.
     expect(dialog).to_contain_text("8 rows without a name")
     before = presses(page)
     for number, label in enumerate(NAMES):

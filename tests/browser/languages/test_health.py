@@ -1,4 +1,4 @@
-"""The health of a language in the browser: what is predicted, two side by side, test clips."""
+"""The health of a language in the browser: estimates, two gestures side by side, test clips."""
 
 from __future__ import annotations
 
@@ -99,11 +99,11 @@ def test_a_rate_is_rounded_as_in_the_findings(open_page: OpenPage) -> None:
 
 
 def import_crowd(client: httpx.Client) -> str:
-    """Import a language of forty gestures, whose check is not done before a test cancels it."""
+    """Import a language of forty gestures, whose check takes long enough to cancel it."""
     listed = client.get("/api/v1/languages").json()
     eight = next(each["id"] for each in listed if each["name"] == "Table 2: eight signs")
     document = client.get(f"/api/v1/languages/{eight}/export").json()
-    del document["sha256"], document["grammar"]  # They are of the eight.
+    del document["sha256"], document["grammar"]  # Valid for the eight only.
     document["gestures"] = [
         gesture | {"label": f"{gesture['label']} {turn}"}
         for turn in range(5)
@@ -117,7 +117,7 @@ def import_crowd(client: httpx.Client) -> str:
 def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Library) -> None:
     crowd = import_crowd(library.client)
     page = open_page({"view": "health", "language": crowd}, scene=False)
-    # Whatever the stage: the first is over in a moment.
+    # At any stage, since the first is over in a moment.
     progress = page.get_by_text(re.compile(r"^(Simulating|Testing) .*, \d+ (of \d+|so far)$"))
     cancelled = page.get_by_text("The check was cancelled")
     expect(progress).to_be_visible()
@@ -252,7 +252,7 @@ def test_a_change_while_a_clip_is_added_to_the_test_holds(
             held[0].continue_()
         expect(shows).to_have_count(0)
     else:
-        # The page hears of the take before its own request is answered.
+        # The event about the take arrives before the answer to the page's request.
         with page.expect_response(lambda answer: is_test_set(answer.request)):
             answer = held[0].fetch()
         expect(row).to_have_count(1)

@@ -33,7 +33,7 @@ def card(page: Page, name: str) -> Locator:
 def command(page: Page, name: str, text: str) -> None:
     page.get_by_label(f"What to do with {name}", exact=True).click()
     item = card(page, name).get_by_role("button", name=text)
-    # A click would bring it there.
+    # A click would scroll it into view.
     expect(item).to_be_in_viewport()
     item.click()
 
@@ -171,7 +171,7 @@ def test_a_second_tab_sees_a_change_by_itself(open_page: OpenPage, library: Libr
 
 @pytest.fixture
 def lose_race(open_page: OpenPage, library: Library) -> Callable[[], Page]:
-    """Return a function that relabels the line while somebody else describes it."""
+    """Return a function that relabels the line while somebody else edits its description."""
 
     def lose_race() -> Page:
         page = open_page(library.address, scene=False)
@@ -287,7 +287,7 @@ def test_pictures_of_the_library(
     library.client.patch(f"{place}/gestures/circle", json=change)
     page = open_page({"view": "languages"}, scene=False)
     expect(card(page, "Reef survey").get_by_text("Healthy")).to_be_visible()
-    # Pictures are loaded when they come into view.
+    # Pictures are loaded when scrolled into view.
     images = "[...document.querySelectorAll('#view-languages img')]"
     until(lambda: page.evaluate(f"{images}.every((image) => image.naturalWidth > 0)"))
     picture(page, "library")

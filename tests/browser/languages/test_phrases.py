@@ -122,7 +122,8 @@ def test_parts_are_moved_made_optional_and_taken_out(open_page: OpenPage, librar
     page.get_by_role("button", name="Move slot 2 up").click()
     expect(page.get_by_role("button", name="Move slot 1 down")).to_be_visible()
     page.locator("#part-0-optional").click()
-    # The spoken text needs the value: what cannot be is refused, and the form shows what is.
+    # The spoken text needs the slot's value: making it optional is refused, and the form shows the
+    # saved state.
     refused = page.get_by_role("alert").filter(has_text="Changing the phrases failed")
     expect(refused).to_have_count(1)
     expect(page.locator("#part-0-optional")).not_to_be_checked()

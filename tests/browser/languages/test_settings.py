@@ -58,7 +58,7 @@ def test_the_settings_fit_a_phone(open_page: OpenPage, library: Library) -> None
     page = open_page(library.address, scene=False, size=(390, 844))
     page.get_by_role("button", name="Settings", exact=True).click()
     dialog = page.get_by_role("dialog", name="How this language is recognised")
-    # The dialog is higher than the window; what ends it is in sight all the same.
+    # The dialog is higher than the window, but its buttons are visible.
     assert dialog.evaluate("(each) => each.scrollHeight > each.clientHeight")
     expect(dialog.get_by_role("button", name="Save")).to_be_in_viewport(ratio=0.99)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390

@@ -57,8 +57,8 @@ MediaDevices.prototype.getUserMedia = function (wanted) {
 };
 window.cameraIsBusy = true;
 """
-"""What Chromium answers while another program holds the camera. Its fake device can be held by any
-number of pages, so this one answer is given for it; all that the page does with it is real."""
+"""Chromium's error while another program uses the camera. Any number of pages can use its fake
+device, so this error is simulated; the page's handling of it is real."""
 
 
 def test_a_camera_that_another_program_holds_is_told_and_tried_again(open_page: OpenPage) -> None:
@@ -82,7 +82,7 @@ REAR = """() => {
     return { ...settings.call(this), facingMode: "environment" };
   };
 }"""
-"""What a phone says of its rear camera; Chromium's fake device does not say where it looks."""
+"""A phone's settings of its rear camera; Chromium's fake device does not report its direction."""
 
 
 @pytest.mark.parametrize("view", ["live", "practice"])

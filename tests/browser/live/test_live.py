@@ -25,32 +25,32 @@ COUNTED = """() => {
   window.counted = [];
   new MutationObserver(() => counted.push(count.textContent)).observe(count, { childList: true });
 }"""
-"""Notes what the countdown shows: who looks now and then may look between two of its seconds."""
+"""Records the texts of the countdown, since polling could miss a second."""
 
 FOREIGN = "studio.test"
-"""A name under which the server is reached as from another machine: no secure origin."""
+"""A host name that is not a secure origin, like another machine's."""
 
 WHOLE_CLIP_MS = 300_000
-"""The camera's clip lasts 40 s, and a very busy machine may miss a salute; nor is it quick to look
-at every frame of one."""
+"""Longest wait for a take: the camera's clip lasts 40 s, and a very busy machine may miss a salute
+or take long to process every frame of one."""
 
 
 @pytest.fixture(scope="module")
 def settings(tmp_path_factory: pytest.TempPathFactory) -> Settings:
-    """Return settings that answer to another name as well."""
+    """Return settings of a server that also answers to the host name `FOREIGN`."""
     return Settings(data_dir=tmp_path_factory.mktemp("studio"), allowed_hosts=(FOREIGN,))
 
 
 @pytest.fixture(scope="module")
 def feed(clips: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return what the camera shows: a diver who salutes, draws a line and salutes again."""
+    """Return the camera's feed: a diver who salutes, draws a line and salutes again."""
     path = tmp_path_factory.mktemp("camera") / "line.y4m"
     return write_feed(clips / "line-test-2.mp4", path, FEED_RATE)
 
 
 @pytest.fixture(scope="module")
 def browser(browser: Browser, feed: Path) -> Iterator[Browser]:
-    """Start a second Chromium, with a camera that shows the feed again and again."""
+    """Start a second Chromium, with a camera that shows the feed in a loop."""
     name = f"--host-resolver-rules=MAP {FOREIGN} 127.0.0.1"
     with started(browser.browser_type, *camera_showing(feed), name) as another:
         yield another

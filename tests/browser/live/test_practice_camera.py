@@ -1,4 +1,4 @@
-"""Practice before the camera: what is shown is judged and counted, without a clip of one's own."""
+"""Practice before the camera: gestures are judged and counted, without adding a clip."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ FEED_RATE = 12
 """Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
 
 ONE_ROUND = 8.0
-"""Seconds in which the camera shows all of the clip."""
+"""Seconds in which the camera shows the whole clip."""
 
 ROUNDS = 3
-"""Before the test fails: of a clip that was begun in the middle there may be no whole take."""
+"""Rounds before the test fails: a recording begun in the middle may contain no complete take."""
 
 JUDGED = re.compile("Right: |Not yet: |No take of ")
-"""What is said of a take in the end."""
+"""The feedback to a judged take."""
 
 JUDGED_MS = 300_000
 """Longest wait for the poses of a clip of a few seconds on a loaded machine."""
@@ -49,7 +49,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     language = next(each["id"] for each in listed if "Table 2" in each["name"])
     page = open_page({"view": "practice", "language": language}, scene=False)
     start = page.get_by_role("button", name="Start the camera")
-    # Without any clip the camera is what there is to show by.
+    # Without any clip, practice offers the camera.
     expect(start).to_be_disabled()
     page.get_by_label("Diver").fill("Ana")
     page.get_by_label("Gesture to show").select_option("line")
@@ -60,13 +60,13 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     answer = page.locator(".practice-answer")
     for _ in range(ROUNDS):
         see_seconds(page, ONE_ROUND)
-        # A machine that is busy may not have seen the end of the take by itself.
+        # A busy machine may have missed the end of the take.
         if not answer.inner_text():
             page.get_by_role("button", name="Judge what was shown").click()
         expect(answer).to_contain_text(JUDGED, timeout=JUDGED_MS)
         if "Right: line" in answer.inner_text():
             break
-    # The camera shows it again and again, and so another take may have been counted by now.
+    # The camera repeats the take, so that another one may have been counted by now.
     record = page.get_by_role("region", name="Ana")
     expect(record).to_contain_text(re.compile(r"0 errors in \d+ takes?:"))
     page.get_by_role("button", name="Stop the camera").click()

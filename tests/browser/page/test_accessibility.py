@@ -20,7 +20,7 @@ SHOWN = {
     "Practice": "role=button[name='Start the camera']",
     "Live": "role=button[name='Start the camera']",
 }
-"""By view what stands in it once all is loaded."""
+"""By view a selector of content that appears once all is loaded."""
 
 
 @pytest.fixture(scope="module")

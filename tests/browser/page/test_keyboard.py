@@ -15,7 +15,7 @@ from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.damaged_clips import write_clip
 
 MOST_TABS = 120
-"""More steps than there are in any view."""
+"""More steps of the focus than any view has."""
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def library(server: Running) -> Iterator[Library]:
 
 
 def reach(page: Page, wanted: Locator, *, shown: Locator | None = None) -> None:
-    """Press Tab until the focus is on an element; it, or what is `shown` of it, must be seen."""
+    """Press Tab until an element has the focus; it, or its visible part `shown`, must be seen."""
     expect(wanted).to_have_count(1)
     for _ in range(MOST_TABS):
         page.keyboard.press("Tab")
@@ -72,7 +72,7 @@ def test_from_a_clip_to_the_file_for_the_robot(
     expect(page.get_by_text("Gesture saved")).to_be_visible()
     expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(3)
 
-    # Another one is recognised, and the reasons are asked for.
+    # Another clip is recognised, and its explanation is opened.
     press(page, "Show another line.mp4")
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_be_visible()
     reach(page, page.get_by_label("Expected", exact=True))
@@ -81,7 +81,7 @@ def test_from_a_clip_to_the_file_for_the_robot(
     expect(page.locator("#outcome")).to_contain_text("Recognised as line")
     expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'circle'")
 
-    # The health check tells of two gestures, side by side.
+    # The health check is opened, with two gestures side by side.
     open_view(page, "Health")
     grid = page.get_by_role("grid", name="Estimated confusions")
     reach(page, grid.locator("[role=gridcell][tabindex='0']"))

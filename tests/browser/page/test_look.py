@@ -1,4 +1,4 @@
-"""How it looks: wide and narrow, dark and light, and usable by keyboard alone."""
+"""The look of the page: wide and narrow, dark and light, and usable by keyboard alone."""
 
 from __future__ import annotations
 
@@ -49,14 +49,14 @@ COVERED = """(box) => {
       ? [x + (i % 2 ? -4 : 4), y + (i < 2 ? 4 : -4)] : [x / 2, y / 2])
     .filter(([x, y]) => !box.contains(document.elementFromPoint(x, y)));
 }"""
-"""Of the corners and the middle of what is seen of a box, those that something else lies over."""
+"""The covered points among the corners and the middle of the visible part of a box."""
 
 
 @pytest.mark.parametrize("look", ["", "sun"])
 def test_the_picture_of_a_chosen_clip_is_in_sight_on_a_phone(
     open_page: OpenPage, server: Running, library: Library, look: str
 ) -> None:
-    # So many that they can be searched, and of another shape than the one on display.
+    # Enough clips to show the search, of another aspect ratio than the one on display.
     for number in range(5):
         add_clip(server, "line", name=f"{look} dive {number}.mp4")
     page = open_page(library.address, size=(390, 844), scene=False)

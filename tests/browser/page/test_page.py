@@ -1,4 +1,4 @@
-"""The page: links, tabs, undo, files, names with markup, and what is said when something fails."""
+"""The page: links, tabs, undo, files, names with markup, and error messages."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def test_two_tabs_are_two_workspaces_and_hear_of_each_others_changes(
 def test_a_duplicated_tab_gets_a_workspace_of_its_own(open_page: OpenPage) -> None:
     first = open_page(scene=False)
     workspace = workspace_of(first)
-    # Like the browser's own command, this copies what the tab keeps for its session.
+    # Like the browser's command to duplicate a tab, this copies the tab's sessionStorage.
     with first.expect_popup() as opened:
         first.evaluate("open(location.href)")
     assert workspace_of(opened.value) != workspace
@@ -206,7 +206,7 @@ def card_of(label: str) -> str:
 
 
 def press(page: Page, name: str) -> None:
-    """Press a button by the keyboard: the last message may lie over it for a while."""
+    """Press a button by the keyboard, because the last message may cover it for a while."""
     page.get_by_role("button", name=name, exact=True).focus()
     page.keyboard.press("Enter")
 
@@ -312,7 +312,7 @@ def test_what_is_expected_is_proposed_once_the_language_is_there(
     page = open_page({"language": library.language}, scene=False)
     expect(page.get_by_text("Take 1 of 1")).to_be_visible()
     held: list[Route] = []
-    # It may be asked for again meanwhile; that is not held.
+    # A repeated request is not held back.
     page.route(
         f"**/languages/{library.language}",
         lambda route: route.fallback() if held else held.append(route),

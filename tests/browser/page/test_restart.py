@@ -24,7 +24,7 @@ FRAME = 12
 
 @dataclass
 class Address:
-    """Where the server is, whichever process it is."""
+    """The address of the server, independent of its process."""
 
     address: str = ""
 
@@ -37,7 +37,7 @@ def server() -> Address:
 
 @pytest.fixture
 def query(tmp_path: Path) -> dict[str, str]:
-    """Return what a link names: a clip, a language of two gestures and a misread take."""
+    """Return the data of a link: a clip, a language of two gestures and a misread take."""
     settings = Settings(data_dir=tmp_path, samples_dir=tmp_path / "none")
     with running(settings) as server, client_of(server.address) as client:
         library = library_of(server, client, "kept")
@@ -45,7 +45,7 @@ def query(tmp_path: Path) -> dict[str, str]:
 
 
 def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
-    """Open every view, with something to lose."""
+    """Open every view, with unsaved content."""
     pages = {
         "studio": open_page(query | {"frame": str(FRAME)}, scene=False),
         "languages": open_page(query | {"view": "languages"}, scene=False),
@@ -65,7 +65,7 @@ def opened(open_page: OpenPage, query: dict[str, str]) -> dict[str, Page]:
 
 
 def look(page: Page, *, away: bool) -> None:
-    """Look away from a page for a minute, or at it again: headless browsers hide no page."""
+    """Simulate that a page is hidden for a minute or shown again: headless browsers hide none."""
     if away:
         page.evaluate("Object.defineProperty(document, 'hidden', {get: () => window.unseen})")
         page.clock.install()
@@ -76,7 +76,7 @@ def look(page: Page, *, away: bool) -> None:
 
 
 def padded(path: Path, size: int) -> Path:
-    """Write a clip that is `size` bytes longer than it need be, in a box that players skip."""
+    """Write a clip with `size` extra bytes in a box that players skip."""
     write_clip(path, frames=2)
     path.write_bytes(path.read_bytes() + struct.pack(">I4s", size, b"free") + bytes(size - 8))
     return path
@@ -107,7 +107,7 @@ def test_an_upload_goes_on_where_a_killed_server_left_it(
     came = max(path.stat().st_size for path in data.glob("uploads/*"))
     network.send("Network.emulateNetworkConditions", {**slow, "uploadThroughput": -1})
     with ExitStack() as stack:
-        # The page may go on before this process hears that the server is there.
+        # The page may continue before this process notices that the server is back.
         with page.expect_request(is_upload) as going_on:
             _, client = stack.enter_context(served(data, port=port))
         assert int(going_on.value.headers["upload-offset"]) == came

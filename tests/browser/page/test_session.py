@@ -1,4 +1,4 @@
-"""The page of a server with named tokens: sign in, be told what one may not, log out."""
+"""The page of a server with named tokens: sign-in, limits of a role, log-out."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
         file.write_text("{}", encoding="utf-8")
         drop(page, file)
         expect(page.get_by_text("Nothing was added")).to_be_visible()
-        # Recognising changes nothing that others see.
+        # Recognition changes no shared data.
         page.get_by_role("list", name="Clips").get_by_role("button", name="Show circle.mp4").click()
         page.get_by_role("button", name="Recognise", exact=True).click()
         expect(page.locator("#outcome")).to_contain_text("Recognised as circle")
@@ -83,7 +83,7 @@ def test_a_reader_is_told_who_can_open_the_example(browser: Browser, tmp_path: P
         page.get_by_role("button", name="All keys").click()
         page.get_by_role("dialog").get_by_role("button", name="Example").click()
         expect(page.get_by_text("The example needs the role edit")).to_be_visible()
-        # Once somebody has added its clip, it opens for readers too, also before the list is there.
+        # Once somebody has added its clip, readers can open it too, even before the list is loaded.
         add_clip(server, "circle", name=MISREAD)
         held: list[Route] = []
         page.route(CLIPS, lambda route: held.append(route))

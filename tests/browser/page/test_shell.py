@@ -1,4 +1,4 @@
-"""What every view shares: keys, undo and redo; and why, with changes on trial."""
+"""The shell of all views: keys, undo and redo; and explanations with trials of changes."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_question_mark_lists_all_keys_and_escape_closes_the_list(open_page: Op
     page.keyboard.press("?")
     listed = page.get_by_role("dialog", name="Keys")
     expect(listed.get_by_text("Undo", exact=True)).to_be_visible()
-    # Also those of views that were not opened so far.
+    # Also the keys of views not opened yet.
     for group in ("Playback", "Editing a gesture", "Two gestures side by side", "Live"):
         expect(listed.get_by_role("heading", name=group, exact=True)).to_be_visible()
     page.keyboard.press("Escape")
@@ -87,7 +87,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     ).to_be_visible()
     drawn = why.get_by_role("figure").filter(has_text="lineexpected")
     beside = drawn.get_by_text(re.compile(r"s of line: [\d.]+ %"))
-    # A key means something once the workspace shows the clip.
+    # The keys work once the workspace shows the clip.
     frames = len(recording_of("circle").poses)
     expect(page.locator("#clock")).to_have_text(re.compile(f" of {frames}$"))
     before = beside.inner_text()
@@ -99,7 +99,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     joint = why.get_by_label("Joint whose paths are drawn")
     expect(joint).to_have_value("right_wrist")
     expect(drawn.get_by_role("img", name="The right wrist in this take")).to_be_visible()
-    # Why the trial comes out as it does is told only after it was taken back.
+    # The explanation of the trial arrives only after the trial was discarded.
     held: list[Route] = []
     page.route("**/explanation", lambda route: held.append(route))
     page.get_by_label(re.compile("^Weight of velocity:")).select_option("2")
@@ -115,7 +115,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
     expect(why).to_contain_text("instead of 'line'")
 
-    # The reasons leave as a file that plays where there is neither server nor network.
+    # The explanation is exported as a file that works without a server or network.
     with page.expect_download() as download:
         why.get_by_role("link", name="Share as one file").click()
     analysis = tmp_path / "analysis.html"

@@ -26,7 +26,7 @@ COVERED = """() => [...document.querySelectorAll(".bar :is(button, select, .bran
       .some((x) => !each.contains(document.elementFromPoint(x, top + height / 2)));
   })
   .map((each) => each.outerHTML.slice(0, 80))"""
-"""Controls of the bar over which something else lies, or that leave the window."""
+"""Controls of the bar that are covered or outside the window."""
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Messages lie over nothing that is used next."""
+"""Toasts: messages cover no control that is used next."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Editing a gesture: seen before it is saved, taken back, and never lost."""
+"""Editing a gesture: previewed before it is saved, undone, and never lost."""
 
 from __future__ import annotations
 

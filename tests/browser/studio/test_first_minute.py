@@ -34,7 +34,7 @@ def sample_id(client: httpx.Client) -> str:
 
 
 def add_example(server: Running, clips: Path) -> None:
-    """Add the example's clip, unless it is there; how poses are found is another test's subject."""
+    """Add the example's clip, unless it exists; finding poses is tested elsewhere."""
     video = clips / f"{MISREAD}.mp4"
     if not any(each.clip.name == video.name for each in server.studio.clips.all()):
         found = Recording.load(RECORDINGS / "avx512" / f"{MISREAD}.npz")
@@ -81,7 +81,7 @@ def test_the_tour_shows_its_steps_on_the_example(
         expect(tour).to_contain_text(f"{number} of 5")
         page.keyboard.press("Enter")
     tour.get_by_role("button", name="Open the example").click()
-    # What appears is pointed at, and the keyboard goes on from where it was.
+    # The tour points at elements that appear, and the focus stays where it was.
     expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'triangle'")
     expect(tour.get_by_role("button", name="Open the example")).to_have_count(0)
     expect(tour.get_by_role("button", name="Next")).to_be_focused()

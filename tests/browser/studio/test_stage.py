@@ -77,7 +77,7 @@ def test_the_flat_picture_comes_first_and_the_cube_is_a_key_away_and_remembered(
 def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     open_page: OpenPage, library: Library, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    # Slow enough for screenshots on the way, on any machine.
+    # Slow enough for screenshots during the transition, on any machine.
     monkeypatch.setattr(workspace, "TRANSITION_SECONDS", 30.0)
     page = open_page(library.address, size=(1440, 900))
     page.emulate_media(reduced_motion="no-preference")
@@ -92,7 +92,7 @@ def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     page.keyboard.press("v")
     until(is_on_the_way)
     monkeypatch.setattr(workspace, "TRANSITION_SECONDS", 0.0)
-    # Where motion is unwelcome, the way back is one step.
+    # With reduced motion, the way back is one step.
     page.emulate_media(reduced_motion="reduce")
     page.keyboard.press("v")
     until(is_square(canvas))

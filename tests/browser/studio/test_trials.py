@@ -1,4 +1,4 @@
-"""Changes that would have helped: each is tried by one press, and kept or taken back."""
+"""Trials of counterfactuals: each is tried by one press, and kept or discarded."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library
 
 
 def exchanged() -> Recording:
-    """Return a circle during which left and right are taken for each other for a while."""
+    """Return a circle with left and right exchanged for a while."""
     recording = recording_of("circle")
     return replace(recording, poses=with_sides_exchanged(recording.poses, range(32, 40)))
 
@@ -40,7 +40,7 @@ def opened_at_a_mistake(open_page: OpenPage, server: Running, library: Library) 
 
 
 def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
-    """Press a change that would have helped, and wait for what came of it."""
+    """Press a counterfactual, and wait for the result of its trial."""
     page.get_by_role("region", name="Why").get_by_role("button", name=words).first.click()
     trial = page.get_by_role("region", name="Why").get_by_role("status")
     expect(trial).to_contain_text(words)
@@ -81,7 +81,7 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
         re.compile(r"as expectedconfidence \d+ %, voters with \d+ % of the weight$")
     )
 
-    # What leaves for the robot says it too.
+    # The export for the robot has the change too.
     page.get_by_role("button", name="Export").click()
     expect(page.get_by_role("dialog")).to_contain_text(WEIGHT)
     page.get_by_role("button", name="Close").click()
@@ -97,7 +97,7 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
     page.keyboard.press("Control+Shift+Z")
     expect(tuning).to_be_visible()
     tuning.get_by_role("button", name="As the profile full does").click()
-    # The server's news may hide it before its answer makes that a step to undo.
+    # The server's event may hide the button before its answer makes the change undoable.
     expect(page.get_by_text("Recognised as any language")).to_be_visible()
     expect(tuning).to_be_hidden()
     page.keyboard.press("Control+z")
@@ -130,7 +130,7 @@ def test_a_trial_leaves_the_language_alone_when_it_is_left(
         page.get_by_role("list", name="Clips").get_by_role("button", name="Show").last.click()
     expect(page.locator("#outcome")).to_be_empty()
     assert revision_of(library) == before
-    # It is no evidence either: only what is kept as a test is one.
+    # A trial is not evidence either: only a take kept in the test set is.
     test_set = library.client.get(f"/api/v1/languages/{library.language}/test-set").json()
     assert test_set["takes"] == []
 
@@ -144,7 +144,7 @@ def test_the_take_as_another_demonstration_comes_first_and_stands_beside_the_oth
     page = open_page({**misread.address, "recognition": recognition}, scene=False)
     offered = page.locator(".remedies ul").get_by_role("button")
     expect(offered.first).to_have_text("with this take as another demonstration of 'line'")
-    # In place of the other one it would be right by construction, and teach nothing.
+    # As the only demonstration the take would be right by construction, which proves nothing.
     expect(offered.filter(has_text="as the demonstration")).to_have_count(0)
     trial = try_out(page, "as another demonstration of 'line'")
     expect(page.locator("#outcome")).to_contain_text("Recognised as line, as expected")
@@ -165,7 +165,7 @@ def test_a_change_of_a_gesture_is_kept_or_taken_back(
     expect(outcome).to_contain_text("Not recognised")
     why = page.get_by_role("region", name="Why")
     expect(why).to_contain_text("Show it again: in this take")
-    # The take in place of the demonstration would break the gesture for those who show it as it is.
+    # Replacing the demonstration by the take would break the gesture for all who show it correctly.
     expect(why.get_by_role("button", name=re.compile("as the demonstration"))).to_have_count(0)
     trial = try_out(page, re.compile("the switch direction of 'circle' off"))
     expect(outcome).to_contain_text("Recognised as circle, as expected")

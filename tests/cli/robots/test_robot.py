@@ -56,7 +56,7 @@ def running(*arguments: str | Path) -> Iterator[subprocess.Popen[str]]:
 
 
 def until(process: subprocess.Popen[str], event: str) -> dict[str, Any]:
-    """Read lines up to the first of that event."""
+    """Read lines up to the first one of an event."""
     assert process.stdout is not None
     for line in process.stdout:
         content: dict[str, Any] = json.loads(line)

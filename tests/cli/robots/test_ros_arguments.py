@@ -1,4 +1,4 @@
-"""ROS arguments go to ROS 2 alone, and only where it is asked for."""
+"""ROS arguments are passed to ROS 2 alone, and only with the option for it."""
 
 from __future__ import annotations
 

@@ -330,7 +330,7 @@ def test_a_switch_has_three_positions() -> None:
 
 
 def test_another_movement_is_not_believed(recognizer: Recognizer) -> None:
-    """A zigzag about a line is near it step by step, the arm held alike, but its way is longer."""
+    """A zigzag about a line is near it step by step, the arm held alike, but its path is longer."""
 
     def zigzag(share: FloatArray) -> FloatArray:
         height = 0.4 * np.abs((6 * share) % 2 - 1)

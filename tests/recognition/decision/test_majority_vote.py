@@ -68,7 +68,8 @@ def test_the_same_take_twice_changes_no_distance() -> None:
         ],
     )
     query = recording(wedge, jitter=0.02, seed=4)
-    # Not bit by bit: how many templates are compared at a time decides how some processors round.
+    # Not bit by bit: on some processors rounding depends on the number of templates compared at
+    # once.
     np.testing.assert_allclose(
         Recognizer(one, "paper").recognize(query).distances,
         Recognizer(twice, "paper").recognize(query).distances,

@@ -1,4 +1,4 @@
-"""Landmarks that a pose estimator does not have: fingers, above all."""
+"""Landmarks that a pose estimator lacks: fingers, above all."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from app.recognition.poses.skeletons import COCO_17
 from tests.recognition.strategies import SHAPES, Shape, recording
 
 FINGERS = {"pinky": (0.04, 0.13), "index": (-0.03, 0.15), "thumb": (-0.07, 0.09)}
-"""Where fingers are from their wrist, in torso lengths, of a hand that hangs."""
+"""Places of a hanging hand's fingers relative to the wrist, in torso lengths."""
 
 
 def with_fingers(shape: Shape, *, seed: int = 0, torso: float = 120.0) -> PoseSequence:
-    """Record a diver with fingers where fingers are, and a face where a face is."""
+    """Record a diver with fingers and a face in their natural places."""
     poses = recording(shape, jitter=0.01, seed=seed, torso=torso)
     xy = poses.xy.copy()
     for side, sign in (("left", -1), ("right", 1)):
@@ -36,7 +36,7 @@ def without_fingers(poses: PoseSequence) -> PoseSequence:
 
 
 def unseen_fingers(poses: PoseSequence) -> PoseSequence:
-    """Never see the others, as a stream of `Body` has them."""
+    """Mark the other landmarks as never seen, as in a stream of `Body`."""
     xy = poses.xy.copy()
     xy[:, [name not in COCO_17 for name in poses.landmarks]] = np.nan
     return replace(poses, xy=xy)

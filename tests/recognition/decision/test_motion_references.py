@@ -1,4 +1,4 @@
-"""Readings of the gestures of a language: which are compared with a query, and which fit."""
+"""Traversals of the gestures of a language: which are compared with a query, and which fit."""
 
 from dataclasses import replace
 

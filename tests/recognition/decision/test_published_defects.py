@@ -1,4 +1,4 @@
-"""What the published implementation gets wrong (2025-03-01, head bf8232a), and this one must not.
+"""Defects of the published implementation (2025-03-01, head bf8232a), which this one must not have.
 
 Defects of its video traversal and of its salutes are tested with clips and takes.
 """

@@ -11,7 +11,7 @@ from tests.recognition.strategies import SHAPES, recording
 
 
 def references() -> References:
-    """Return those of a line shown twice, a wedge with its mirror image and a circle."""
+    """Return the references of a line shown twice, a wedge with its mirror image and a circle."""
     line, wedge, circle = (
         Gesture.from_demonstration(name, recording(SHAPES[name]))
         for name in ("line", "wedge", "circle")

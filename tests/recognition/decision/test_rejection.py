@@ -85,7 +85,7 @@ def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_th
 
 
 def test_what_is_held_alike_does_not_make_up_for_what_is_drawn_otherwise() -> None:
-    """A voter of another view that sees no difference leaves the novelty as it is."""
+    """A voter of another cue group without a difference does not change the novelty."""
     views = build_novelty_weights(VOTER_NAMES)
     distances = np.where(views[0] > 0, 2.0, np.inf)[:, None]
     calm = np.where(np.isfinite(distances), distances, 0.0)

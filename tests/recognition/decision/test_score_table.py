@@ -1,4 +1,4 @@
-"""A comparison taken apart: the parts add up to what decides."""
+"""A score's parts: they add up to the score that decides."""
 
 from dataclasses import replace
 

@@ -1,10 +1,10 @@
-"""How far two estimators agree on a clip.
+"""Agreement of two estimators on a clip.
 
 Tracking feeds every frame's landmarks into the next frame's region, and a region moved by 1e-5 of
-its side moves the next by ten times as much, until at about 1 % of the side the noise is full. So
-no two runs with different arithmetic stay together on hard images, not even two runs of the
-library: that is measured as well, with images in which one pixel in a hundred is one step
-brighter. `python -m tests.recognition.estimation.agreement CLIP...` prints the table.
+its side moves the next by ten times as much, until the noise saturates at about 1 % of the side. So
+two runs with different arithmetic diverge on hard images, even two runs of the library: this is
+measured too, with images in which one pixel in a hundred is one step brighter. `python -m
+tests.recognition.estimation.agreement CLIP...` prints the table.
 """
 
 from __future__ import annotations
@@ -67,12 +67,12 @@ class Agreement:
 
     @property
     def typical_body(self) -> float:
-        """Median over the bodies: what a single flip of left and right does not shift."""
+        """Median over the bodies, which a single exchange of left and right does not shift."""
         return float(np.median(self.body_errors)) if len(self.body_errors) else 0.0
 
 
 def pooled(agreements: Iterable[Agreement]) -> Agreement:
-    """Put clips together: every body and every hand counts the same."""
+    """Combine the agreement of several clips: every body and every hand counts the same."""
     parts = tuple(agreements)
     return Agreement(
         frames=sum(part.frames for part in parts),
@@ -128,7 +128,7 @@ def tracking(estimator: PoseEstimator) -> Callable[[VideoFrame], FrameLandmarks]
 
 
 def in_stretches(estimator: PoseEstimator, length: int) -> Callable[[VideoFrame], FrameLandmarks]:
-    """Return the estimator with its past cut off after every `length` frames."""
+    """Return the estimator, reset after every `length` frames."""
     seen = itertools.count()
 
     def estimate(frame: VideoFrame) -> FrameLandmarks:

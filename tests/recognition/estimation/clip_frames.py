@@ -10,6 +10,6 @@ from app.recognition.recording.video import VideoFrame, read_frames
 
 
 def clip_frames(clip: Path, count: int, *, every: int = 1) -> Iterator[VideoFrame]:
-    """Yield up to `count` frames of `clip`: its first, and then each `every`-th."""
+    """Yield up to `count` frames of `clip`: the first, and then every `every`-th one."""
     with read_frames(clip) as frames:
         yield from islice(frames, 0, count * every, every)

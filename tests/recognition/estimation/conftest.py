@@ -20,7 +20,7 @@ def loaded_estimator(installed_models: None) -> Iterator[OnnxPoseEstimator]:
 
 @pytest.fixture
 def estimator(loaded_estimator: OnnxPoseEstimator) -> OnnxPoseEstimator:
-    """Return an estimator that has seen nothing yet."""
+    """Return an estimator after a reset."""
     loaded_estimator.reset()
     return loaded_estimator
 

@@ -25,16 +25,16 @@ from app.recognition.poses.skeletons import COCO_17
 COLOURS = tuple(
     colour for colour in product((0, 85, 170, 255), repeat=3) if max(colour) == 255 > min(colour)
 )
-"""RGB, one per marker. At its edge a marker fades, and none of them is a faded other one."""
+"""RGB, one per marker. A marker fades at its edge, and no colour is another one faded."""
 
 BODY_COLOURS = COLOURS[: len(COCO_17)]
 HAND_COLOURS = COLOURS[: len(HAND_LANDMARKS)]
 
 TOLERANCE = 0.08
-"""Of a channel in [0, 1]: a quarter of the distance between two colours."""
+"""Tolerance of a channel in [0, 1]: a quarter of the distance between two colours."""
 
 ENOUGH = 20.0
-"""Pixels of a marker from which it is surely there."""
+"""Number of a marker's pixels from which its score is 1."""
 
 
 def draw_markers(
@@ -49,7 +49,7 @@ def draw_markers(
 
 
 class _Graph:
-    """Nodes and constants of a model, and names that nobody has to think of."""
+    """Nodes and constants of a model, with generated names."""
 
     def __init__(self) -> None:
         self.nodes: list[onnx.NodeProto] = []
@@ -94,7 +94,7 @@ def save_yolo_pose(path: Path, *, side: int = 640, suppressed: bool = False) -> 
     """Write a model that finds a body of markers in each half of its input, left and right.
 
     Each is found four times, with falling scores, in boxes two pixels apart and with keypoints that
-    err by 30 pixels in all but the best: who does not suppress the others is far off.
+    err by 30 pixels in all but the best, so that missing suppression gives large errors.
 
     Parameters
     ----------

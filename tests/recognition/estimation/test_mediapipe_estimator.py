@@ -1,4 +1,4 @@
-"""The library behind the protocol: what our wrapper adds to it."""
+"""MediaPipe's library as an estimator: what our wrapper adds."""
 
 from __future__ import annotations
 

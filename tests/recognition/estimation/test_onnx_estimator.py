@@ -24,7 +24,7 @@ def signing(shared_data: Path) -> tuple[VideoFrame, ...]:
 
 
 def same(one: FrameLandmarks, other: FrameLandmarks) -> bool:
-    """Tell whether two results agree in every number."""
+    """Return whether two results agree in every number."""
     if (one.body is None) != (other.body is None) or len(one.hands) != len(other.hands):
         return False
     bodies = one.body is None or (other.body is not None and (one.body.xy == other.body.xy).all())
@@ -81,7 +81,7 @@ def test_a_person_and_hands_are_found(
 def test_a_hand_s_side_is_the_person_s_own(
     estimator: OnnxPoseEstimator, signing: tuple[VideoFrame, ...]
 ) -> None:
-    """A hand that the hand model calls right lies at the wrist the pose model calls right."""
+    """A hand labelled right by the hand model is at the wrist labelled right by the pose model."""
     agreements = []
     for frame in signing:
         result = estimator.estimate(frame.image, frame.time)

@@ -24,23 +24,24 @@ from tests.recognition.estimation.agreement import (
 )
 from tests.recognition.estimation.clip_frames import clip_frames
 
-# Two libraries over eight clips: minutes, while the limit of the suite is meant for one.
+# Two libraries over eight clips take minutes; the suite's limit is meant for one test of a clip.
 pytestmark = [pytest.mark.slow, pytest.mark.timeout(1500)]
 
 BODY_TOLERANCE, HAND_TOLERANCE = 1.5e-3, 1e-3
-"""Of the frame, the mean over upper-body landmarks and over hand landmarks."""
+"""Tolerance as a share of the frame, for the mean over upper-body and over hand landmarks."""
 
 FIRST_SIGHT_TOLERANCE = 1e-4
-"""Of the frame: a fifteenth of a pixel at 640 x 480 is rounding; a wrong rule costs more."""
+"""Tolerance of the first frame, as a share of its size: a fifteenth of a pixel at 640 x 480 is
+rounding; a wrong rule costs more."""
 
 COUNT_TOLERANCE = 0.01
-"""Share of the detections by which the two may differ."""
+"""Share of the detections by which the two libraries may differ."""
 
 STRETCH, STRETCHES, APART = 5, 2, 3
-"""Frames until everything tracked is forgotten, how often, and how many frames apart they lie."""
+"""Frames between two resets, number of such stretches, and step from one used frame to the next."""
 
 TRACKED_FRAMES = 24
-"""Frames per clip of the comparison without forgetting."""
+"""Frames per clip of the comparison without resets."""
 
 NOISE_MARGIN = 2.0
 """The median of 40 frames' noise, each alike to its neighbours, is known to about a factor two."""
@@ -49,7 +50,7 @@ WITHOUT_BODY = "decord_pancake.mkv"
 """Shows hands and a stove: what is compared there is whether a body is found, not where."""
 
 TRACKED = (WITHOUT_BODY, "diver_follow_me.webm", "circle-demonstration.mp4")
-"""Clips of the comparison without forgetting: one without a body, one real diver, one rendering."""
+"""Clips of the comparison without resets: one without a body, one real diver, one rendering."""
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +62,7 @@ def ours(installed_models: None) -> Iterator[OnnxPoseEstimator]:
 
 @pytest.fixture(scope="module")
 def clips(sample_clips: Path) -> tuple[Path, ...]:
-    """Return all real clips that lie at hand and two of our own."""
+    """Return all available real clips and two of our own."""
     shared = sorted(
         path
         for path in (SHARED_DATA / "clips").glob("*")

@@ -1,4 +1,4 @@
-"""The choice of a correction: by what is believed, changed seldom, examined seldom."""
+"""The choice of a correction: by detection scores, changed seldom, examined seldom."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOBODY = FrameLandmarks(None, ())
 
 
 def seen(score: float, *hands: float) -> FrameLandmarks:
-    """Return a body and hands that are believed as given."""
+    """Return a body and hands with the given scores."""
     return FrameLandmarks(
         Body(np.zeros((33, 2)), np.ones(33), score),
         tuple(Hand(np.zeros((21, 2)), "left", hand) for hand in hands),
@@ -28,7 +28,7 @@ def seen(score: float, *hands: float) -> FrameLandmarks:
 
 
 def examination(**better: FrameLandmarks) -> dict[Correction, FrameLandmarks]:
-    """Return what is found under every correction: nobody but where it says so."""
+    """Return the result under every correction: nobody, except for the given ones."""
     return {one: better.get(one, NOBODY) for one in CORRECTIONS}
 
 

@@ -1,4 +1,4 @@
-"""The sight through water: as the models see best, the same without a doubt."""
+"""Sight through water: the best correction for the models; clear images stay unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""YOLO-pose exports: real inference on drawn markers, and what other files are told."""
+"""YOLO-pose exports: real inference on drawn markers, and refusals of other files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Changes: each makes of a context the one that it says."""
+"""Counterfactual kinds: each changes a context as its words say."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Differences: a known fault is named as what it is, at the time and on the joint where it lies."""
+"""Differences: a known fault is reported by its kind, at its time and joint."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ from tests.recognition.damaged_poses import with_sides_exchanged
 from tests.recognition.strategies import Shape, circle, line, recording, square, wedge
 
 START = 5.0
-"""Second of the clock at which the queries of these tests begin."""
+"""Time in seconds at which the queries of these tests begin."""
 
 
 def corners(*points: tuple[float, float]) -> Shape:
@@ -146,7 +146,7 @@ def test_what_changes_no_path_is_told_beside_it(query: PoseSequence, kind: str, 
 
 
 def bent(degrees: float) -> PoseSequence:
-    """Record a hook whose hand points this far clockwise of the forearm, in the image."""
+    """Record a hook with the hand turned clockwise from the forearm by an angle in the image."""
     poses = recording(hook)
     xy = poses.xy.copy()
     elbow, wrist, index, pinky = (

@@ -1,4 +1,4 @@
-"""Explanations: who was wrong, where and by how much, and what would have turned it right."""
+"""Explanations: which voters were wrong, where and by how much, and which changes would help."""
 
 import json
 from dataclasses import replace

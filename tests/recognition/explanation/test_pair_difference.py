@@ -1,4 +1,4 @@
-"""Contrasts: in what two demonstrations differ, in words and in seconds."""
+"""Pair differences: the differences of two demonstrations, in words and in seconds."""
 
 import numpy as np
 

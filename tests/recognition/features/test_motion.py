@@ -1,4 +1,4 @@
-"""Movements: what the trajectory voters see of a recording."""
+"""Movements: the features of a recording that motion voters use."""
 
 from dataclasses import replace
 

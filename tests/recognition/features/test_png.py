@@ -1,4 +1,4 @@
-"""Two-tone PNG: exact, the same bytes everywhere, careful with what comes from outside."""
+"""Two-tone PNG: exact, the same bytes everywhere, strict with input from outside."""
 
 import struct
 import zlib

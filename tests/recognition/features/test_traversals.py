@@ -1,4 +1,4 @@
-"""Readings: the orders in which a figure may be drawn."""
+"""Traversals: the orders in which a figure may be drawn."""
 
 import numpy as np
 

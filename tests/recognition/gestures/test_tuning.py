@@ -1,4 +1,4 @@
-"""Tuning: voters off or weighed, coarser drawings, sides put right or not."""
+"""Tuning: voters off or with a weight factor, coarser drawings, exchanged sides repaired or not."""
 
 import json
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What is ambiguous about a grammar is found, all of it, and shown by a message that has it."""
+"""Ambiguities of a grammar: all are found, each shown by a message."""
 
 from collections import defaultdict
 from dataclasses import replace

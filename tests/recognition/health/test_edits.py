@@ -1,4 +1,4 @@
-"""Alterations: each does to the demonstration what its words say, and nothing else."""
+"""Edits: each changes the demonstration as its words say, and nothing else."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Alarms: a language that asks for a reach is set off by reaching, one of figures is not."""
+"""False alarms: a gesture like reaching is set off by reaching, figures are not."""
 
 from app.recognition import Language, Recognizer
 from app.recognition.gestures.gesture import Gesture

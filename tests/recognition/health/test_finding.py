@@ -1,4 +1,4 @@
-"""Findings: each fault of a demonstration is seen, and a good one is left alone."""
+"""Findings: each fault of a demonstration is found, and none in a good one."""
 
 from collections.abc import Callable
 from dataclasses import replace

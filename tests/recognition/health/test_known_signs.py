@@ -1,4 +1,4 @@
-"""Gestures that look like a sign which divers know are found before the dive."""
+"""Known signs: gestures that look like a sign known to divers are found before the dive."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Remedies: proposed only where rehearsing the changed language shows that they help."""
+"""Remedies: proposed only if simulated trials of the changed language show that they help."""
 
 from app.recognition import Language, Recognizer
 from app.recognition.health.remedy import HELPS, MOST_PROPOSED, TrialRunner, find_pair_remedies

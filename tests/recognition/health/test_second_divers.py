@@ -1,4 +1,4 @@
-"""Advice on second divers: the gestures that other people are missed for, the worst first."""
+"""Advice on second divers: the gestures missed when other people show them, the worst first."""
 
 from __future__ import annotations
 

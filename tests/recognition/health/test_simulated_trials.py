@@ -1,4 +1,4 @@
-"""Rehearsals: what is far apart is never confused, what is the same always may be."""
+"""Simulated trials: distant gestures are never confused, equal ones always may be."""
 
 import numpy as np
 import pytest

@@ -29,7 +29,7 @@ def text() -> str:
 
 
 def resealed(text: str, change: Change) -> str:
-    """Change a file's content as a program would that seals it again."""
+    """Change a file's content, and seal it again as a program would."""
     content = json.loads(text)
     change(content)
     if "sha256" in content:

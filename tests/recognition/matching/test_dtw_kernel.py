@@ -1,4 +1,4 @@
-"""The memory that alignments are found in is nobody else's, and holds nothing of the last one."""
+"""The DTW kernel's memory: not shared, and without remains of the last alignment."""
 
 from concurrent.futures import ThreadPoolExecutor
 

@@ -45,7 +45,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def pip_offline(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
-    """Cut pip off from its index; return the empty folder that is all it looks in."""
+    """Cut pip off from its index; return the empty folder that it searches instead."""
     links = tmp_path / "links"
     links.mkdir()
     monkeypatch.setenv("PIP_NO_INDEX", "1")

@@ -1,4 +1,4 @@
-"""The models folder: a file that is not as it should be is named with the command that mends it."""
+"""The models folder: a damaged file is reported with the command that repairs it."""
 
 import os
 from pathlib import Path

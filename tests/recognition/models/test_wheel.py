@@ -1,4 +1,4 @@
-"""Obtaining the wheel: what goes wrong is told in one line, with what to do."""
+"""Obtaining the wheel: errors are reported in one line, with what to do."""
 
 import sys
 import venv

@@ -1,4 +1,4 @@
-"""Messages gesture by gesture: what may come next, what it meant, and when nothing is obeyed."""
+"""Messages gesture by gesture: what may come next, what it means, and when nothing is executed."""
 
 from dataclasses import replace
 

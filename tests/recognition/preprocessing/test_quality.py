@@ -33,7 +33,7 @@ def unseen(poses: PoseSequence, frames: slice) -> PoseSequence:
 
 
 def leaping(poses: PoseSequence) -> PoseSequence:
-    """Let the wrist be elsewhere in two of three frames, wherever that is."""
+    """Displace the wrist in two of three frames."""
     xy = poses.xy.copy()
     random = np.random.default_rng(0)
     bad = np.flatnonzero(np.arange(len(xy)) % 3 > 0)

@@ -1,4 +1,4 @@
-"""Salient are the few landmarks whose motion is the gesture."""
+"""Salience: only the few landmarks whose motion is the gesture are salient."""
 
 from dataclasses import replace
 

@@ -21,9 +21,9 @@ FLAT_HAND = np.zeros((21, 2))
 
 
 class ScriptedEstimator:
-    """Finds what it is told to: a body in all but some frames, a salute in some of them.
+    """An estimator with given results: a body in all but some frames, a salute in some of them.
 
-    It stands for the models where a test is about what becomes of their answers.
+    It replaces the models in tests of the processing of their results.
     """
 
     def __init__(

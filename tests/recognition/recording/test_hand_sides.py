@@ -1,4 +1,4 @@
-"""Hand sides: whose hand is whose, told by the wrists of the body."""
+"""Hand sides: left and right hands are told apart by the wrists of the body."""
 
 import numpy as np
 import pytest

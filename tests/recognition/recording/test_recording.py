@@ -1,4 +1,4 @@
-"""Recordings: what is saved is what is loaded, and damage is told plainly."""
+"""Recordings: saved ones load unchanged, and damage is reported clearly."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Reading clips: right time and right way up from odd ones, a plain refusal of bad ones."""
+"""Reading clips: unusual ones with the right time and orientation, bad ones refused clearly."""
 
 import gc
 import weakref

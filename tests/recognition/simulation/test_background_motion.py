@@ -1,4 +1,4 @@
-"""Accidental movements: reproducible, humanly possible, and enough to be followed."""
+"""Accidental movements: reproducible, humanly possible, and large enough to be followed."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Foreign movements: made of what is there, and no gesture of the language."""
+"""Out-of-vocabulary movements: made from the language's gestures, but none of them."""
 
 import numpy as np
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""Forecasts: calibrated where real takes scatter as foreseen, and wider with fewer rehearsals."""
+"""Rate estimates: calibrated if real takes vary as simulated, and wider with fewer trials."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_no_margin_at_all_is_a_guess() -> None:
 @pytest.mark.parametrize("mean", [0.0, 0.3, 0.6])
 @pytest.mark.parametrize("tail", [3.0, 30.0])
 def test_real_takes_that_scatter_as_foreseen_are_forecast_right(mean: float, tail: float) -> None:
-    """However heavy the tail of the rehearsed ones is."""
+    """Checked with tails of any weight in the simulated margins."""
     generator = np.random.default_rng(1)
     rehearsed = mean + 0.4 * generator.standard_t(tail, (400, 64)) / np.sqrt(tail / (tail - 2))
     true = float((mean + generator.logistic(0, 0.25, 100_000) < 0).mean())

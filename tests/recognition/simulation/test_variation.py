@@ -138,7 +138,7 @@ def direction_of_bone(trajectory: Trajectory, inner: str, outer: str) -> FloatAr
 
 
 def test_a_hand_turns_with_its_forearm() -> None:
-    """However it points in the demonstration: what turns the forearm turns the hand as far."""
+    """A turn of the forearm turns the hand as far, whatever its direction in the demonstration."""
     swing = np.linspace(-0.7, 0.7, 40)
     forearm = 0.5 * np.stack([np.sin(swing), -np.cos(swing)], axis=1)
     elbow = np.full((40, 2), 0.2) + 0.1 * forearm
@@ -150,7 +150,7 @@ def test_a_hand_turns_with_its_forearm() -> None:
     )
     wavering = Spread(
         tempo=0, size=0, slant=0, stretch=0, shear=0, waver=0.3, care=0, sway=0
-    )  # without drifts of its own the hand does what the forearm makes it do
+    )  # without drifts of its own the hand follows the forearm
     bones = ("right_elbow", "right_wrist"), ("right_wrist", "right_index")
     for variant in vary(shown, 20, wavering):
         arm, hand = (

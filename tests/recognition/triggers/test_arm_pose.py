@@ -1,4 +1,4 @@
-"""An arm pose is read from one demonstration, and scores how much a body holds it."""
+"""Arm poses: learned from one demonstration, with a score of how closely a body holds them."""
 
 from dataclasses import replace
 

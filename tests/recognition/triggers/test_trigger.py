@@ -1,4 +1,4 @@
-"""A trigger says what begins and ends a take."""
+"""Triggers: what begins and ends a take."""
 
 import numpy as np
 import pytest

@@ -122,7 +122,7 @@ def test_a_clock_that_is_set_back_changes_no_order() -> None:
     hour = 3600.0
     made.decide(shown("circle", hour), hour)
     made.check_deadline(hour + 2)
-    # Two seconds later by any other clock, an hour ago by this one.
+    # Two seconds later by other clocks, an hour earlier by this one.
     assert made.decide(shown("circle", 5), 5).command == "photo"
     made.decide(shown("peak", 10), 10)
     assert made.check_deadline(10 + RULES.confirm_seconds + RULES.stale_seconds + 1) is not None

@@ -1,4 +1,4 @@
-"""Phrases on the robot: what is recognised makes messages, and nothing else is obeyed."""
+"""Phrases on the robot: recognised gestures make messages, and only these give commands."""
 
 from __future__ import annotations
 

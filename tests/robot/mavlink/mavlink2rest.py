@@ -44,7 +44,7 @@ def as_message(content: dict[str, Any]) -> Any:
 
 
 def listen(connection: Any, last: dict[str, dict[str, Any]], closing: threading.Event) -> None:
-    """Note the last message of each kind, counted, until it is over."""
+    """Store the last message of each kind, with a count, until the server ends."""
     while not closing.is_set():
         connection.mav.heartbeat_send(6, 8, 0, 0, 0)
         while message := connection.recv_match(timeout=0.005, blocking=True):
@@ -90,7 +90,7 @@ def serving(port: int) -> Iterator[str]:
             self.wfile.write(body)
 
         def log_message(self, format: str, *args: Any) -> None:
-            """Print nothing."""
+            """Suppress the log of requests."""
 
     server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
     server.daemon_threads = True

@@ -1,4 +1,4 @@
-"""The vehicle obeys what a diver has confirmed, and nothing else; both sides speak by pymavlink."""
+"""The bridge: a vehicle obeys only a diver's confirmed commands; both sides use pymavlink."""
 
 from __future__ import annotations
 

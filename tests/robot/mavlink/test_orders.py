@@ -1,4 +1,4 @@
-"""Orders: what proves one done, what does not, and when it is given up; without a network."""
+"""Orders: which messages prove one done, and when it is given up; without a network."""
 
 from __future__ import annotations
 

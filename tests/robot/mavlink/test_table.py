@@ -1,4 +1,4 @@
-"""Vehicle table: closed, and what is wrong with one is said by its key."""
+"""Vehicle table: closed, and an error in it is reported with its key."""
 
 from __future__ import annotations
 

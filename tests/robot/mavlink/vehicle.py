@@ -35,7 +35,7 @@ class Ardusub:
     obeyed
         What it did, in order: one entry for each change.
     asked
-        Number of messages that asked it for anything.
+        Number of requests received.
     texts
         Texts that it was shown.
     restarts_at_next
@@ -65,7 +65,7 @@ class Ardusub:
         self._thread.start()
 
     def close(self) -> None:
-        """Switch it off, once it has heard what was sent to it before."""
+        """Switch it off, after it has received all messages sent before."""
         self._closing.set()
         self._thread.join()
         self._connection.close()

@@ -24,7 +24,7 @@ from tests.robot.rtsp_server import RtspServer
 
 
 def quick_to_return(address: str) -> LiveSource:
-    """Watch a stream that is tried again soon after it broke."""
+    """Open a stream that is retried soon after a failure."""
     return LiveSource("stream", partial(NetworkStream, address), first_wait=0.05)
 
 
@@ -81,7 +81,7 @@ class CameraOnDemand:
             self._pictures.put(each)
         self._sent += len(brightness)
         with self._asked:
-            # Who asks for another picture has put away the one before.
+            # A source that requests another picture has stored the previous one.
             assert self._asked.wait_for(lambda: self._asked_for > self._sent, timeout=60)
 
     def unplug(self) -> None:

@@ -1,4 +1,4 @@
-"""Nodes under test, and a node beside them that speaks and listens."""
+"""Nodes under test, and a probe node that publishes and subscribes beside them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rclpy.qos import QoSDurabilityPolicy, QoSProfile, QoSReliabilityPolicy
 from osg_ros.nodes.managed_node import ManagedNode
 
 PATIENCE = 180.0
-"""Seconds to wait for what must come; only a failing test takes so long."""
+"""Longest wait for a message in seconds; only a failing test takes so long."""
 
 RELIABLE = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.RELIABLE)
 BEST_EFFORT = QoSProfile(depth=1000, reliability=QoSReliabilityPolicy.BEST_EFFORT)
@@ -32,7 +32,7 @@ class Bench:
     Attributes
     ----------
     probe
-        The node that speaks and listens.
+        The node that publishes and subscribes.
     nodes
         Those under test, in the order in which they were added.
 

@@ -16,10 +16,10 @@ from osg_ros.topics.stamps import to_nanoseconds, to_stamp
 from tests.ros2.nodes.bench import LATCHED, Bench
 
 PROMPT = 8.0
-"""Seconds after which a message is stale, where that is not what is tested: the machine is slow."""
+"""Seconds after which a message is stale, in tests of other things: a slow machine needs many."""
 
 STALE = 600.0
-"""Seconds ago: however that is set, too long."""
+"""Age in seconds that is stale with either setting."""
 
 
 class Robot:

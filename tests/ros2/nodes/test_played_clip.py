@@ -35,11 +35,11 @@ SEPARATE = ("pose_node", "hand_node", "recognition_node")
 TOGETHER = ("gesture_process",)
 
 ATTEMPTS = 5
-"""A robot that plays a clip waits for no listener: on a busy machine the clip may be over before
-two processes have found each other."""
+"""A robot that plays a clip does not wait for listeners: on a busy machine the clip may be over
+before the two processes have connected."""
 
 ARRIVAL = 5.0
-"""Seconds for what was acknowledged before the robot ended to come through the listener's queue."""
+"""Seconds for messages acknowledged before the robot ended to pass the listener's queue."""
 
 PARAMETERS = """
 /**:
@@ -180,7 +180,7 @@ def warm_up(bench: Bench, pictures: Any) -> None:
 
 
 def recogniser_received(status: DiagnosticStatus) -> bool:
-    """Tell whether the node that recognises has worked on a picture."""
+    """Return whether the recognition node has processed a picture."""
     values = {value.key: value.value for value in status.values}
     return status.name in ("/gesture_node", "/recognition_node") and values["messages"] != "0"
 

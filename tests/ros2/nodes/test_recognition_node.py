@@ -66,7 +66,7 @@ def play(bench: Bench, recording: Recording) -> None:
 
 
 def wait_for_inputs(bench: Bench, node: ManagedNode, messages: int) -> None:
-    """Wait until a node has worked on so many messages."""
+    """Wait until a node has processed some number of messages."""
     bench.wait(lambda: node.health.inputs == messages, f"{messages} messages received")
 
 

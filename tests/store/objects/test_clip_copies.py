@@ -1,4 +1,4 @@
-"""Copies of clips: bounded, and none goes that is in use or that the object store lacks."""
+"""Copies of clips: bounded, but none in use or missing in the object store is deleted."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def store(sqlite: Database, tmp_path: Path, objects: ObjectStore) -> ClipStore:
 
 @pytest.fixture
 def bounded(sqlite: Database, tmp_path: Path, objects: ObjectStore) -> ClipStore:
-    """Return the same clips with a limit, which is looked at when a test says so."""
+    """Return the same clips with a limit, which is applied when a test calls for it."""
     return ClipStore(sqlite, tmp_path / "clips", objects, LIMIT)
 
 

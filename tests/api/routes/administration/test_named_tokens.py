@@ -64,7 +64,7 @@ def test_a_reader_reads_and_is_told_why_it_may_not_change(
         assert_problem(reader.delete(f"{CLIPS}/x"), 403, "role_required")
         assert_problem(reader.get("/metrics"), 403, "role_required")
         assert_problem(reader.get(f"{API}/audit"), 403, "role_required")
-        # What writes nothing that others see.
+        # Requests that change no shared data.
         answer = reader.post(f"{LANGUAGES}/x/preview", json={"change": {}})
         assert_problem(answer, 404, "not_found")
 

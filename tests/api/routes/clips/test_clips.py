@@ -82,7 +82,7 @@ def test_what_is_no_video_is_refused_whatever_its_name(
     path = tmp_path / "file"
     path.write_bytes(IMPOSTORS[kind])
     answer = upload(client, path)
-    # What begins like a video is looked into, and found to be none.
+    # A file that begins like a video is probed, and found not to be one.
     code = "unsupported_media_type" if answer.status_code == 415 else "video_unreadable"
     assert_problem(answer, answer.status_code, code)
     assert answer.status_code in (415, 422)
@@ -195,7 +195,7 @@ def test_a_path_with_a_nul_names_nothing(client: httpx.Client, path: str) -> Non
 def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
     narrow = settings.model_copy(update={"max_jobs_per_client": 1})
     with running(narrow) as server, client_of(server.address) as client:
-        # Stored behind the runner's back, so that it waits for as long as the test wants.
+        # Stored without the runner's knowledge, so that the job waits as long as the test needs.
         partial = server.studio.clips.new_partial()
         partial.write_bytes(b"video")
         clip = Clip(name="first", media_type="video/mp4", size=5, width=1, height=1)

@@ -29,7 +29,7 @@ def long_clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def events_of(client: httpx.Client, job_id: str) -> Iterator[dict[str, Any]]:
-    """Yield what a job's event stream tells, to its end."""
+    """Yield the events of a job's stream, to its end."""
     with client.stream("GET", f"{JOBS}/{job_id}/events") as stream:
         assert stream.headers["content-type"].startswith("text/event-stream")
         for line in stream.iter_lines():
@@ -38,7 +38,7 @@ def events_of(client: httpx.Client, job_id: str) -> Iterator[dict[str, Any]]:
 
 
 def frozen_worker(client: httpx.Client, clip: Path) -> tuple[str, int]:
-    """Upload a clip, stop its worker in its tracks; return the job's id and the worker's."""
+    """Upload a clip, suspend its worker, and return the job's id and the worker's."""
     job_id: str = upload(client, clip).json()["job_id"]
     return job_id, hold_worker(os.getpid())
 
@@ -56,7 +56,7 @@ def test_progress_and_poses_are_told_until_the_end(
     arriving = [event for event in events if event["stage"] == "poses"]
     counted = [event["done"] for event in arriving]
     assert counted == sorted(counted)
-    assert 0 < counted[-1] <= frames  # who listens slowly hears of the newest alone
+    assert 0 < counted[-1] <= frames  # a slow listener gets only the newest
     for event in arriving:
         frame = event["done"] - 1
         assert event["time"] == pytest.approx(poses["time"][frame], abs=0.001)
@@ -129,7 +129,7 @@ def test_a_worker_that_crashes_fails_its_job_and_nothing_else(
 
 @linux
 def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> None:
-    # Long enough for the worker to begin, or it is ended before it is stopped in its tracks.
+    # Long enough for the worker to begin; else it has ended before it is suspended.
     impatient = settings.model_copy(update={"worker_silence_seconds": 5.0})
     with running(impatient) as server, client_of(server.address) as client:
         job_id, worker = frozen_worker(client, long_clip)

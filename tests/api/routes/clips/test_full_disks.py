@@ -36,7 +36,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 
 def fill(disk: Path, left: int) -> Path:
-    """Write a file that leaves so many bytes free."""
+    """Fill the disk with a file so that this many bytes stay free."""
     ballast = disk / "ballast"
     with ballast.open("wb") as file:
         file.write(bytes(max(0, shutil.disk_usage(disk).free - left)))
@@ -65,7 +65,7 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
             assert int(refused.headers.get("retry-after", "0")) >= 0
             came = offset_of(client, place)
             assert len(content) - 10 <= came < len(content)
-        # Reading goes on.
+        # Reading still works.
         assert client.get("/healthz").status_code == 200
         assert client.get(CLIPS).status_code == 200
         begun_in_vain = client.post(
@@ -101,7 +101,7 @@ def test_a_full_database_costs_no_byte_of_an_upload(
         place = begun(client, len(content))
         most_pages = 1
         note = "x" * 60
-        # The pages that are there have room for some rows.
+        # The existing pages have room for some rows.
         for number in range(2000):
             made = client.post("/api/v1/languages", json={"name": f"{number} {note}"})
             if made.status_code != 201:

@@ -44,7 +44,7 @@ def test_a_session_holds_what_was_seen_and_recognised(
     assert [each["expected"] for each in results] == ["circle", ""]
     assert {(each["language"], each["nearest"]) for each in results} == {("pool", "circle")}
     assert any("the skeleton is drawn" in content["message"] for _, content in found["/log"])
-    # What was written to be sent is gone.
+    # The file written for sending is deleted.
     assert {each.name for each in (settings.data_dir / "clips").iterdir()} == {clip["id"]}
 
 
@@ -70,7 +70,7 @@ def test_a_session_is_written_under_a_name_and_fetched_once(
     assert len(fetched.content) == written["first"]["size"]
     (tmp_path / "session.mcap").write_bytes(fetched.content)
     assert len(checked(tmp_path / "session.mcap")["/takes"]) == 1
-    # What was sent is gone, the other one waits; whoever asks again gets it written again.
+    # The file that was sent is deleted, the other one waits; another request writes it again.
     until(lambda: kept.exists() != other.exists())
     assert client.get(address, params={"export": "first"}).status_code == 200
     assert client.get(address, params={"export": "second"}).status_code == 200

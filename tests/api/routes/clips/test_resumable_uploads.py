@@ -29,7 +29,7 @@ TUS = {"Tus-Resumable": "1.0.0"}
 PART = TUS | {"Content-Type": "application/offset+octet-stream"}
 
 FREE_BOX = (FREE_BYTES := 64 * 1024).to_bytes(4, "big") + b"free" + bytes(FREE_BYTES - 8)
-"""Unused space at the end of an MP4: makes it larger than what a file's buffer holds back."""
+"""Unused space at the end of an MP4, which makes it larger than a file's write buffer."""
 
 
 def begun(client: httpx.Client, size: int, name: str = "dive.mp4", **fields: str) -> str:
@@ -56,7 +56,7 @@ def offset_of(client: httpx.Client, place: str) -> int:
 
 
 def broken_off(server: Running, place: str, content: bytes, length: int) -> None:
-    """Send the beginning of a part of `length` bytes, and vanish."""
+    """Send the beginning of a part of `length` bytes, and disconnect."""
     with socket.create_connection(("127.0.0.1", server.port)) as connection:
         head = (
             f"PATCH {place} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
@@ -80,7 +80,7 @@ def test_the_last_part_makes_the_clip(client: httpx.Client, small_clip: Path, pa
     clip = answer.headers["content-location"]
     assert client.get(clip).json()["name"] == "größer.mp4"
     assert client.get(f"{clip}/video").content == content
-    # Who lost the last answer asks again, and hears that all is done.
+    # A client that lost the last answer asks again, and learns that the upload is complete.
     finished = client.head(place, headers=TUS)
     assert finished.headers["content-location"] == clip
     assert finished.headers["upload-offset"] == str(len(content))
@@ -121,7 +121,7 @@ def test_a_locked_database_costs_no_byte_of_a_whole_upload(
         finished = sent(client, place, len(content) - 1, content[-1:])
         clip = finished.headers["content-location"]
         assert client.get(f"{clip}/video").content == content
-        # Who lost this answer sends the part again, by either offset.
+        # A client that lost this answer sends the part again, from either offset.
         for offset in (len(content) - 1, len(content)):
             again = sent(client, place, offset, content[offset:])
             assert again.headers["content-location"] == clip
@@ -165,7 +165,7 @@ def test_the_topic_of_a_dive_recording_comes_with_the_metadata(
     with running(settings) as server, client_of(server.address) as client:
         place = begun(client, len(content), "dive.mcap", topic=topic)
         assert sent(client, place, 0, content[:half]).status_code == 204
-    # It is remembered over a restart, as the bytes are.
+    # It survives a restart, like the bytes.
     with running(settings) as server, client_of(server.address) as client:
         clip = sent(client, place, half, content[half:]).headers["content-location"]
         assert client.get(clip).json()["topic"] == topic

@@ -1,4 +1,4 @@
-"""What lies along a clip's time: as many values as frames, and pictures."""
+"""Timelines of clips: one value per frame, and pictures."""
 
 from dataclasses import replace
 

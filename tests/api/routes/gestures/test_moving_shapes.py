@@ -18,7 +18,7 @@ from tests.recognition.held_takes import FIST, FLAT, TWO
 from tests.recognition.parametric_hand import Fingers, hand_xy
 
 PALM = 20.0
-"""Pixels."""
+"""Length of a palm in pixels."""
 
 
 def circle_with(shape: Fingers, seed: int) -> Recording:

@@ -1,4 +1,4 @@
-"""Previews over HTTP: a gesture and its outlook before it is saved."""
+"""Previews over HTTP: a gesture and its estimated rates before it is saved."""
 
 from base64 import b64decode
 from typing import Any

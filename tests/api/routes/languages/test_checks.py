@@ -1,4 +1,4 @@
-"""The health report over HTTP: once a revision, and not sent twice."""
+"""The health report over HTTP: computed once per revision, and not sent twice."""
 
 import json
 import socket
@@ -68,10 +68,10 @@ def test_a_language_that_is_not_there_is_404(client: httpx.Client) -> None:
 def test_a_check_tells_its_progress_and_can_be_cancelled_and_begun_anew(
     server: Running, client: httpx.Client
 ) -> None:
-    # Of eight gestures: long enough for both to wait before it is done.
+    # Eight gestures: the check takes long enough for both requests to wait.
     document = (ROOT / "languages" / "osg-table-2.json").read_bytes()
     language = client.post(f"{LANGUAGES}/import", content=document).json()["id"]
-    # By a name of its own: the report of the sample itself may be at hand in this process.
+    # Under another name: this process may already have the sample's report.
     client.patch(f"{LANGUAGES}/{language}", json={"name": "checked for the first time"})
     check = f"{LANGUAGES}/{language}/check"
     with ThreadPoolExecutor() as pool, client.stream("GET", "/api/v1/events") as events:
@@ -100,7 +100,7 @@ def checks(lines: Iterator[str]) -> Iterator[dict[str, Any]]:
 
 
 def begin_check(server: Running, language: str) -> socket.socket:
-    """Ask for a check, and return the connection when it runs."""
+    """Request a check, and return the connection once it runs."""
     connection = socket.create_connection(("127.0.0.1", server.port))
     path = f"/api/v1/languages/{language}/check"
     connection.sendall(f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())

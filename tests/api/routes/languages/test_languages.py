@@ -1,4 +1,4 @@
-"""Languages over HTTP: revisions, lost races, import and export."""
+"""Languages over HTTP: revisions, edit conflicts, import and export."""
 
 import httpx
 import pytest

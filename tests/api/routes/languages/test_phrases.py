@@ -1,4 +1,4 @@
-"""Phrases over HTTP: kept with the language, checked, simulated, true to its gestures."""
+"""Phrases over HTTP: stored with the language, checked, simulated, consistent with its gestures."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def test_phrases_are_a_revision_of_the_language(client: httpx.Client, place: str
     assert exported["grammar"]["phrases"][0]["name"] == "photo"
     lost = client.patch(place, json={"grammar": GRAMMAR}, headers={"If-Match": '"1"'})
     assert_problem(lost, 412, "revision_conflict")
-    # What was read can be sent back as it is.
+    # A grammar that was read can be sent back unchanged.
     again = client.patch(place, json={"grammar": language["grammar"]})
     assert again.json()["grammar"] == language["grammar"]
     longer = {**GRAMMAR, "timeout": 20, "phrases": [{**GRAMMAR["phrases"][0], "says": "photo"}]}

@@ -1,4 +1,4 @@
-"""Practice over HTTP: what a diver is told, and the record that is evidence of acceptance."""
+"""Practice over HTTP: the feedback to a diver, and the record as evidence of acceptance."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def test_a_diver_is_told_what_to_change_and_has_a_record(
     assert wrong["lesson"]["words"]
     assert "instead of 'circle'" in wrong["sentence"]
     assert (wrong["record"]["errors"], wrong["record"]["more"]) == (1, 91)
-    # The same take again is no further evidence.
+    # The same take sent again is not further evidence.
     again = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": circle})
     assert again.json()["record"]["takes"] == 2
     (left,) = client.delete(f"{place}/{wrong['take']['id']}").json()
     assert (left["takes"], left["errors"]) == (1, 0)
-    # Another revision is another language.
+    # Another revision counts as another language.
     client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"}).raise_for_status()
     (older,) = client.get(place).json()
     assert (older["takes"], older["older"]) == (0, 1)

@@ -1,4 +1,4 @@
-"""A language's history over HTTP: going back, and what two revisions differ in."""
+"""A language's history over HTTP: reverting, and the differences of two revisions."""
 
 from typing import Any
 

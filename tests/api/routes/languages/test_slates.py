@@ -1,4 +1,4 @@
-"""Slates over HTTP: files that a browser saves and does not run."""
+"""Slates over HTTP: files that a browser saves but does not run."""
 
 import httpx
 import pytest

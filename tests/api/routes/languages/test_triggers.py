@@ -1,4 +1,4 @@
-"""The trigger of a language over HTTP: poses from clips, undone, and what is refused."""
+"""The trigger of a language over HTTP: poses from clips, undo, and refusals."""
 
 from __future__ import annotations
 

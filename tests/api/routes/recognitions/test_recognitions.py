@@ -1,4 +1,4 @@
-"""Recognitions over HTTP: in full, repeatable, and kept."""
+"""Recognitions over HTTP: complete, repeatable, and stored."""
 
 import httpx
 import pytest
@@ -56,7 +56,7 @@ def test_a_clip_without_salutes_is_recognised_whole(
 ) -> None:
     clip_id = add_recorded_clip(studio, recording_of())
     refused = client.post(RECOGNITIONS, json={"clip_id": clip_id, "language_id": spoken})
-    # Nothing moves in this one: it is taken, and said to be empty.
+    # Nothing moves in this one: it is accepted, and reported as empty.
     assert_problem(refused, 422, "poses_unusable")
 
 
@@ -151,7 +151,7 @@ def test_a_tuning_that_the_language_keeps_changes_every_recognition(
     )
     tuned = client.post(RECOGNITIONS, json=body).json()
     assert (tuned["profile"], tuned["weights"]["hu"], tuned["tuning"]) == ("paper", 0.0, None)
-    # What was recognised before is explained as it was then.
+    # An earlier recognition is explained with the language as it was then.
     why = client.get(f"{RECOGNITIONS}/{before['id']}/explanation").json()
     assert why["profile"] == "full"
     silent = {"tuning": {"weights": dict.fromkeys(tuned["voters"], 0.0)}}
@@ -173,7 +173,7 @@ def test_a_trial_recognises_with_a_changed_gesture_and_edits_nothing(
     tried = client.post(RECOGNITIONS, json=body | {"trial": trial}).json()
     assert (tried["label"], tried["revision"]) == ("circle", revision)
     assert tried["trial"]["change"]["direction"] == "off"
-    # The explanation is of the trial, and the language has no other revision.
+    # The explanation is about the trial, and the language has no new revision.
     why = client.get(f"{RECOGNITIONS}/{tried['id']}/explanation").json()
     assert why["right"]
     assert client.get(f"{LANGUAGES}/{spoken}").json()["revision"] == revision

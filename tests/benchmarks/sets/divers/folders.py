@@ -65,7 +65,7 @@ def write_caddy(folder: Path, clip: Path) -> None:
 
 
 def _write_clip(path: Path, poses: PoseSequence, keep: Path) -> None:
-    """Write a file in a clip's place, and to a cache folder what was found in it before."""
+    """Write a file in place of a clip, and its stored landmarks to a cache folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(path.name.encode())
     recording = Recording(poses=poses, hands=((),) * len(poses), salute=np.zeros(len(poses)))
@@ -74,7 +74,7 @@ def _write_clip(path: Path, poses: PoseSequence, keep: Path) -> None:
 
 
 def _show_in_turn(parts: Sequence[PoseSequence]) -> PoseSequence:
-    """Join takes to one recording, a thirtieth of a second between them."""
+    """Join takes into one recording, a thirtieth of a second apart."""
     joined, end = [], 0.0
     for poses in parts:
         time = poses.time - poses.time[0] + end + 1 / 30

@@ -1,4 +1,4 @@
-"""Where the pose says that a hand is."""
+"""Arms: the places of hands according to the pose."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ HAND_POINTS = {"wrist": "wrist", "pinky": "pinky_mcp", "index": "index_finger_mc
 
 
 def body_with(hand: FloatArray, side: Side, *, visibility: float = 1.0) -> Body:
-    """Return a body of which only the end of one arm is known: where `hand` (21, 2) is."""
+    """Return a body of which only the end of one arm is known, at the place of `hand` (21, 2)."""
     xy: FloatArray = np.full((len(POSE_LANDMARKS), 2), np.nan)
     for pose_point, hand_point in HAND_POINTS.items():
         place = POSE_LANDMARKS.index(f"{side}_{pose_point}")

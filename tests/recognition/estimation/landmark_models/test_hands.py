@@ -31,7 +31,7 @@ SALUTING = slice(22, 30)
 """Frames of the first demonstration in which the start salute is held."""
 
 FAR_AWAY = 0.5
-"""Shrinks the demonstrations, filmed from 2.3 m, to how 4.6 m look."""
+"""Factor that shrinks the demonstrations, filmed from 2.3 m, to their size at 4.6 m."""
 
 
 def hand(xy: FloatArray) -> Hand:
@@ -63,7 +63,7 @@ def saluting(sample_clips: Path) -> tuple[VideoFrame, ...]:
 
 
 def far_away(image: Image) -> Image:
-    """Put more of the same water around a diver."""
+    """Surround a diver with more of the same water."""
     small = cv2.resize(image, None, fx=FAR_AWAY, fy=FAR_AWAY, interpolation=cv2.INTER_AREA)
     rows, columns = (
         (whole - part) // 2 for whole, part in zip(image.shape, small.shape[:2], strict=False)
@@ -73,7 +73,7 @@ def far_away(image: Image) -> Image:
 
 
 def without_hands(image: Image, found: FrameLandmarks) -> Image:
-    """Paint the surroundings over everything that the arms of a body end in."""
+    """Paint the surroundings over the ends of a body's arms."""
     assert found.body is not None
     mask = np.zeros(image.shape[:2], np.uint8)
     for side in SIDES:

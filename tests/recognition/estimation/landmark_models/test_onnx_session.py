@@ -1,4 +1,4 @@
-"""Model sessions: what they refuse, and that they say why and what to do."""
+"""Model sessions: refusals with the reason and what to do."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ RELATIVE = 1e-3
 a wrong border or axis shows at 1e-1."""
 
 ABSOLUTE = 1e-6
-"""Allowed difference of a probability near nought, which the runtimes round differently."""
+"""Allowed difference of a probability near zero, which the runtimes round differently."""
 
 
 def tflite_of(name: ModelName) -> bytes:
@@ -45,7 +45,7 @@ def side_of(name: ModelName) -> int:
 
 
 def original_results(name: ModelName, image: FloatTensor) -> dict[str, FloatTensor]:
-    """Run the TensorFlow Lite model; leave away what the converted one leaves out."""
+    """Run the TensorFlow Lite model; leave out the outputs that the converted one lacks."""
     results = run_tflite(tflite_of(name), image)
     return {key: values for key, values in results.items() if key not in unused_by(name)}
 

@@ -1,4 +1,4 @@
-"""The voter of the wrist: what it tells apart, and when it has little to tell."""
+"""The wrist voter: what it tells apart, and when it has little information."""
 
 from collections.abc import Callable
 from dataclasses import replace

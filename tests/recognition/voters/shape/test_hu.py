@@ -1,4 +1,4 @@
-"""Hu's moments do not see where, how large or which way round a figure is."""
+"""Hu's moments: independent of a figure's place, size and rotation."""
 
 import cv2
 import numpy as np
