@@ -36,12 +36,12 @@ import {
   loadTakes,
   showSelection,
   stageButtons,
-} from "./studio/stage.js";
+} from "./studio/studio-view.js";
 import { drawTakesButton, openTakeTable } from "./export/take-table.js";
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
-import { drawFlat, drawRatio } from "./studio/stage-picture.js";
+import { drawFlat, drawRatio } from "./studio/clip-picture.js";
 import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";

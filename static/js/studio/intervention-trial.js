@@ -8,7 +8,7 @@ import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { keepTuning } from "../languages/language-tuning.js";
 import { edit } from "../languages/revision-edit.js";
-import { rangeOf, recogniseWith } from "./stage.js";
+import { rangeOf, recogniseWith } from "./studio-view.js";
 
 /** @import { Intervention, Recognition, Trial, Tuning } from "../core/types.d.ts" */
 

@@ -5,7 +5,7 @@ import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
-import { cubeButton, followChoice } from "./stage-picture.js";
+import { cubeButton, followChoice } from "./clip-picture.js";
 import { setEnd, setStart } from "./timeline.js";
 import { toggleTracks, tracksButton } from "./tracks.js";
 import { showFlat } from "./workspace.js";

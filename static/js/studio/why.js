@@ -12,7 +12,7 @@ import { addToTestSet } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
-import { recogniseWith } from "./stage.js";
+import { recogniseWith } from "./studio-view.js";
 
 /** @import { Counterfactual, Explanation, Recognition, SideEffect, State } from "../core/types.d.ts" */
 

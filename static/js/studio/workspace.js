@@ -6,7 +6,7 @@ import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { followClock, frameShown, rememberFrame, wasCut } from "./playback.js";
-import { drawByPage, drawByViser, isFlat } from "./stage-picture.js";
+import { drawByPage, drawByViser, isFlat } from "./clip-picture.js";
 
 /** @import { WorkspaceView } from "../core/types.d.ts" */
 

@@ -1,4 +1,4 @@
-// The stage: the clip on display, its takes, and the outcome of its recognition.
+// The studio view: the clip on display, its takes, and the outcome of its recognition.
 
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
