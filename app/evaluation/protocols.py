@@ -11,7 +11,7 @@ from collections.abc import Callable
 from app.evaluation.confusion import ConfusionMatrix
 from app.recognition import Language, OsgError, PoseError, PoseSequence, Recognizer
 from app.recognition.gestures.demonstration import condense
-from app.recognition.language.schema import MAX_GESTURES
+from app.recognition.language.file_schema import MAX_GESTURES
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person, draw_variants, take_turns
 

@@ -13,8 +13,8 @@ from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
 from app.recognition import Language, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import RecognitionContext
+from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
-from app.recognition.language.schema import TuningEntry
 from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_surroundings
 from app.store import Clip, LanguageState, RecognitionRecord

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
-from app.api.viser_workspaces.open_workspaces import CurrentWorkspaces
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces
 from app.ui.playback import Playback, Position
 
 

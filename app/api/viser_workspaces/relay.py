@@ -23,7 +23,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
-from app.api.viser_workspaces.open_workspaces import CurrentWorkspaces, no_workspace
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, no_workspace
 
 CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
 

@@ -10,8 +10,8 @@ from pydantic import BaseModel, ConfigDict
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.services.running_studio import CurrentStudio
-from app.api.viser_workspaces.open_workspaces import CurrentWorkspaces, find
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, find
 from app.recognition.errors import OsgError
 from app.ui.workspace_registry import TooManyWorkspacesError
 

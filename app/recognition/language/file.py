@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.recognition.errors import LanguageError
-from app.recognition.language.schema import (
+from app.recognition.language.file_schema import (
     FORMAT,
     MAX_FILE_BYTES,
     MAX_GESTURES,

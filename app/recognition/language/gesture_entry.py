@@ -16,7 +16,7 @@ from app.recognition.features.trajectory_image import SIZE
 from app.recognition.gestures.demonstration import Demonstration, check_diver
 from app.recognition.gestures.gesture import Gesture, Rates, check_command, check_label
 from app.recognition.gestures.switches import Switches
-from app.recognition.language.schema import (
+from app.recognition.language.file_schema import (
     DemonstrationEntry,
     GestureEntry,
     HandEntry,

@@ -17,14 +17,14 @@ from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_
 from app.recognition.gestures.switches import Switches
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.file import name_file, read_content, read_document, write_document
-from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
-from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
-from app.recognition.language.schema import (
+from app.recognition.language.file_schema import (
     FORMAT,
     MAX_GESTURES,
     VERSION,
     LanguageDocument,
 )
+from app.recognition.language.gesture_entry import entry_to_gesture, gesture_to_entry
+from app.recognition.language.grammar_entry import entry_to_grammar, grammar_to_entry
 from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_entry
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar

@@ -16,8 +16,8 @@ from app.recognition.errors import GestureError, LanguageError
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.language.file_schema import MAX_GESTURES
 from app.recognition.language.language import Language
-from app.recognition.language.schema import MAX_GESTURES
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.text.strict_json import StrictJSONError, build_pointer, read_json
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
-from app.recognition.language.schema import TuningEntry
+from app.recognition.language.file_schema import TuningEntry
 from app.recognition.voters.registry import FORMER_VOTERS
 
 

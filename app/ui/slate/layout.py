@@ -20,7 +20,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
 from app.recognition.triggers.arm_pose import ArmPose
 from app.recognition.triggers.trigger import Trigger
-from app.ui.slate.drawing import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
+from app.ui.slate.primitives import Disc, Page, Part, Path, Point, Shape, Words, fit_size, wrap
 
 A4: Final = (210.0, 297.0)
 MARGIN = 12.0

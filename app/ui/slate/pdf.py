@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
 from app.recognition.text.joiners import JOINERS
-from app.ui.slate.drawing import Disc, Page, Part, Path, Shape, Words
 from app.ui.slate.fonts import find_font
+from app.ui.slate.primitives import Disc, Page, Part, Path, Shape, Words
 
 if TYPE_CHECKING:
     from fpdf import FPDF

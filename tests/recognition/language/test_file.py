@@ -9,7 +9,7 @@ import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
-from app.recognition.language.schema import MAX_FILE_BYTES, MAX_GESTURES
+from app.recognition.language.file_schema import MAX_FILE_BYTES, MAX_GESTURES
 from tests.recognition.held_takes import TWO, hold
 from tests.recognition.strategies import circle, in_space, line, recording
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, LanguageError, PoseSequence, Recognizer
 from app.recognition.gestures.demonstration import MAX_LANDMARKS
-from app.recognition.language.schema import MAX_GESTURES
+from app.recognition.language.file_schema import MAX_GESTURES
 from tests.recognition.strategies import SHAPES, circle, line, recording, recordings, wedge
 
 GOLDEN = Path(__file__).parents[2] / "golden" / "language.json"

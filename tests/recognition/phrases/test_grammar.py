@@ -12,7 +12,7 @@ import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
-from app.recognition.language.schema import load_schema
+from app.recognition.language.file_schema import load_schema
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.grammar_parts import DEFAULT_TIMEOUT
 from app.recognition.phrases.parser import PhraseParser

@@ -10,8 +10,8 @@ from pydantic import BaseModel, Field
 from app.api.http.schemas.gestures import GestureView
 from app.api.http.schemas.values import Author, Body, Name
 from app.recognition.gestures.profile import ProfileName
+from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.grammar_schema import GrammarEntry
-from app.recognition.language.schema import TuningEntry
 from app.recognition.language.trigger_schema import TriggerEntry
 
 

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.http.schemas.gestures import GestureChange
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
-from app.recognition.language.schema import TuningEntry
+from app.recognition.language.file_schema import TuningEntry
 
 
 class GestureTrial(Body):

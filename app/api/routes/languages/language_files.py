@@ -22,8 +22,8 @@ from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.language_files import ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
+from app.recognition.language.file_schema import FORMAT, VERSION
 from app.recognition.language.requirements import find_requirements
-from app.recognition.language.schema import FORMAT, VERSION
 from app.store import Draft, LanguageState
 
 SMALL_BYTES = 512 * 1024

@@ -1,4 +1,4 @@
-"""Slate drawing: lines, shapes and texts of the page in millimetres, for any file format."""
+"""Slate primitives: lines, shapes and texts of the page in millimetres, for any file format."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Open workspaces: their registry as a dependency of routes, and the search by id."""
+"""Workspace lookup: the registry of open workspaces as a dependency of routes, and search by id."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import jsonschema
 import pytest
 
 from app.recognition import Gesture, Language
-from app.recognition.language.schema import SCHEMA_FILE, generate_schema, load_schema
+from app.recognition.language.file_schema import SCHEMA_FILE, generate_schema, load_schema
 from tests.recognition.language.test_language import GOLDEN, GOLDEN_OF_DIVERS
 from tests.recognition.strategies import circle, recording
 

@@ -1,4 +1,4 @@
-"""Language schema: pydantic models of the language file, version 1, with units and axes.
+"""File schema: pydantic models of the language file, version 1, with units and axes.
 
 The JSON Schema published in `schema/` is generated from them.
 """
