@@ -237,14 +237,13 @@ def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
     They go to ``docs/images`` when ``OSG_UPDATE_IMAGES`` is set, so that a plain test run leaves
     the working tree as it is; there they have a palette, which takes a third of the bytes.
     """
-    kept = UPDATES_IMAGES
-    folder = IMAGES if kept else tmp_path
+    folder = IMAGES if UPDATES_IMAGES else tmp_path
 
     def take(page: Page, name: str) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         path = folder / f"{name}.png"
         page.screenshot(path=path)
-        if kept:
+        if UPDATES_IMAGES:
             with Image.open(path) as taken:
                 palette = taken.convert("RGB").quantize(
                     256, method=Image.Quantize.MAXCOVERAGE, kmeans=2

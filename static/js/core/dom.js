@@ -47,15 +47,16 @@ export const byId = (id) => /** @type {any} */ (document.getElementById(id));
 export function h(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
   const values = /** @type {any} */ (element);
-  // Assigning `src` starts loading, in some browsers before `loading: "lazy"` is set.
-  const { src, ...others } = properties;
-  for (const [name, value] of Object.entries({ ...others, src })) {
-    if (value === undefined || value === null) continue;
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || name === "src") continue;
     if (name.includes("-") || name === "role" || name === "for") element.setAttribute(name, value);
     else if (name === "style")
       for (const [key, v] of Object.entries(value)) element.style.setProperty(key, v);
     else values[name] = value;
   }
+  // Assigning `src` starts loading, in some browsers before `loading: "lazy"` is set.
+  const { src } = properties;
+  if (src !== undefined && src !== null) values.src = src;
   element.append(...children.flat().filter((child) => child !== null && child !== undefined));
   return element;
 }

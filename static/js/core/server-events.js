@@ -28,10 +28,11 @@ export function followServer(handlers) {
   const leaveLater = () => {
     unseen = setTimeout(() => {
       // A page in the background, too, tests its clips that wait for the test set.
-      if (state.pending.length) return leaveLater();
-      current?.close();
-      current = null;
-      return undefined;
+      if (state.pending.length) leaveLater();
+      else {
+        current?.close();
+        current = null;
+      }
     }, UNSEEN);
   };
   const look = () => {

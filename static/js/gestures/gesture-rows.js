@@ -129,16 +129,17 @@ export function problemsOf(rows, others) {
       );
     seen.add(compared);
   }
-  const unread = chosen.filter(({ clip, takes }) => !takes && clip.status !== "done").length;
-  const unloaded = chosen.filter(({ clip, takes }) => !takes && clip.status === "done").length;
+  const waiting = chosen.filter(({ takes }) => !takes);
+  const unread = waiting.filter(({ clip }) => clip.status !== "done").length;
+  const reason = unread
+    ? `${plural(unread, "clip")} still without poses`
+    : `Takes of ${plural(waiting.length, "clip")} not loaded yet`;
   const note = !chosen.length
     ? "No row is chosen."
     : problems.size
       ? `${plural(problems.size, "row")} without a name of ${problems.size > 1 ? "their" : "its"} own.`
-      : unread
-        ? `${plural(unread, "clip")} still without poses: wait, or leave ${unread > 1 ? "them" : "it"} out.`
-        : unloaded
-          ? `Takes of ${plural(unloaded, "clip")} not loaded yet: wait, or leave ${unloaded > 1 ? "them" : "it"} out.`
-          : "";
+      : waiting.length
+        ? `${reason}: wait, or leave ${(unread || waiting.length) > 1 ? "them" : "it"} out.`
+        : "";
   return { problems, note };
 }

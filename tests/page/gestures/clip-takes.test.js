@@ -19,6 +19,9 @@ async function until(holds) {
 const clips = (prefix, count) =>
   Array.from({ length: count }, (_, number) => ({ id: `${prefix}${number}`, status: "done" }));
 
+/** Load the takes of the clips, as the open table does. */
+const load = ({ wanted = () => true, found = () => {} } = {}) => loadTakesOfClips(wanted, found);
+
 /** Let what has been answered have its effect. */
 async function settle() {
   for (let turn = 0; turn < 20; turn += 1) await new Promise(setImmediate);
@@ -44,13 +47,9 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   const { waiting, one } = answers(t);
   update({ clips: [{ id: "queued", status: "queued" }, ...clips("a", 9)] });
   let drawn = 0;
-  const load = () =>
-    loadTakesOfClips(
-      () => true,
-      () => (drawn += 1),
-    );
-  load();
-  load();
+  const draw = () => (drawn += 1);
+  load({ found: draw });
+  load({ found: draw });
   assert.equal(waiting.length, 4);
   await one();
   assert.equal(waiting.length, 4);
@@ -67,10 +66,7 @@ test("what is on its way is not asked for again when the table is opened again",
   update({ clips: clips("c", 2) });
   const open = () => {
     forgetFailures();
-    loadTakesOfClips(
-      () => true,
-      () => {},
-    );
+    load();
   };
   open();
   open();
@@ -82,17 +78,13 @@ test("no more are asked for once nobody wants them, and the rest at the next tim
   const { waiting, one } = answers(t);
   update({ clips: clips("b", 6) });
   let open = true;
-  const load = () =>
-    loadTakesOfClips(
-      () => open,
-      () => {},
-    );
-  load();
+  const wanted = () => open;
+  load({ wanted });
   open = false;
   while (waiting.length) await one();
   assert.equal([...takesByClip.keys()].filter((id) => id.startsWith("b")).length, 4);
   open = true;
-  load();
+  load({ wanted });
   assert.equal(waiting.length, 2);
   while (waiting.length) await one();
 });
@@ -106,11 +98,6 @@ test("a clip whose takes the server refuses does not hold up the others", async 
     return Response.json([]);
   });
   update({ clips: clips("d", 6) });
-  const load = () =>
-    loadTakesOfClips(
-      () => true,
-      () => {},
-    );
   load();
   await until(() => asked.length === 6);
   load();
@@ -131,11 +118,6 @@ test("without a server nothing more is asked for, and everything once it is back
     return Response.json([]);
   });
   update({ clips: clips("e", 9) });
-  const load = () =>
-    loadTakesOfClips(
-      () => true,
-      () => {},
-    );
   load();
   await settle();
   assert.equal(asked.length, 4);
