@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from pathlib import Path
 
 PARTIAL_SUFFIX = ".part"
@@ -32,4 +33,24 @@ def publish(partial: Path, target: Path) -> None:
     with partial.open("rb") as file:
         os.fsync(file.fileno())
     os.replace(partial, target)  # noqa: PTH105 - the call whose atomicity the module is about
+    sync_directory(target.parent)
+
+
+def publish_copy(file: Path, target: Path) -> None:
+    """Give a finished `file` a second name `target`, durably; where files have one name, a copy.
+
+    Raises
+    ------
+    OSError
+        When `target` cannot be written; `file` is as it was.
+
+    """
+    with file.open("rb") as opened:
+        os.fsync(opened.fileno())
+    try:
+        os.link(file, target)  # noqa: PTH200 - as above, the call is what matters
+    except OSError:  # Another file system, or one without hard links.
+        partial = target.with_name(f"{target.name}{PARTIAL_SUFFIX}")
+        shutil.copyfile(file, partial)
+        return publish(partial, target)
     sync_directory(target.parent)

@@ -16,7 +16,7 @@ from sqlalchemy.orm import aliased
 from sqlmodel import Session, col, func, select
 from sqlmodel.sql.expression import SelectOfScalar
 
-from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
 from app.store.clip_folder import ClipFolder
 from app.store.database import Database
 from app.store.errors import NotFound
@@ -126,9 +126,9 @@ class ClipStore:
 
         The job of a dive recording with several topics fails at once and is retried after
         `choose_topic`. The file is stored before the row, in the object store too, because a row
-        never refers to a missing file. When that fails, the file is at `partial` again, so that
-        adding it can be repeated. When two uploads with one idempotency key race, the second one
-        returns the first one's clip.
+        never refers to a missing file; `partial` is removed after the row is committed, so that
+        adding it can be repeated after a failure or a crash in between. When two uploads with one
+        idempotency key race, the second one returns the first one's clip.
 
         `allow` is called in the same transaction, so that no other server adds a clip in between;
         if it raises, the clip is not added. The quota that a resumable upload has reserved passes
@@ -148,7 +148,7 @@ class ClipStore:
             job.error_code = TOPIC_NEEDED
             job.error = "the recording holds several topics; choose one of them"
         try:
-            publish(partial, target)
+            publish_copy(partial, target)
             sync_directory(self.folder)
             self._files.keep(clip.id, [clip.source])
             with self._database.writing() as session:
@@ -159,15 +159,12 @@ class ClipStore:
                 session.add(clip)
                 session.flush()
                 session.add(job)
-        except BaseException as error:
-            with suppress(OSError):
-                target.replace(partial)
-            self._files.remove([clip.id])
-            earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
-            if not earlier:
-                raise
-            return earlier
-        return ClipWithJob(clip, job)
+        except Exception as error:
+            added = self._after_failure(clip, error)
+        else:
+            added = ClipWithJob(clip, job)
+        partial.unlink(missing_ok=True)
+        return added
 
     @property
     def changes(self) -> int:
@@ -381,6 +378,20 @@ class ClipStore:
     def make_room(self) -> int:
         """Remove copies until they are within the limit; return the number removed."""
         return self._copies.make_room()
+
+    def _after_failure(self, clip: Clip, error: Exception) -> ClipWithJob:
+        """Return the stored clip if there is one after all; else remove its files and raise."""
+        # The answer to a commit can be lost. While the database does not tell, the files stay, and
+        # `sweep` decides later.
+        with self._database.reading() as session:
+            stored = session.get(Clip, clip.id)
+        if stored is not None:
+            return self.get(clip.id)
+        self._files.remove([clip.id])
+        earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
+        if not earlier:
+            raise error
+        return earlier
 
     def _at_rest(self, clip_ids: Collection[str]) -> set[str]:
         """Return the clips that have a row and no waiting or running job."""

@@ -61,8 +61,11 @@ class Upload:
 
     @property
     def missing(self) -> int:
-        """Number of bytes still missing."""
-        return max(self.size - self.offset, 0)
+        """Number of bytes still missing; none if the upload has ended meanwhile."""
+        try:
+            return max(self.size - self.offset, 0)
+        except FileNotFoundError:
+            return 0
 
 
 class UploadStore:

@@ -1,14 +1,28 @@
 """Clips: file and row appear and disappear together, whatever breaks in between."""
 
+import errno
 import json
+import os
 import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 from pathlib import Path
 
 import pytest
 from sqlalchemy import event
+from sqlmodel import Session
 
-from app.store import Clip, ClipStore, ClipWithJob, Database, JobStatus, JobStore, NotFound
+from app.store import (
+    Clip,
+    ClipStore,
+    ClipWithJob,
+    Database,
+    JobStatus,
+    JobStore,
+    NotFound,
+    StoreUnavailable,
+)
 from app.store.clips import TOPIC_NEEDED
 from app.store.models import now
 from tests.store.conftest import add_clip
@@ -88,6 +102,39 @@ def test_a_file_whose_row_cannot_be_written_is_where_it_was(clips: ClipStore) ->
         clips.add(taken, partial, "diver")
     assert {path.name for path in clips.folder.iterdir()} == {first.clip.id, partial.name}
     assert partial.read_bytes() == b"other"  # It can be added again.
+
+
+class LosesAnswers(Database):
+    """Loses the connection after each commit, as a database does that is restarted then."""
+
+    @contextmanager
+    def writing(self, *, counted: bool = True) -> Iterator[Session]:
+        with super().writing(counted=counted) as session:
+            yield session
+        raise StoreUnavailable("the connection was lost; nothing is known of the last change")
+
+
+def test_a_clip_whose_commit_was_not_answered_keeps_its_file(
+    database: Database, tmp_path: Path
+) -> None:
+    lossy = LosesAnswers(database.engine.url.render_as_string(hide_password=False))
+    clip_id = add_clip(ClipStore(lossy, tmp_path / "clips"), key="same").clip.id
+    clips = ClipStore(database, tmp_path / "clips")
+    assert clips.video(clip_id).read_bytes() == b"video"
+    assert add_clip(clips, key="same").clip.id == clip_id
+    lossy.close()
+
+
+def test_a_clip_is_copied_where_a_file_has_one_name(
+    clips: ClipStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise OSError(errno.EXDEV, "another file system")
+
+    monkeypatch.setattr(os, "link", refuse)
+    added = add_clip(clips)
+    assert clips.video(added.clip.id).read_bytes() == b"video"
+    assert [path.name for path in clips.folder.iterdir()] == [added.clip.id]
 
 
 def test_a_list_needs_no_value_for_each_clip(sqlite: Database, tmp_path: Path) -> None:

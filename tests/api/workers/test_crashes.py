@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import sqlite3
 import struct
 import subprocess
 import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 
 import httpx
@@ -16,6 +18,7 @@ import pytest
 
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.routes.clips.test_extraction_jobs import JOBS
+from tests.api.routes.clips.test_resumable_uploads import begun, offset_of, sent
 from tests.api.running import assert_problem, until
 from tests.api.running_workers import alive, hold_worker, linux
 from tests.api.serving import SERVE, served
@@ -124,6 +127,28 @@ def test_a_kill_right_after_the_answer_loses_nothing(tmp_path: Path, uploads: in
         assert len(client.get("/api/v1/languages").json()) == uploads
         for clip_id in acknowledged:
             assert client.get(f"{CLIPS}/{clip_id}/video").content == clip.read_bytes()
+
+
+@pytest.mark.withstands(row="H21")
+def test_a_kill_between_file_and_row_loses_no_acknowledged_part(tmp_path: Path) -> None:
+    content = write_clip(tmp_path / "clip.mp4").read_bytes()
+    data, last = tmp_path / "data", len(content) - 50
+    with served(data) as (process, client), ThreadPoolExecutor(1) as other:
+        place = begun(client, len(content))
+        assert sent(client, place, 0, content[:last]).status_code == 204
+        with closing(sqlite3.connect(data / "studio.db")) as database:
+            database.execute("BEGIN IMMEDIATE")
+            waiting = other.submit(sent, client, place, last, content[last:])
+            until(lambda: list((data / "clips").glob("*/video")) != [])
+            process.kill()
+            process.wait()
+        assert isinstance(waiting.exception(), httpx.HTTPError)
+    with served(data) as (process, client):
+        offset = offset_of(client, place)
+        assert offset >= last
+        clip = sent(client, place, offset, content[offset:]).headers["content-location"]
+        assert client.get(f"{clip}/video").content == content
+        assert list((data / "uploads").iterdir()) == []
 
 
 def test_a_folder_in_use_or_damaged_ends_the_start_in_one_line(tmp_path: Path) -> None:

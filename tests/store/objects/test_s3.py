@@ -147,7 +147,8 @@ def test_what_a_kill_between_upload_and_database_left_goes_at_the_next_start(
     assert len(s3.names()) == 1
     store = ClipStore(sqlite, folder, objects)
     assert store.all() == []
-    assert store.sweep(now()) == 1
+    assert [path.read_bytes() for path in folder.glob("*.part")] == [b"video"]
+    assert store.sweep(now()) == 2
     assert s3.names() == set()
     assert not list(folder.iterdir())
 

@@ -154,13 +154,13 @@ async def append_part(
     try:
         upload = await run_in_threadpool(studio.uploads.get, upload_id)
     except NotFound:
-        # The answer to the last part was lost, so the client sends the part again.
-        clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
-        if clip is None or upload_offset not in _ends(clip.clip.size):
+        if (answer := await _answer_again(upload_id, upload_offset, studio)) is None:
             raise
-        headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.size)}
-        return Response(status_code=204, headers=headers)
+        return answer
     came = upload.offset
+    # A clip shares the bytes of its upload, so none are written once there is one.
+    if came == upload.size and (answer := await _answer_again(upload_id, upload_offset, studio)):
+        return answer
     if upload_offset not in (_ends(upload.size) if came == upload.size else (came,)):
         detail = f"{came} bytes have come; go on there instead of at {upload_offset}"
         raise ProblemError(409, "upload_offset", detail)
@@ -218,6 +218,17 @@ def _metadata(header: str) -> dict[str, str]:
     return values
 
 
+async def _answer_again(upload_id: str, offset: int, studio: Studio) -> Response | None:
+    """Answer a last part that is sent again because its answer was lost; None if it is not one."""
+    clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
+    if clip is None or offset not in _ends(clip.clip.size):
+        return None
+    # It is still there when the server ended between the commit of the clip and the answer.
+    await run_in_threadpool(studio.uploads.remove, upload_id)
+    headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.size)}
+    return Response(status_code=204, headers=headers)
+
+
 def _ends(size: int) -> tuple[int, ...]:
     """Return the offsets at which the last part of a complete file may be sent again."""
     return (size, size - 1)
@@ -271,8 +282,9 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
                 raise
             made.idempotency_key = upload.id
             await store(made, upload.path, studio, request)
-            await run_in_threadpool(studio.uploads.remove, upload.id)
             clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
+        # Also when it was a clip already: a crash may have come between the two.
+        await run_in_threadpool(studio.uploads.remove, upload.id)
     if clip is None:
         raise NotFound(f"the clip of upload {upload.id} was deleted meanwhile")
     return _finished_headers(clip)
