@@ -24,13 +24,13 @@ from app.store.models import (
     RecognitionRecord,
 )
 from app.store.practice import PracticeStore
-from app.store.quotas import Allowance, QuotaStore, Usage
+from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
 from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
 
 __all__ = [
-    "Allowance",
+    "NO_QUOTA",
     "AuditEntry",
     "AuditStore",
     "Clip",
@@ -57,6 +57,8 @@ __all__ = [
     "NotFound",
     "PracticeStore",
     "PracticeTake",
+    "Quota",
+    "QuotaExceeded",
     "QuotaStore",
     "RecognitionRecord",
     "RecognitionStore",

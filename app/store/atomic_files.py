@@ -48,9 +48,9 @@ def publish_copy(file: Path, target: Path) -> None:
     with file.open("rb") as opened:
         os.fsync(opened.fileno())
     try:
-        os.link(file, target)  # noqa: PTH200 - as above, the call is what matters
+        os.link(file, target)
     except OSError:  # Another file system, or one without hard links.
         partial = target.with_name(f"{target.name}{PARTIAL_SUFFIX}")
         shutil.copyfile(file, partial)
-        return publish(partial, target)
+        publish(partial, target)
     sync_directory(target.parent)

@@ -23,7 +23,7 @@ from app.store.errors import NotFound
 from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
 from app.store.objects.clip_copies import ClipCopies
-from app.store.quotas import Allowance, release_in, usage_of
+from app.store.quotas import NO_QUOTA, Quota, Usage, release_in
 
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
 """Files of a clip beside the video and the received file, which its source names."""
@@ -119,9 +119,7 @@ class ClipStore:
         """Return a fresh path for a file that is still being received."""
         return self.folder / f"{new_id()}{PARTIAL_SUFFIX}"
 
-    def add(
-        self, clip: Clip, partial: Path, client: str, allow: Allowance | None = None
-    ) -> ClipWithJob:
+    def add(self, clip: Clip, partial: Path, client: str, quota: Quota = NO_QUOTA) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
         The job of a dive recording with several topics fails at once and is retried after
@@ -130,12 +128,13 @@ class ClipStore:
         adding it can be repeated after a failure or a crash in between. When two uploads with one
         idempotency key race, the second one returns the first one's clip.
 
-        `allow` is called in the same transaction, so that no other server adds a clip in between;
-        if it raises, the clip is not added. The quota that a resumable upload has reserved passes
-        to the clip.
+        The quota is checked in the same transaction, so that no other server adds a clip in
+        between. What a resumable upload has reserved of it passes to the clip.
 
         Raises
         ------
+        QuotaExceeded
+            When the clip exceeds its owner's quota.
         StoreUnavailable
             When the object store or the database does not answer.
 
@@ -152,8 +151,7 @@ class ClipStore:
             sync_directory(self.folder)
             self._files.keep(clip.id, [clip.source])
             with self._database.writing() as session:
-                if allow is not None:
-                    allow(usage_of(session, clip.owner, without=clip.idempotency_key))
+                quota.require_in(session, clip.size, clips=1, without=clip.idempotency_key)
                 if clip.idempotency_key is not None:
                     release_in(session, clip.idempotency_key)
                 session.add(clip)
@@ -305,6 +303,34 @@ class ClipStore:
                 session.delete(clip)
         self._files.remove(clip.id for clip in gone)
         return len(gone)
+
+    def purge_for(self, owner: str, excess: Usage) -> Usage:
+        """Purge the clips that an owner deleted first, until so much is free.
+
+        Parameters
+        ----------
+        owner
+            Whose deleted clips are purged.
+        excess
+            Clips and bytes that must go.
+
+        Returns
+        -------
+        Clips and bytes that still must go.
+
+        """
+        gone = []
+        with self._database.writing() as session:
+            deleted = select(Clip).where(Clip.owner == owner, col(Clip.deleted).is_not(None))
+            for clip in session.exec(deleted.order_by(col(Clip.deleted))):
+                if excess == Usage(0, 0):
+                    break
+                excess = Usage(max(0, excess.clips - 1), max(0, excess.bytes - clip.size))
+                gone.append(clip.id)
+                self._files.note(clip.id)
+                session.delete(clip)
+        self._files.remove(gone)
+        return excess
 
     def sweep(self, before: datetime) -> int:
         """Remove files that a crash left without a row; return their number.

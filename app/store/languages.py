@@ -8,11 +8,15 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from sqlalchemy.orm import defer
-from sqlmodel import Session, col, select
+from sqlmodel import Session, col, func, select
 
 from app.store.database import Database
-from app.store.errors import Conflict, NotFound
+from app.store.errors import Conflict, NotFound, StoreUnavailable
 from app.store.models import LanguageRecord, LanguageRevision, SeededSample, now
+from app.store.quotas import NO_QUOTA, Quota, Usage
+
+MOST_RACES = 20
+"""Attempts at an edit without a given revision before it is refused, each lost to another edit."""
 
 _WITHOUT_DOCUMENT = defer(LanguageRevision.document, raiseload=True)  # type: ignore[arg-type]
 """Leaves out the documents: hundreds of kilobytes each, which no list shows."""
@@ -27,6 +31,11 @@ class Draft:
     change: str
     document: str
     author: str = ""
+
+    @property
+    def size(self) -> int:
+        """Bytes of the document."""
+        return len(self.document.encode())
 
 
 @dataclass(frozen=True)
@@ -49,7 +58,12 @@ class LanguageStore:
         return self._database.changes
 
     def create(
-        self, draft: Draft, revision: int = 1, *, sample: str | None = None
+        self,
+        draft: Draft,
+        revision: int = 1,
+        *,
+        sample: str | None = None,
+        quota: Quota = NO_QUOTA,
     ) -> LanguageState:
         """Add a language with `draft` as its first revision, numbered `revision`.
 
@@ -61,13 +75,21 @@ class LanguageStore:
             The revision number in its document.
         sample
             Name of the sample that it is; a sample is added automatically only once.
+        quota
+            Quota of its owner.
+
+        Raises
+        ------
+        QuotaExceeded
+            When the owner may not keep as much.
 
         """
         with self._database.writing() as session:
+            quota.require_in(session, draft.size)
             record = LanguageRecord(head=revision, sample=sample is not None)
             session.add(record)
             session.flush()
-            row = _row(record.id, revision, draft)
+            row = _row(record.id, revision, draft, quota.owner)
             session.add(row)
             if sample is not None:
                 session.merge(SeededSample(name=sample))
@@ -134,10 +156,12 @@ class LanguageStore:
         language_id: str,
         change: Callable[[LanguageRevision, int], Draft],
         expected: int | None = None,
+        quota: Quota = NO_QUOTA,
     ) -> LanguageState:
         """Add a revision made from the newest one.
 
-        Reading, changing and writing happen under the write lock, so that no edit is lost.
+        The change is made outside the write lock, because that of a large language takes seconds,
+        and is made again if another edit came first, so that no edit is lost.
 
         Parameters
         ----------
@@ -147,6 +171,8 @@ class LanguageStore:
             Makes the draft from the newest revision and the number that the draft will get.
         expected
             The revision the caller saw; ``None`` accepts any.
+        quota
+            Quota of the revision's owner.
 
         Raises
         ------
@@ -154,22 +180,31 @@ class LanguageStore:
             When there is no such language.
         Conflict
             When the newest revision is not the `expected` one.
+        QuotaExceeded
+            When the owner may not keep as much; revisions are never thinned out.
+        StoreUnavailable
+            When others edit the language again and again.
 
         """
-        with self._database.writing() as session:
-            state = _load(session, language_id, None, changing=True)
-            record, head = state.record, state.record.head
-            if expected is not None and expected != head:
-                raise Conflict(
-                    f"the language is at revision {head} and the change was made from revision "
-                    f"{expected}; load it again and repeat the change",
-                    current=head,
-                )
-            row = _row(language_id, head + 1, change(state.revision, head + 1))
-            session.add(row)
-            record.head = head + 1
-            session.add(record)
-        return LanguageState(record, row)
+        for _ in range(MOST_RACES):
+            state = self.get(language_id)
+            head = state.record.head
+            _require_head(head, expected)
+            draft = change(state.revision, head + 1)
+            with self._database.writing() as session:
+                record = _load(session, language_id, None, changing=True).record
+                _require_head(record.head, expected)
+                if record.head != head:
+                    continue
+                quota.require_in(session, draft.size)
+                row = _row(language_id, head + 1, draft, quota.owner)
+                session.add(row)
+                record.head = head + 1
+                session.add(record)
+            return LanguageState(record, row)
+        raise StoreUnavailable(
+            "others are changing this language now; nothing was changed, try again"
+        )
 
     def delete(self, language_id: str, expected: int | None = None) -> None:
         """Hide a language until `purge`.
@@ -220,8 +255,36 @@ class LanguageStore:
                 session.delete(record)
         return len(gone)
 
+    def purge_for(self, owner: str, excess: Usage) -> Usage:
+        """Purge the languages that an owner alone wrote and deleted first; see `ClipStore`."""
+        with self._database.writing() as session:
+            revisions = (
+                select(col(LanguageRevision.language_id), func.sum(LanguageRevision.size))
+                .join(LanguageRecord)
+                .where(col(LanguageRecord.deleted).is_not(None))
+                .group_by(col(LanguageRevision.language_id), col(LanguageRecord.deleted))
+                .having(func.min(LanguageRevision.owner) == owner)
+                .having(func.max(LanguageRevision.owner) == owner)
+                .order_by(col(LanguageRecord.deleted))
+            )
+            for language_id, size in session.exec(revisions).all():
+                if not excess.bytes:
+                    break
+                excess = Usage(excess.clips, max(0, excess.bytes - size))
+                session.delete(session.get_one(LanguageRecord, language_id))
+        return excess
 
-def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
+
+def _require_head(head: int, expected: int | None) -> None:
+    if expected is not None and expected != head:
+        raise Conflict(
+            f"the language is at revision {head} and the change was made from revision "
+            f"{expected}; load it again and repeat the change",
+            current=head,
+        )
+
+
+def _row(language_id: str, revision: int, draft: Draft, owner: str) -> LanguageRevision:
     return LanguageRevision(
         language_id=language_id,
         revision=revision,
@@ -230,6 +293,8 @@ def _row(language_id: str, revision: int, draft: Draft) -> LanguageRevision:
         change=draft.change,
         document=draft.document,
         author=draft.author,
+        owner=owner,
+        size=draft.size,
     )
 
 

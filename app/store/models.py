@@ -179,6 +179,12 @@ class LanguageRevision(SQLModel, table=True):
     """Author of the language according to this revision."""
     document: str = Field(sa_column=Column(Text, nullable=False))
     """The whole language file."""
+    owner: str = Field(
+        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
+    )
+    """Name of the token that made the revision, to which quotas apply."""
+    size: int = Field(default=0, sa_type=ByteCount, sa_column_kwargs={"server_default": "0"})
+    """Bytes of the document."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
@@ -201,6 +207,12 @@ class RecognitionRecord(SQLModel, table=True):
     """The label the user meant, if known."""
     result: str = Field(sa_column=Column(Text, nullable=False))
     """`Recognition.to_dict` as JSON."""
+    owner: str = Field(
+        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
+    )
+    """Name of the token that asked for it, to which quotas apply."""
+    size: int = Field(default=0, sa_type=ByteCount, sa_column_kwargs={"server_default": "0"})
+    """Bytes of the result."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 

@@ -7,6 +7,7 @@ from sqlmodel import col, select
 from app.store.database import Database
 from app.store.errors import NotFound
 from app.store.models import Clip, LanguageRecord, RecognitionRecord
+from app.store.quotas import NO_QUOTA, Quota
 
 _VISIBLE = (col(Clip.deleted).is_(None), col(LanguageRecord.deleted).is_(None))
 
@@ -17,9 +18,18 @@ class RecognitionStore:
     def __init__(self, database: Database) -> None:
         self._database = database
 
-    def add(self, record: RecognitionRecord) -> RecognitionRecord:
-        """Store `record`."""
+    def add(self, record: RecognitionRecord, quota: Quota = NO_QUOTA) -> RecognitionRecord:
+        """Store `record` for the owner of a quota.
+
+        Raises
+        ------
+        QuotaExceeded
+            When the owner may not keep as much.
+
+        """
+        record.owner, record.size = quota.owner, len(record.result.encode())
         with self._database.writing() as session:
+            quota.require_in(session, record.size)
             session.add(record)
         return record
 

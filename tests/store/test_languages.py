@@ -96,6 +96,23 @@ def test_a_deleted_language_is_gone_until_it_is_restored(languages: LanguageStor
     assert languages.restore(language_id).revision.document == "a"
 
 
+def test_an_edit_is_made_outside_the_write_lock_and_again_after_another_one(
+    languages: LanguageStore,
+) -> None:
+    language_id = languages.create(draft("one")).record.id
+    made_from: list[int] = []
+
+    def edit(head: LanguageRevision, number: int) -> Draft:
+        made_from.append(head.revision)
+        if len(made_from) == 1:
+            languages.edit(language_id, lambda _head, _number: draft(name="theirs"))
+        return draft(name=f"mine after {head.name}")
+
+    state = languages.edit(language_id, edit)
+    assert made_from == [1, 2]
+    assert (state.revision.revision, state.revision.name) == (3, "mine after theirs")
+
+
 def test_purged_languages_are_gone_with_their_revisions(languages: LanguageStore) -> None:
     kept = languages.create(draft("kept")).record.id
     language_id = languages.create(draft("a")).record.id

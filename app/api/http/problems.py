@@ -28,7 +28,7 @@ from app.recognition.errors import (
 )
 from app.recognition.language.file import list_document_steps
 from app.recognition.text.strict_json import build_pointer
-from app.store import Conflict, NotFound, StoreError
+from app.store import Conflict, NotFound, QuotaExceeded, StoreError
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -156,6 +156,16 @@ def problem_of(error: Exception) -> ProblemError:
                 str(error),
                 headers={"ETag": f'"{error.current}"'},
                 current_revision=error.current,
+            )
+        case QuotaExceeded():
+            return ProblemError(
+                413 if error.alone else 507,
+                "quota_exceeded",
+                str(error),
+                # The rest of a body stays unread, so the connection cannot be used again.
+                headers={"Connection": "close"},
+                used={"clips": error.usage.clips, "bytes": error.usage.bytes},
+                limit=error.limit,
             )
         case StoreError():
             headers = {"Retry-After": RETRY_SECONDS}

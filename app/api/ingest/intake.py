@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +14,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import ClipAccepted
 from app.api.ingest.fields import UploadFields
-from app.api.ingest.quotas import allowance_of, owner_of
+from app.api.ingest.quotas import quota_of
 from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
@@ -119,14 +120,14 @@ async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> 
 
     Raises
     ------
-    ProblemError
-        As `allowance_of`; the file stays where it is.
+    QuotaExceeded
+        When the clip exceeds its sender's quota; the file stays where it is.
 
     """
-    clip.owner = owner_of(request)
-    added = await run_in_threadpool(
-        studio.clips.add, clip, partial, client_of(request), allowance_of(request, clip.size)
-    )
+    quota = quota_of(request)
+    clip.owner = quota.owner
+    add = functools.partial(studio.clips.add, clip, partial, client_of(request), quota)
+    added = await run_in_threadpool(studio.keep_within, quota, add)
     if not added.clip.needs_topic:
         await studio.extractions.submit(added.job)
     studio.broadcast.publish("clips", id=added.clip.id)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from itertools import zip_longest
 from urllib.parse import urlencode
@@ -21,10 +21,32 @@ from app.recognition.language.grammar_entry import grammar_to_entry
 from app.recognition.language.short_code import short_code
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
-from app.store import LanguageState
+from app.store import Draft, LanguageRevision, LanguageState, Quota
 
 CACHED_CHECKSUMS = 64
 """Number of checksums cached: those of the revisions that pages show."""
+
+
+def save_revision(
+    studio: Studio,
+    quota: Quota,
+    language_id: str,
+    edit: Callable[[LanguageRevision, int], Draft],
+    expected: int | None,
+) -> LanguageState:
+    """Store the revision that `edit` makes; errors as `LanguageStore.edit`."""
+    return studio.keep_within(
+        quota, lambda: studio.languages.edit(language_id, edit, expected, quota)
+    )
+
+
+def save_language(
+    studio: Studio, quota: Quota, draft: Draft, revision: int = 1, *, sample: str | None = None
+) -> LanguageState:
+    """Store a new language; errors as `LanguageStore.create`."""
+    return studio.keep_within(
+        quota, lambda: studio.languages.create(draft, revision, sample=sample, quota=quota)
+    )
 
 
 def announce(studio: Studio, state: LanguageState, response: Response) -> LanguageView:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from collections.abc import AsyncIterator, Iterator
+import time
+from collections import OrderedDict
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
 from dataclasses import dataclass, field
-from datetime import timedelta
-from functools import lru_cache, partial
+from datetime import datetime, timedelta
+from functools import lru_cache, partial, wraps
+from inspect import Parameter, signature
 from pathlib import Path
-from threading import Event
-from typing import Annotated
+from threading import Event, Lock
+from typing import Annotated, Any, Generic, TypeVar
 
 from fastapi import Depends
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import HTTPConnection
+from starlette.requests import HTTPConnection, Request
 
 from app.api.events.broadcast import Broadcast
 from app.api.events.broadcast import Event as BroadcastEvent
+from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.job import progress_of
@@ -42,9 +46,12 @@ from app.store import (
     LanguageState,
     LanguageStore,
     PracticeStore,
+    Quota,
+    QuotaExceeded,
     QuotaStore,
     RecognitionStore,
     SourceStore,
+    StoreError,
     UploadStore,
     identity_of,
 )
@@ -52,24 +59,35 @@ from app.store.models import now
 from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
 
-CACHED_LANGUAGES = 16
-"""Number of languages and recognisers cached; each takes a few megabytes."""
+MOST_CACHED = 16
+"""Number of languages, and of recognisers, cached; each takes a few megabytes."""
+
+MOST_CACHED_CHARACTERS = 32_000_000
+"""Characters of their documents together: a cached language takes five times its document, and one
+of a thousand gestures has 27 million."""
 
 CACHED_RECORDINGS = 4
 """Number of recordings cached: the clip on screen and those it is compared with."""
 
 MOST_COMPUTATIONS = 2
-"""Most previews and pair differences computed at the same time: one takes seconds with a large
-language, and threads must be left for all other requests."""
+"""Most explanations, previews, pages and the like computed at the same time: one takes seconds with
+a large language, and threads must be left for all other requests."""
 
 ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
 """Advice for a second server that is started on the database file of another one."""
 
 ABANDONED = timedelta(days=1)
-"""Age at which a file without a row is removed from a folder that several servers share: longer
-than an upload or an export takes."""
+"""Age at which a file without a row is removed while servers run, and an upload that got no bytes:
+longer than an upload or an export takes."""
+
+CLEANING_SECONDS = 600.0
+"""Seconds between two removals of what was deleted; also what is left for an undo after a start
+at which the clock was set forward."""
 
 logger = logging.getLogger(__name__)
+
+Made = TypeVar("Made")
+Stored = TypeVar("Stored")
 
 
 @dataclass(frozen=True)
@@ -97,7 +115,7 @@ class Studio:
     metrics
         Metrics for Prometheus.
     computations
-        Limits the previews and pair differences that compute in threads at the same time.
+        Limits the computations in threads at the same time, see `computed`.
     exports
         Written files that wait to be fetched.
 
@@ -132,6 +150,23 @@ class Studio:
         await self.runner.stop()
         self.broadcast.close()
 
+    def keep_within(self, quota: Quota, store: Callable[[], Stored]) -> Stored:
+        """Store something by `store`; if need be, purge first what its owner deleted.
+
+        Raises
+        ------
+        QuotaExceeded
+            When it does not fit all the same; then nothing is purged.
+
+        """
+        try:
+            return store()
+        except QuotaExceeded as error:
+            if not error.deleted_suffice:
+                raise
+            self.languages.purge_for(quota.owner, self.clips.purge_for(quota.owner, error.excess))
+        return store()
+
     def recording(self, clip_id: str) -> Recording:
         """Return the recording of a clip; errors as in `recording_file`."""
         return load_recording(str(self.recording_file(clip_id)))
@@ -161,7 +196,7 @@ class Studio:
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""
-        return _language(state.revision.document)
+        return _languages.get(state.revision.document)
 
     def recognizer(self, state: LanguageState, profile: str | None = None) -> Recognizer:
         """Return a recogniser of a revision, by default with the language's own profile.
@@ -172,7 +207,7 @@ class Studio:
             When there is no such profile.
 
         """
-        return _recognizer(state.revision.document, profile)
+        return _recognizers.get(state.revision.document, profile)
 
 
 @lru_cache(CACHED_RECORDINGS)
@@ -181,14 +216,40 @@ def load_recording(path: str) -> Recording:
     return Recording.load(path)
 
 
-@lru_cache(CACHED_LANGUAGES)
-def _language(document: str) -> Language:
-    return Language.from_json(document)
+class _Cache(Generic[Made]):
+    """What was made of documents, the least recently used of which go when they are too long.
+
+    The newest stays, however long it is.
+    """
+
+    def __init__(self, make: Callable[..., Made]) -> None:
+        self._make = make
+        self._made: OrderedDict[tuple[str, str | None], Made] = OrderedDict()
+        self._changing = Lock()
+
+    def get(self, document: str, profile: str | None = None) -> Made:
+        key = document, profile
+        with self._changing:
+            if key in self._made:
+                self._made.move_to_end(key)
+                return self._made[key]
+        made = self._make(document) if profile is None else self._make(document, profile)
+        with self._changing:
+            self._made[key] = made
+            while len(self._made) > 1 and (
+                len(self._made) > MOST_CACHED
+                or sum(len(text) for text, _ in self._made) > MOST_CACHED_CHARACTERS
+            ):
+                self._made.popitem(last=False)
+        return made
 
 
-@lru_cache(CACHED_LANGUAGES)
-def _recognizer(document: str, profile: str | None) -> Recognizer:
-    return Recognizer(_language(document), profile)
+def _make_recognizer(document: str, profile: str | None = None) -> Recognizer:
+    return Recognizer(_languages.get(document), profile)
+
+
+_languages = _Cache(Language.from_json)
+_recognizers = _Cache(_make_recognizer)
 
 
 @asynccontextmanager
@@ -249,7 +310,6 @@ async def _studio(
     broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics, clips.hold), JobRunner(broadcast, metrics)
     extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
-    watching = [asyncio.create_task(each) for each in (metrics.watch_loop(), keep_trimmed())]
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -269,6 +329,8 @@ async def _studio(
         samples=Samples(settings.samples_dir),
         metrics=metrics,
     )
+    beside = metrics.watch_loop(), keep_trimmed(), _keep_clean(studio)
+    watching = [asyncio.create_task(each) for each in beside]
     try:
         await run_in_threadpool(_prepare, studio, database)
         await studio.extractions.start()
@@ -285,16 +347,34 @@ async def _studio(
 
 
 def _prepare(studio: Studio, database: Database) -> None:
-    """Migrate, remove leftovers of crashes and old deletions, add the samples."""
+    """Migrate, remove leftovers of crashes, add the samples."""
     database.migrate()
-    before = now() - timedelta(hours=studio.settings.undo_hours)
-    purged = studio.clips.purge(before) + studio.languages.purge(before)
-    purged += studio.uploads.purge(before)
     # A file that another server is writing to the same folder is no orphan.
-    abandoned = now() - ABANDONED if database.shared else now()
-    if (swept := studio.clips.sweep(abandoned)) or purged:
-        logger.info("removed %d orphaned files and %d deleted or abandoned objects", swept, purged)
+    if swept := studio.clips.sweep(now() - ABANDONED if database.shared else now()):
+        logger.info("removed %d orphaned files", swept)
     studio.samples.seed(studio.languages)
+
+
+async def _keep_clean(studio: Studio) -> None:
+    """Remove from time to time what was deleted or abandoned long ago."""
+    # Counted from the start, so that a step of the clock meanwhile ends no undo.
+    started, since = now(), time.monotonic()
+    while True:
+        await asyncio.sleep(CLEANING_SECONDS)
+        moment = started + timedelta(seconds=time.monotonic() - since)
+        try:
+            await run_in_threadpool(clean, studio, moment)
+        except (StoreError, OSError) as error:
+            logger.warning("what was deleted stays for now: %s", error)
+
+
+def clean(studio: Studio, moment: datetime) -> None:
+    """Remove for good what was deleted or abandoned long before `moment`."""
+    deleted = moment - timedelta(hours=studio.settings.undo_hours)
+    purged = studio.clips.purge(deleted) + studio.languages.purge(deleted)
+    purged += studio.uploads.purge(moment - ABANDONED)
+    if (swept := studio.clips.sweep(moment - ABANDONED)) or purged:
+        logger.info("removed %d deleted or abandoned objects and %d files", purged, swept)
 
 
 def _studio_of(connection: HTTPConnection) -> Studio:
@@ -304,3 +384,23 @@ def _studio_of(connection: HTTPConnection) -> Studio:
 
 CurrentStudio = Annotated[Studio, Depends(_studio_of)]
 """Type of a route's parameter that receives the running studio."""
+
+
+def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
+    """Decorate a route that computes for long: few run at a time, and only while the client waits.
+
+    Its parameters must include ``studio``.
+    """
+
+    @wraps(route)
+    async def limited(*, connection: Request, studio: Studio, **given: Any) -> Made:
+        return await compute_while_connected(
+            connection, studio.computations, lambda _: route(studio=studio, **given)
+        )
+
+    known = signature(route)
+    asked = Parameter("connection", Parameter.KEYWORD_ONLY, annotation=Request)
+    limited.__signature__ = known.replace(  # type: ignore[attr-defined]
+        parameters=[*known.parameters.values(), asked]
+    )
+    return limited

@@ -10,7 +10,10 @@ from pathlib import Path
 from app.api.services.language_documents import draft_of
 from app.recognition import Language
 from app.recognition.errors import LanguageError
-from app.store import LanguageState, LanguageStore
+from app.store import LanguageStore
+
+SEEDED = "Sample language"
+"""Change of the first revision of a sample, for its history."""
 
 CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 
@@ -70,17 +73,13 @@ class Samples:
                 logger.exception("the sample language %s cannot be read", path.name)
         return found
 
-    def add(self, name: str, language: Language, languages: LanguageStore) -> LanguageState:
-        """Add the sample language of that name."""
-        draft = draft_of(language, "Sample language")
-        return languages.create(draft, language.revision, sample=name)
-
     def seed(self, languages: LanguageStore) -> None:
         """Add the sample languages that were never added before; deleted ones stay deleted."""
         seeded = languages.seeded()
         for name, language in self.languages().items():
             if name not in seeded:
-                self.add(name, language, languages)
+                draft = draft_of(language, SEEDED)
+                languages.create(draft, language.revision, sample=name)
 
 
 # Cached, because every page requests the samples, and reading them takes a second.

@@ -17,7 +17,7 @@ from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_surroundings
-from app.store import Clip, LanguageState, RecognitionRecord
+from app.store import NO_QUOTA, Clip, LanguageState, Quota, RecognitionRecord
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,7 @@ def recognize_range(
     profile: str | None = None,
     tuning: TuningEntry | None = None,
     trial: GestureTrial | None = None,
+    quota: Quota = NO_QUOTA,
 ) -> Recognised:
     """Recognise a range of a clip by a revision, and store the answer.
 
@@ -46,6 +47,8 @@ def recognize_range(
     ------
     NotFound, ProblemError, OsgError
         As `Studio.recording`, `demonstration_in`, `require_landmarks_of` and `make_recognizer`.
+    QuotaExceeded
+        When the sender may not keep another recognition.
 
     """
     recording = studio.recording(clip_id)
@@ -69,7 +72,8 @@ def recognize_range(
         expected=expected,
         result=json.dumps(answer, allow_nan=False),
     )
-    return Recognised(studio.recognitions.add(record), answer)
+    kept = studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))
+    return Recognised(kept, answer)
 
 
 def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:

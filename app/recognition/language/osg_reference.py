@@ -43,7 +43,8 @@ def to_reference(language: Language) -> str:
         When a salient landmark is not one of MediaPipe's, the only ones it supports.
 
     """
-    content = {}
+    # Written gesture by gesture: a thousand images as lists of numbers take half a gigabyte.
+    entries = []
     for index, gesture in enumerate(language.gestures):
         for name in gesture.salient:
             if name not in POSE_LANDMARKS:
@@ -52,11 +53,13 @@ def to_reference(language: Language) -> str:
                     f"files support MediaPipe's only: keep this language as osg-studio",
                     build_pointer("gestures", index, "salient"),
                 )
-        content[gesture.label] = {
+        content = {
             "image": gesture.image.tolist(),
             "salient_keypoints": [name.upper() for name in gesture.salient],
         }
-    return json.dumps(content, ensure_ascii=False, separators=(",", ":")) + "\n"
+        entry = json.dumps({gesture.label: content}, ensure_ascii=False, separators=(",", ":"))
+        entries.append(entry[1:-1])
+    return f"{{{','.join(entries)}}}\n"
 
 
 def from_reference(text: str | bytes, name: str) -> Language:

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
-from app.api.services.running_studio import check_store
+from app.api.routes.languages import slates
+from app.api.services import running_studio
+from app.api.services.language_documents import draft_of
+from app.api.services.running_studio import check_store, clean
+from app.recognition import Language
 from app.settings import Settings
-from app.store import StoreUnavailable
-from tests.api.running import running
+from app.store import NotFound, StoreUnavailable
+from app.store.models import now
+from app.ui.slate.layout import Page, lay_out
+from tests.api.running import PATIENCE_SECONDS, Running, client_of, running, until
 from tests.postgres import Cluster
+from tests.store.conftest import add_clip
 
 
 def test_a_second_server_on_one_sqlite_file_is_refused(tmp_path: Path) -> None:
@@ -38,3 +48,79 @@ def test_several_servers_share_one_postgresql(tmp_path: Path, postgres: Cluster)
         check_store(two)
         with pytest.raises(StoreUnavailable, match="one is in use"):
             check_store(one)
+
+
+def test_deleted_clips_leave_the_disk_while_the_server_runs(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running_studio, "CLEANING_SECONDS", 0.05)
+    eager = settings.model_copy(update={"undo_hours": 0})
+    with running(eager) as server:
+        clips = server.studio.clips
+        clip_id = add_clip(clips).clip.id
+        clips.delete(clip_id)
+        until(lambda: not (clips.folder / clip_id).exists())
+        with pytest.raises(NotFound):
+            clips.restore(clip_id)
+
+
+def test_a_start_with_the_clock_set_forward_ends_no_undo(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with running(settings) as server:
+        clip_id = add_clip(server.studio.clips).clip.id
+        server.studio.clips.delete(clip_id)
+    later = now() + timedelta(days=6)
+    monkeypatch.setattr(running_studio, "now", lambda: later)
+    with running(settings) as server:
+        server.studio.clips.restore(clip_id)
+        server.studio.clips.delete(clip_id)
+        clean(server.studio, later)
+        with pytest.raises(NotFound):
+            server.studio.clips.restore(clip_id)
+
+
+def test_long_computations_of_many_clients_take_turns(
+    server: Running, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    at_work, most, free = 0, 0, threading.Event()
+
+    def lay_out_slowly(language: Language) -> Page:
+        nonlocal at_work, most
+        at_work += 1
+        most = max(most, at_work)
+        free.wait(PATIENCE_SECONDS)
+        at_work -= 1
+        return lay_out(language)
+
+    monkeypatch.setattr(slates, "lay_out", lay_out_slowly)
+    with client_of(server.address) as client, ThreadPoolExecutor(8) as others:
+        language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
+        place = f"/api/v1/languages/{language}/slate.svg"
+        answers = [others.submit(client.get, place) for _ in range(8)]
+        until(lambda: at_work == running_studio.MOST_COMPUTATIONS)
+        # Others are answered meanwhile.
+        assert client.get(f"/api/v1/languages/{language}").status_code == 200
+        free.set()
+        assert {answer.result().status_code for answer in answers} == {200}
+    assert most == running_studio.MOST_COMPUTATIONS
+
+
+def test_cached_languages_are_limited_by_their_documents(
+    server: Running, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    states = [
+        server.studio.languages.create(draft_of(Language(name=name * 70), "made")) for name in "abc"
+    ]
+    size = len(states[0].revision.document)
+    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 2 * size)
+    first = server.studio.language(states[0])
+    assert server.studio.language(states[0]) is first
+    server.studio.language(states[1])
+    assert server.studio.language(states[0]) is first
+    for state in states[1:]:
+        server.studio.language(state)
+    assert server.studio.language(states[0]) is not first
+    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
+    long = server.studio.language(states[2])
+    assert server.studio.language(states[2]) is long

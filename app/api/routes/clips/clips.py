@@ -19,7 +19,7 @@ from app.api.http.schemas.values import TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
-from app.api.ingest.quotas import require_quota
+from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import CurrentStudio, Studio
@@ -65,6 +65,7 @@ router = APIRouter(prefix="/clips", tags=["clips"])
 async def upload_clip(
     request: Request,
     studio: CurrentStudio,
+    quota: SenderQuota,
     idempotency_key: Annotated[str | None, Header(max_length=255, min_length=1)] = None,
 ) -> ClipAccepted:
     """Store a clip and queue the extraction of its poses.
@@ -87,7 +88,7 @@ async def upload_clip(
     reserved = await require_place_in_queue(request, studio)
     stated = request.headers.get("content-length", "")
     least = int(stated) - FRAME_BYTES if stated.isdecimal() else 0
-    await require_quota(request, studio, max(0, least))
+    await require_quota(quota, studio, max(0, least))
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import base64
 import os
+from functools import partial
 from typing import Annotated, BinaryIO, Final
 from weakref import WeakValueDictionary
 
@@ -27,7 +28,7 @@ from app.api.ingest.intake import (
     store,
 )
 from app.api.ingest.multipart import display_name, require_space
-from app.api.ingest.quotas import allowance_of, owner_of
+from app.api.ingest.quotas import SenderQuota
 from app.api.middleware.body_limit import too_large
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Upload
@@ -70,6 +71,7 @@ def tell_abilities(studio: CurrentStudio) -> Response:
 async def begin_upload(
     request: Request,
     studio: CurrentStudio,
+    quota: SenderQuota,
     upload_length: Annotated[int, Header(ge=0, description="Bytes of the whole file")],
     upload_metadata: Annotated[
         str,
@@ -101,11 +103,11 @@ async def begin_upload(
             upload_length,
             texts,
             client_of(request),
-            owner_of(request),
+            quota.owner,
         )
         try:
-            allow = allowance_of(request, upload_length)
-            await run_in_threadpool(studio.quotas.reserve, upload, allow)
+            reserve = partial(studio.quotas.reserve, upload, quota)
+            await run_in_threadpool(studio.keep_within, quota, reserve)
         except BaseException:
             await run_in_threadpool(studio.uploads.remove, upload.id)
             raise

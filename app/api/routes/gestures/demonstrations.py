@@ -14,6 +14,7 @@ from app.api.http.problems import problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.clip_takes import trigger_of
 from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.gesture_edits import (
@@ -24,7 +25,7 @@ from app.api.services.gesture_edits import (
     require_demonstration,
 )
 from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, view_demonstrations
+from app.api.services.language_responses import announce, save_revision, view_demonstrations
 from app.api.services.running_studio import CurrentStudio
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -52,6 +53,7 @@ def add_demonstration(
     language_id: str,
     draft: DemonstrationDraft,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -59,7 +61,7 @@ def add_demonstration(
     demonstration = demonstration_at(studio, draft, trigger_of(studio, language_id))
     changed = partial(add_demonstration_to, draft=draft, demonstration=demonstration)
     edit = edit_document(f"Add a demonstration of {draft.label}", changed)
-    state = studio.languages.edit(language_id, edit, expected)
+    state = save_revision(studio, quota, language_id, edit, expected)
     keep_source(studio, state, draft.label, draft, demonstration, index=-1)
     return announce(studio, state, response)
 
@@ -70,13 +72,14 @@ def remove_demonstration(
     index: Index,
     label: str,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
     """Remove a demonstration of a gesture that has others; without the first, the next is first."""
     changed = partial(remove_demonstration_from, label=label, index=index)
     edit = edit_document(f"Remove a demonstration of {label}", changed)
-    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 @router.get("/{index}/image", response_class=Response, responses=IMAGE_RESPONSES)

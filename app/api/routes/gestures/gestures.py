@@ -14,6 +14,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.clip_takes import trigger_of
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import (
@@ -26,7 +27,7 @@ from app.api.services.gesture_edits import (
     require_free,
 )
 from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce
+from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
@@ -39,6 +40,7 @@ def add_gesture(
     language_id: str,
     draft: GestureDraft,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -51,7 +53,7 @@ def add_gesture(
         return language.with_gesture(gesture)
 
     edit = edit_document(f"Add {gesture.label}", edit_language)
-    state = studio.languages.edit(language_id, edit, expected)
+    state = save_revision(studio, quota, language_id, edit, expected)
     keep_source(studio, state, gesture.label, draft, demonstration)
     return announce(studio, state, response)
 
@@ -61,6 +63,7 @@ def add_gestures(
     language_id: str,
     draft: GesturesDraft,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -69,7 +72,7 @@ def add_gestures(
     gestures = [gesture for gesture, _ in made]
     title = f"Add {', '.join(gesture.label for gesture in gestures)}"
     edit = edit_document(title, partial(add_gestures_to, gestures=gestures))
-    state = studio.languages.edit(language_id, edit, expected)
+    state = save_revision(studio, quota, language_id, edit, expected)
     for where, (gesture, demonstration) in zip(draft.gestures, made, strict=True):
         keep_source(studio, state, gesture.label, where, demonstration)
     return announce(studio, state, response)
@@ -82,6 +85,7 @@ def change_gesture(
     label: str,
     change: GestureChange,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -93,7 +97,7 @@ def change_gesture(
         )
     changed = partial(change_gesture_of, label=label, change=change, demonstration=demonstration)
     edit = edit_document(f"Change {label}", changed)
-    state = studio.languages.edit(language_id, edit, expected)
+    state = save_revision(studio, quota, language_id, edit, expected)
     if change.demonstration is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
         index = -1 if change.further else 0
@@ -107,6 +111,7 @@ def remove_gesture(
     language_id: str,
     label: str,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -120,7 +125,7 @@ def remove_gesture(
             raise ProblemError(409, "gesture_needed", str(error)) from error
 
     edit = edit_document(f"Remove {label}", edit_language)
-    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 @router.get("/image", response_class=Response, responses=IMAGE_RESPONSES)

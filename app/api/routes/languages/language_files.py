@@ -16,15 +16,16 @@ from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name
 from app.api.ingest.multipart import receive_body
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import LONGEST_NAME
-from app.api.services.language_responses import announce
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.language_responses import announce, save_language
+from app.api.services.running_studio import CurrentStudio, Studio, computed
 from app.api.workers.language_files import ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file_schema import FORMAT, VERSION
 from app.recognition.language.requirements import find_requirements
-from app.store import Draft, LanguageState
+from app.store import Draft, LanguageState, Quota
 
 SMALL_BYTES = 512 * 1024
 """Largest file that is read in a thread, within half a second: thirty gestures in our format."""
@@ -46,6 +47,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 async def import_language(
     request: Request,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     name: Annotated[Name, Query()] = "imported",
 ) -> LanguageView:
@@ -55,7 +57,7 @@ async def import_language(
     try:
         size = await receive_body(request, partial, studio.settings)
         found = await while_connected(request, _read(partial, size, name, studio))
-        return await run_in_threadpool(_create, studio, found, response)
+        return await run_in_threadpool(_create, studio, quota, found, response)
     finally:
         partial.unlink(missing_ok=True)
 
@@ -71,6 +73,7 @@ async def import_language(
         },
     },
 )
+@computed
 def export_language(
     language_id: str,
     studio: CurrentStudio,
@@ -112,6 +115,7 @@ class ExportView(BaseModel):
 
 
 @router.get("/{language_id}/export/contents", responses=problem_responses(404))
+@computed
 def describe_export(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> ExportView:
@@ -161,7 +165,9 @@ async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLan
     return ImportedLanguage.model_validate_json(found)
 
 
-def _create(studio: Studio, found: ImportedLanguage, response: Response) -> LanguageView:
+def _create(
+    studio: Studio, quota: Quota, found: ImportedLanguage, response: Response
+) -> LanguageView:
     draft = Draft(
         name=found.name[:LONGEST_NAME],
         labels=found.labels,
@@ -169,4 +175,4 @@ def _create(studio: Studio, found: ImportedLanguage, response: Response) -> Lang
         document=found.document,
         author=found.author,
     )
-    return announce(studio, studio.languages.create(draft, found.revision), response)
+    return announce(studio, save_language(studio, quota, draft, found.revision), response)

@@ -18,8 +18,15 @@ from app.api.http.schemas.languages import (
     LanguageSummary,
     LanguageView,
 )
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import draft_of, edit_document, name_of_copy
-from app.api.services.language_responses import announce, answer, view_summary
+from app.api.services.language_responses import (
+    announce,
+    answer,
+    save_language,
+    save_revision,
+    view_summary,
+)
 from app.api.services.running_studio import CurrentStudio
 from app.recognition import Language
 from app.recognition.language.grammar_entry import entry_to_grammar
@@ -31,11 +38,12 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 @router.post("", status_code=201, responses=problem_responses())
 def create_language(
-    draft: LanguageDraft, studio: CurrentStudio, response: Response
+    draft: LanguageDraft, studio: CurrentStudio, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make an empty language."""
     language = Language(name=draft.name, author=draft.author)
-    state = studio.languages.create(draft_of(language, "New language"), language.revision)
+    made = draft_of(language, "New language")
+    state = save_language(studio, quota, made, language.revision)
     return announce(studio, state, response)
 
 
@@ -60,6 +68,7 @@ def change_language(
     language_id: str,
     change: LanguageChange,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -72,7 +81,7 @@ def change_language(
     if not fields:
         return answer(studio, studio.languages.get(language_id), response)
     edit = edit_document(_describe(fields), lambda language: replace(language, **fields))
-    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 def _describe(fields: Mapping[str, Any]) -> str:
@@ -95,7 +104,11 @@ def _describe(fields: Mapping[str, Any]) -> str:
 
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
 def duplicate_language(
-    language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
+    language_id: str,
+    studio: CurrentStudio,
+    quota: SenderQuota,
+    response: Response,
+    revision: Revision = None,
 ) -> LanguageView:
     """Make another language of a language's newest or an older revision."""
     state = studio.languages.get(language_id, revision)
@@ -104,7 +117,7 @@ def duplicate_language(
     name = name_of_copy(original.name, taken)
     copy = replace(original, name=name, created=None, revision=1)
     change = f"Copy of {original.name}, revision {state.revision.revision}"
-    return announce(studio, studio.languages.create(draft_of(copy, change)), response)
+    return announce(studio, save_language(studio, quota, draft_of(copy, change)), response)
 
 
 @router.delete("/{language_id}", status_code=204, responses=problem_responses(404, 412))

@@ -9,9 +9,10 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio, computed
 from app.api.services.stored_recognitions import load_situation, recognize_range
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.explanation.explanation import explain
@@ -75,8 +76,9 @@ def list_records(language_id: str, studio: CurrentStudio) -> list[PracticeRecord
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
+@computed
 def show_gesture(
-    language_id: str, draft: PracticeDraft, studio: CurrentStudio
+    language_id: str, draft: PracticeDraft, studio: CurrentStudio, quota: SenderQuota
 ) -> PracticeAnswerView:
     """Recognise what a diver shows, say what to change, and keep it in the diver's record."""
     state = studio.languages.get(language_id)
@@ -91,7 +93,13 @@ def show_gesture(
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
     made = recognize_range(
-        studio, state, draft.clip_id, draft.start, draft.end, expected=draft.expected
+        studio,
+        state,
+        draft.clip_id,
+        draft.start,
+        draft.end,
+        expected=draft.expected,
+        quota=quota,
     )
     record = made.record
     take = studio.practice.keep(

@@ -16,10 +16,11 @@ from app.api.http.schemas.languages import (
     RevisionComparison,
     RevisionView,
 )
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, view_gesture
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.language_responses import announce, save_revision, view_gesture
+from app.api.services.running_studio import CurrentStudio, computed
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
@@ -37,16 +38,18 @@ def revert_language(
     language_id: str,
     to: LanguageRevert,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
     """Make a new revision with the content of an older one."""
     older = studio.language(studio.languages.get(language_id, to.revision))
     edit = edit_document(f"Go back to revision {to.revision}", lambda _newest: older)
-    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 @router.get("/comparison", responses=problem_responses(404))
+@computed
 def compare_revisions(
     language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
 ) -> RevisionComparison:

@@ -10,8 +10,9 @@ from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.triggers import HeldPose, TriggerDraft
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce
+from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.errors import TriggerError
@@ -26,6 +27,7 @@ def change_trigger(
     language_id: str,
     draft: TriggerDraft,
     studio: CurrentStudio,
+    quota: SenderQuota,
     response: Response,
     expected: ExpectedRevision,
 ) -> LanguageView:
@@ -44,7 +46,7 @@ def change_trigger(
     edit = edit_document(
         f"Find takes {words}", lambda language: replace(language, trigger=change(language))
     )
-    return announce(studio, studio.languages.edit(language_id, edit, expected), response)
+    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:

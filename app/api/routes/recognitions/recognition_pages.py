@@ -8,7 +8,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio, computed
 from app.api.services.stored_recognitions import load_recognition, load_situation
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
@@ -27,6 +27,7 @@ class ComparedImage(BaseModel):
 
 
 @router.get("/{recognition_id}/images", responses=problem_responses(404, 409))
+@computed
 def get_compared_images(
     recognition_id: str, studio: CurrentStudio, response: Response
 ) -> list[ComparedImage]:
@@ -47,6 +48,7 @@ def get_compared_images(
         200: {"description": "One file that plays without a server", "content": {"text/html": {}}},
     },
 )
+@computed
 def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
     """Send the take, its votes and why, as one HTML file."""
     record = studio.recognitions.get(recognition_id)

@@ -9,8 +9,9 @@ from fastapi import APIRouter, Query, Response
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.recognitions import ExplanationView, RecognitionRequest, RecognitionView
 from app.api.http.schemas.values import Label
+from app.api.ingest.quotas import SenderQuota
 from app.api.services.explanation_notes import write_notes
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio, computed
 from app.api.services.stored_recognitions import (
     load_situation,
     recognize_range,
@@ -25,7 +26,10 @@ router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
-def recognize(request: RecognitionRequest, studio: CurrentStudio) -> RecognitionView:
+@computed
+def recognize(
+    request: RecognitionRequest, studio: CurrentStudio, quota: SenderQuota
+) -> RecognitionView:
     """Recognise a take, a range or all of a clip, and keep the answer."""
     state = studio.languages.get(request.language_id)
     record = recognize_range(
@@ -38,6 +42,7 @@ def recognize(request: RecognitionRequest, studio: CurrentStudio) -> Recognition
         profile=request.profile,
         tuning=request.tuning,
         trial=request.trial,
+        quota=quota,
     ).record
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
     return view_recognition(record)
@@ -62,6 +67,7 @@ def get_recognition(recognition_id: str, studio: CurrentStudio) -> RecognitionVi
 
 
 @router.get("/{recognition_id}/explanation", responses=problem_responses(404, 409))
+@computed
 def explain_recognition(
     recognition_id: str,
     studio: CurrentStudio,

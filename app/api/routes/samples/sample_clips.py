@@ -12,7 +12,7 @@ from app.api.http.schemas.clips import ClipAccepted
 from app.api.http.schemas.samples import SampleChoice, SampleView
 from app.api.ingest.intake import inspect, require_place_in_queue, store
 from app.api.ingest.multipart import display_name
-from app.api.ingest.quotas import require_quota
+from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.running_studio import CurrentStudio
 
 router = APIRouter(prefix="/samples", tags=["samples"])
@@ -26,7 +26,7 @@ def list_samples(studio: CurrentStudio) -> list[SampleView]:
 
 @router.post("", status_code=202, responses=problem_responses(404, 415, 429))
 async def import_sample(
-    request: Request, chosen: SampleChoice, studio: CurrentStudio
+    request: Request, chosen: SampleChoice, studio: CurrentStudio, quota: SenderQuota
 ) -> ClipAccepted:
     """Add a sample clip to the clips, as if it had been uploaded."""
     samples = await run_in_threadpool(studio.samples.clips)
@@ -34,7 +34,7 @@ async def import_sample(
         raise ProblemError(404, "not_found", f"there is no sample clip {chosen.name!r}")
     sample = samples[chosen.name]
     await require_place_in_queue(request, studio)
-    await require_quota(request, studio, sample.size)
+    await require_quota(quota, studio, sample.size)
     partial = studio.clips.new_partial()
     try:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
