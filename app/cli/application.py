@@ -67,8 +67,10 @@ from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.language.export_format import FileFormat
+from app.recognition.language.language import require_distinct_labels
 from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.spotting import Spotter
+from app.recognition.text.look_alikes import compose
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
 from app.recognition.triggers.trigger import SALUTE
 
@@ -185,8 +187,11 @@ def define(
     held = SALUTE if trigger_of is None else Language.load(trigger_of).trigger
     reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held)
     given = [parse_demonstrations(text) for text in demonstrations]
+    labels = [shown[0].label for shown in given]
+    for count, _ in enumerate(labels, 1):  # before any clip is read
+        require_distinct_labels(labels[:count])
     gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
-    language = Language(name=name, gestures=gestures, author=author, trigger=held).calibrated()
+    language = Language(compose(name), gestures, author=author, trigger=held).calibrated()
     language.save(output)
     people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 

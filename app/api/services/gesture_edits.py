@@ -17,7 +17,7 @@ from app.api.services.running_studio import Studio
 from app.recognition import Gesture, GestureError, Language
 from app.recognition.gestures.switches import Switches
 from app.recognition.recording.clip_range import Demonstration
-from app.recognition.text.joiners import without_joiners
+from app.recognition.text.look_alikes import find_confusable
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 WORDS = frozenset({"label", "description", "command", "diver"})
@@ -105,7 +105,7 @@ def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language
 
     """
     for index, gesture in enumerate(gestures):
-        require_free(language, gesture.label, f"/gestures/{index}/label")
+        require_free(language.labels, gesture.label, f"/gestures/{index}/label")
         language = language.with_gesture(gesture)
     return language
 
@@ -147,9 +147,8 @@ def change_gesture_of(
 
     """
     gesture = gesture_in(language, label)
-    compared = without_joiners(gesture.label)
-    if change.label is not None and without_joiners(change.label.strip()) != compared:
-        require_free(language, change.label.strip())
+    if change.label is not None and change.label.strip() != gesture.label:
+        require_free(language.labels, change.label.strip(), instead_of=gesture.label)
     # The command may be null on purpose; any other null field was omitted.
     fields = {
         name: getattr(change, name)
@@ -240,8 +239,21 @@ def gesture_in(language: Language, label: str) -> Gesture:
     raise ProblemError(404, "not_found", f"there is no gesture {label[:80]!r} in this language")
 
 
-def require_free(language: Language, label: str, pointer: str = "/label") -> None:
-    """Refuse a label that looks like one of the language's; `pointer` is its place in the request.
+def require_free(
+    labels: Sequence[str], label: str, pointer: str = "/label", instead_of: str | None = None
+) -> None:
+    """Refuse a label that looks like one of the language's.
+
+    Parameters
+    ----------
+    labels
+        The language's.
+    label
+        A new one.
+    pointer
+        Its place in the request.
+    instead_of
+        The label that it replaces.
 
     Raises
     ------
@@ -249,8 +261,13 @@ def require_free(language: Language, label: str, pointer: str = "/label") -> Non
         409 when one has it.
 
     """
-    if without_joiners(label) in map(without_joiners, language.labels):
+    others = [each for each in labels if each != instead_of]
+    if (taken := find_confusable(label, others)) is not None:
         detail = f"the language has a gesture {label!r} already; choose another label"
+        if taken != label:
+            detail = (
+                f"the label {label!r} looks like {taken!r}, which the language has; choose another"
+            )
         fault = Fault(pointer=pointer, detail=detail)
         raise ProblemError(409, "label_taken", detail, errors=[fault])
 

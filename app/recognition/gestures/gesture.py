@@ -34,6 +34,7 @@ from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.joiners import is_printable
+from app.recognition.text.look_alikes import compose, skeleton
 from app.recognition.text.strict_json import read_json
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape.fourier import HARMONICS, SAMPLES
@@ -192,7 +193,7 @@ class Gesture:
             `salient` does not fit it.
 
         """
-        label = check_label(label)
+        label = make_label(label)
         shown = Demonstration.from_poses(label, poses, salient=salient, diver=diver)
         return cls(
             label=label,
@@ -400,6 +401,21 @@ def check_label(label: Any) -> str:
             f"got {label[:MAX_LABEL_LENGTH]!r} ({len(label)})"
         )
     return label.strip()
+
+
+def make_label(label: Any) -> str:
+    """Return a new label in the form that is stored, see `look_alikes.compose`.
+
+    Raises
+    ------
+    GestureError
+        As `check_label`, and when nothing of the label can be seen.
+
+    """
+    made = compose(check_label(label))
+    if not skeleton(made):
+        raise GestureError(f"nothing of the label {made!r} can be seen: write it in letters")
+    return made
 
 
 def check_text(text: Any) -> str:

@@ -46,6 +46,7 @@ from app.recognition.preprocessing.salience import measure_displacements
 from app.recognition.recognizer import Recognizer
 from app.recognition.simulation.rate_estimate import RateEstimate
 from app.recognition.simulation.variation import Person
+from app.recognition.text.look_alikes import are_confusable, list_look_alikes
 
 MOST_ALARMS = 0.1
 """Share of background motion from which a note is given. It is no error, because background
@@ -159,6 +160,7 @@ def check_health(
         else check_trigger(language.trigger, seed=seed)
     )
     findings += list_trigger_findings(language.trigger, trigger, language.gestures)
+    findings += _label_findings(language.labels)
     findings += _profile_findings(language)
     compared = neighbours.shape[1] - 1
     if compared + 1 < len(gestures):
@@ -370,6 +372,17 @@ def _confusion_message(
     if differing is not None:
         where = f": compared with {other}, {differing.words}"
     return f"{one} is read as {other} in {confusion.words}{where}"
+
+
+def _label_findings(labels: Sequence[str]) -> Iterator[Finding]:
+    for one, other in list_look_alikes(labels):
+        yield Finding(
+            "look_alike",
+            (one, other),
+            f"the labels {one} and {other} look alike, so a slate does not tell which is meant; "
+            "rename one of the two gestures",
+            below_bar=are_confusable(one, other),
+        )
 
 
 def _profile_findings(language: Language) -> list[Finding]:

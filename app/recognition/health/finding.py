@@ -42,10 +42,10 @@ class Finding:
     code
         For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
         ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``one_diver``, ``blind_angle``, ``known_sign``, ``unrejecting``, ``more_confused``,
-        ``neighbours_only``, ``hand_shape_only``, ``hand_unseen``, ``untriggered``,
-        ``trigger_missed``, ``trigger_accidental``, ``trigger_like``, ``trigger_passed``,
-        ``empty``, and of the grammar ``phrases_`` with one of
+        ``one_diver``, ``blind_angle``, ``known_sign``, ``look_alike``, ``unrejecting``,
+        ``more_confused``, ``neighbours_only``, ``hand_shape_only``, ``hand_unseen``,
+        ``untriggered``, ``trigger_missed``, ``trigger_accidental``, ``trigger_like``,
+        ``trigger_passed``, ``empty``, and of the grammar ``phrases_`` with one of
         `ambiguity.AmbiguityKind`.
     gestures
         Labels of the gestures concerned; none for phrases.

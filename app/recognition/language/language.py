@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from zlib import crc32
 
 from app.recognition.decision.calibration import HAND_RULE, MOVING_HAND_RULE, RULE, calibrate
 from app.recognition.errors import LanguageError, OsgError
-from app.recognition.gestures.gesture import SETTINGS, Gesture
+from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.switches import Switches
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
@@ -30,9 +31,12 @@ from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_ent
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.joiners import is_printable, without_joiners
+from app.recognition.text.look_alikes import find_confusable, list_look_alikes
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
 from app.recognition.triggers.trigger import SALUTE, Trigger
+
+logger = logging.getLogger(__name__)
 
 TIMESTAMP = "%Y-%m-%dT%H:%M:%SZ"
 
@@ -193,9 +197,10 @@ class Language:
         Raises
         ------
         LanguageError
-            When the language has a gesture of that label already.
+            When the language has a gesture of that label already, or of one that looks like it.
 
         """
+        require_distinct_labels([*self.labels, gesture.label])
         return replace(self, gestures=(*self.gestures, gesture), revision=self.revision + 1)
 
     def with_changed(self, gesture: Gesture) -> Language:
@@ -236,10 +241,13 @@ class Language:
         Raises
         ------
         LanguageError
-            When there is no such gesture, or another one has the new label.
+            When there is no such gesture, or another one has the new label, or one that looks
+            like it.
 
         """
-        gesture = replace(self.gesture(label), label=new)
+        gesture = replace(self.gesture(label), label=make_label(new))
+        others = [each for each in self.labels if each != label]
+        require_distinct_labels([*others, gesture.label])
         gestures = [gesture if each.label == label else each for each in self.gestures]
         grammar = self.grammar and self.grammar.renamed(label, gesture.label)
         trigger = self.trigger.renamed(label, gesture.label)
@@ -312,7 +320,7 @@ class Language:
 
     @classmethod
     def load(cls, path: str | Path) -> Language:
-        """Read a language file.
+        """Read a language file; labels that look alike are logged as a warning.
 
         Raises
         ------
@@ -322,7 +330,35 @@ class Language:
         """
         content = read_content(path)
         with name_file(path):
-            return cls.from_json(content)
+            language = cls.from_json(content)
+        for one, other in list_look_alikes(language.labels):
+            logger.warning(
+                "%s: the labels %r and %r look alike; rename one of them",
+                Path(path).name,
+                one,
+                other,
+            )
+        return language
+
+
+def require_distinct_labels(labels: Sequence[str]) -> None:
+    """Refuse a last label that looks like one before it, by more than ASCII letters.
+
+    Files that are loaded may hold such labels, which were accepted earlier.
+
+    Raises
+    ------
+    LanguageError
+        When it does.
+
+    """
+    *earlier, new = labels
+    if (taken := find_confusable(new, earlier)) is not None:
+        raise LanguageError(
+            f"the label {new!r} looks like {taken!r}, which the language has: a diver cannot tell "
+            "them apart, choose another one",
+            build_pointer("gestures", len(earlier), "label"),
+        )
 
 
 def _check_text(text: Any, most: int, pointer: str) -> None:

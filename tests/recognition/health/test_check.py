@@ -44,6 +44,15 @@ def test_two_gestures_that_are_the_same_are_found_with_a_remedy(confused: Health
     assert report.pairs[0].gestures == ("circle", "ring")
 
 
+def test_labels_that_look_alike_are_found_and_are_errors_beyond_ascii() -> None:
+    first, second = HEALTHY.gestures
+    for one, other, below_bar in (("up1", "upl", False), ("up", "u\u0440", True)):
+        gestures = [replace(first, label=one), replace(second, label=other)]
+        report = check_health(replace(HEALTHY, gestures=gestures), takes=2)
+        (found,) = [each for each in report.findings if each.code == "look_alike"]
+        assert (found.gestures, found.below_bar) == ((one, other), below_bar)
+
+
 def test_a_remedy_that_is_followed_ends_the_confusion() -> None:
     circle_shown, ring, line_shown = CONFUSED.gestures
     mended = replace(CONFUSED, gestures=[circle_shown, ring.mirror(), line_shown])

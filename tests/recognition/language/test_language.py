@@ -74,6 +74,23 @@ def test_a_label_cannot_occur_twice() -> None:
     assert refusal.value.pointer == "/gestures/2/label"
 
 
+def test_a_new_label_must_not_look_like_another_one(
+    caplog: pytest.LogCaptureFixture, tmp_path: Path
+) -> None:
+    language = Language("pool", [replace(gesture("circle"), label="down"), gesture("line")])
+    alike = replace(language.gesture("down"), label="d\u043ewn")
+    with pytest.raises(LanguageError, match="looks like 'down'"):
+        language.with_gesture(alike)
+    with pytest.raises(LanguageError, match="looks like 'down'"):
+        language.renamed("line", "\uff44own")
+    assert language.renamed("line", "zuru\u0308ck").labels == ("down", "zur\u00fcck")
+    # A file that was accepted earlier is loaded as it is, with a warning.
+    kept = replace(language, gestures=(*language.gestures, alike))
+    kept.save(tmp_path / "pool.json")
+    assert Language.load(tmp_path / "pool.json").to_json() == kept.to_json()
+    assert "pool.json: the labels 'down' and 'd\u043ewn' look alike" in caplog.text
+
+
 def test_a_language_beyond_what_its_file_may_hold_is_refused() -> None:
     one = gesture("circle")
     many = [replace(one, label=f"gesture {number}") for number in range(MAX_GESTURES + 1)]

@@ -13,6 +13,7 @@ from app.api.http.schemas.values import (
     Identifier,
     Label,
     Landmarks,
+    NewLabel,
     Seconds,
 )
 from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
@@ -38,7 +39,7 @@ class NewDemonstration(Body):
 class GestureDraft(NewDemonstration):
     """A gesture to save from a clip."""
 
-    label: Label
+    label: NewLabel
     salient: Landmarks | None = None
     direction: SwitchPosition = "auto"
     tempo: SwitchPosition = "auto"
@@ -70,7 +71,7 @@ class DemonstrationDraft(NewDemonstration):
 class GestureChange(Body):
     """What to change about a gesture; what is left out stays."""
 
-    label: Label | None = None
+    label: NewLabel | None = None
     demonstration: NewDemonstration | None = Field(
         default=None, description="Takes the place of the first demonstration, unless `further`"
     )

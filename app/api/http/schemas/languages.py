@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, Field
 
 from app.api.http.schemas.gestures import GestureView
-from app.api.http.schemas.values import Author, Body, Name
+from app.api.http.schemas.values import Author, Body, NewName
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.grammar_schema import GrammarEntry
@@ -18,14 +18,14 @@ from app.recognition.language.trigger_schema import TriggerEntry
 class LanguageDraft(Body):
     """A new language."""
 
-    name: Name
+    name: NewName
     author: Author = ""
 
 
 class LanguageChange(Body):
     """What to change about a language; what is left out stays."""
 
-    name: Name | None = None
+    name: NewName | None = None
     author: Author | None = None
     grammar: GrammarEntry | None = Field(default=None, description="The phrases; null: none")
     profile: ProfileName | None = Field(default=None, description="The voters that recognise it")

@@ -49,7 +49,7 @@ def add_gesture(
     gesture = gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
-        require_free(language, gesture.label)
+        require_free(language.labels, gesture.label)
         return language.with_gesture(gesture)
 
     edit = edit_document(f"Add {gesture.label}", edit_language)

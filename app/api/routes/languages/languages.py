@@ -10,7 +10,7 @@ from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
-from app.api.http.problems import problem_responses
+from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
 from app.api.http.schemas.languages import (
     LanguageChange,
@@ -27,20 +27,22 @@ from app.api.services.language_responses import (
     save_revision,
     view_summary,
 )
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Language
 from app.recognition.language.grammar_entry import entry_to_grammar
 from app.recognition.language.tuning_entry import entry_to_tuning
+from app.recognition.text.look_alikes import are_confusable
 from app.store import LanguageStore
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
 
-@router.post("", status_code=201, responses=problem_responses())
+@router.post("", status_code=201, responses=problem_responses(409))
 def create_language(
     draft: LanguageDraft, studio: CurrentStudio, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make an empty language."""
+    _require_readable(draft.name, studio)
     language = Language(name=draft.name, author=draft.author)
     made = draft_of(language, "New language")
     state = save_language(studio, quota, made, language.revision)
@@ -63,7 +65,7 @@ def get_language(
     return answer(studio, studio.languages.get(language_id, revision), response)
 
 
-@router.patch("/{language_id}", responses=problem_responses(404, 412))
+@router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
 def change_language(
     language_id: str,
     change: LanguageChange,
@@ -78,6 +80,8 @@ def change_language(
         fields["grammar"] = None if change.grammar is None else entry_to_grammar(change.grammar)
     if "tuning" in change.model_fields_set:
         fields["tuning"] = entry_to_tuning(change.tuning)
+    if change.name is not None:
+        _require_readable(change.name, studio, language_id)
     if not fields:
         return answer(studio, studio.languages.get(language_id), response)
     edit = edit_document(_describe(fields), lambda language: replace(language, **fields))
@@ -134,6 +138,16 @@ def delete_language(
 def restore_language(language_id: str, studio: CurrentStudio, response: Response) -> LanguageView:
     """Bring a deleted language back."""
     return announce(studio, studio.languages.restore(language_id), response)
+
+
+def _require_readable(name: str, studio: Studio, language_id: str | None = None) -> None:
+    """Refuse a name that looks like another language's and is not the same."""
+    for state in studio.languages.all():
+        known = state.revision.name
+        if state.record.id != language_id and known != name and are_confusable(name, known):
+            detail = f"the name {name!r} looks like that of the language {known!r}; choose another"
+            fault = Fault(pointer="/name", detail=detail)
+            raise ProblemError(409, "name_taken", detail, errors=[fault])
 
 
 def _summaries(languages: LanguageStore) -> list[LanguageSummary]:

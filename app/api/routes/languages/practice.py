@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
@@ -16,7 +16,6 @@ from app.api.services.running_studio import CurrentStudio, Studio, computed
 from app.api.services.stored_recognitions import load_situation, recognize_range
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.explanation.explanation import explain
-from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.store import LanguageState, PracticeTake
 
 router = APIRouter(prefix="/languages/{language_id}/practice", tags=["languages"])
@@ -25,7 +24,7 @@ router = APIRouter(prefix="/languages/{language_id}/practice", tags=["languages"
 class PracticeDraft(Body):
     """A gesture that a diver shows in a clip."""
 
-    diver: Annotated[str, Field(min_length=1, max_length=MAX_DIVER_LENGTH, pattern=r"\S")]
+    diver: Annotated[Diver, Field(min_length=1, pattern=r"\S")]
     expected: Label
     clip_id: Identifier
     start: Seconds | None = None

@@ -17,6 +17,15 @@ def test_a_new_language_is_empty_and_listed(client: httpx.Client) -> None:
     assert (entry["name"], entry["revision"], entry["labels"]) == ("pool", 1, [])
 
 
+def test_a_new_name_that_looks_like_another_languages_is_refused(client: httpx.Client) -> None:
+    assert client.post(LANGUAGES, json={"name": "pool e\u0301"}).json()["name"] == "pool \u00e9"
+    alike = {"name": "p\u043eol \u00e9"}
+    assert_problem(client.post(LANGUAGES, json=alike), 409, "name_taken")
+    lake = client.post(LANGUAGES, json={"name": "lake"}).json()["id"]
+    assert_problem(client.patch(f"{LANGUAGES}/{lake}", json=alike), 409, "name_taken")
+    assert client.post(LANGUAGES, json={"name": "pool \u00e9"}).status_code == 201
+
+
 @pytest.mark.withstands(row="H20")
 def test_a_lost_race_is_412_with_the_newer_revision(client: httpx.Client, language_id: str) -> None:
     place = f"{LANGUAGES}/{language_id}"
