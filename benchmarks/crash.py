@@ -1,13 +1,15 @@
 """Crash rounds: kills a server and what it uses while clients write, and checks what is left.
 
 ``python -m benchmarks.crash --rounds 60`` starts a server on one folder again and again. In each
-round three clients upload clips (whole and in parts), create, rename and delete languages, and
-import language files, until the server is killed by SIGKILL at a random moment, in most rounds
-after something else: a worker process, or a part of the backends that ``--with postgres dask s3``
-gives the server, which is then started again. After the next start every acknowledged change must
-be there, every other change must be there in full or not at all, and no file may be without its
-row. At the end every job must have ended, and each one that is done must have all frames of its
-clip. The exit code is 1 if anything is lost.
+round four clients upload clips (whole and in parts), begin resumable uploads and go on with them,
+export sessions, create, rename and delete languages, and import language files, until the server is
+killed by SIGKILL at a random moment, in most rounds after something else: a worker process, or a
+part of the backends that ``--with postgres dask s3`` gives the server, which is then started again.
+In every tenth round a backup is made meanwhile. After the next start every acknowledged change and
+every acknowledged part of an upload must be there, every other change must be there in full or not
+at all, the audit log must hold every acknowledged change, no file may be without its row, and the
+backup must hold what was acknowledged before it. At the end every job must have ended, and each one
+that is done must have all frames of its clip. The exit code is 1 if anything is lost.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import argparse
 import hashlib
 import os
 import random
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -58,6 +61,10 @@ FINAL: Final = ("done", "failed", "cancelled")
 
 WORKER: Final = "worker process"
 
+ROUNDS_A_BACKUP: Final = 10
+
+TUS: Final = {"Tus-Resumable": "1.0.0"}
+
 
 @dataclass
 class Written:
@@ -73,6 +80,14 @@ class Written:
         By id whether the clip is kept.
     deleting
         Ids of clips whose deletion was sent and not answered.
+    parts
+        Acknowledged bytes of the resumable uploads that are not complete, by address.
+    unaudited
+        Ids of acknowledged requests whose entries in the audit log were not looked for yet.
+    audited
+        Number of those that were found.
+    backups
+        Number of backups that were restored and compared.
     acknowledged
         Number of changes.
     refused
@@ -90,6 +105,10 @@ class Written:
     attempts: dict[str, str | None] = field(default_factory=dict)
     clips: dict[str, bool] = field(default_factory=dict)
     deleting: set[str] = field(default_factory=set)
+    parts: dict[str, int] = field(default_factory=dict)
+    unaudited: set[str] = field(default_factory=set)
+    audited: int = 0
+    backups: int = 0
     acknowledged: int = 0
     refused: int = 0
     lost: list[str] = field(default_factory=list)
@@ -147,16 +166,39 @@ def upload(client: httpx.Client, written: Written, draw: random.Random, clip: by
         answer = client.post(f"{API}/clips", files={"file": ("dive.mkv", clip)})
         written.clips[answer.raise_for_status().json()["id"]] = True
     else:
-        tus = {"Tus-Resumable": "1.0.0"}
-        begun = client.post(f"{API}/uploads", headers=tus | {"Upload-Length": str(len(clip))})
+        begun = client.post(f"{API}/uploads", headers=TUS | {"Upload-Length": str(len(clip))})
         place = begun.raise_for_status().headers["location"]
         half = len(clip) // 2
         for start, part in ((0, clip[:half]), (half, clip[half:])):
-            headers = {"Upload-Offset": str(start), "Content-Type": OFFSETS}
-            answer = client.patch(place, content=part, headers=tus | headers)
-            answer.raise_for_status()
+            answer = _send(client, place, start, part)
         written.clips[answer.headers["content-location"].rpartition("/")[2]] = True
     written.acknowledged += 1
+
+
+def go_on(client: httpx.Client, written: Written, draw: random.Random, clip: bytes) -> None:
+    """Begin a resumable upload, go on with one, or export the session of a clip."""
+    kept = [key for key, state in written.clips.items() if state and key not in written.deleting]
+    if kept and draw.random() < 0.1:
+        client.get(f"{API}/clips/{draw.choice(kept)}/session.mcap").raise_for_status()
+    elif written.parts and draw.random() < 0.7:
+        place = draw.choice(list(written.parts))
+        answer = client.head(place, headers=TUS).raise_for_status()
+        start = int(answer.headers["upload-offset"])
+        end = min(len(clip), start + draw.randrange(1, len(clip)))
+        answer = _send(client, place, start, clip[start:end])
+        written.parts[place] = end
+        if "content-location" in answer.headers:
+            written.clips[answer.headers["content-location"].rpartition("/")[2]] = True
+            del written.parts[place]
+    else:
+        begun = client.post(f"{API}/uploads", headers=TUS | {"Upload-Length": str(len(clip))})
+        written.parts[begun.raise_for_status().headers["location"]] = 0
+    written.acknowledged += 1
+
+
+def _send(client: httpx.Client, place: str, start: int, part: bytes) -> httpx.Response:
+    headers = TUS | {"Upload-Offset": str(start), "Content-Type": OFFSETS}
+    return client.patch(place, content=part, headers=headers).raise_for_status()
 
 
 OFFSETS: Final = "application/offset+octet-stream"
@@ -190,14 +232,23 @@ def workers_of(pid: int) -> list[int]:
 def work(address: str, written: Written, client: Client, seed: int, stop: threading.Event) -> None:
     """Send changes until the server is gone or the round is over."""
     draw = random.Random(seed)
-    with httpx.Client(base_url=address, timeout=30) as connection:
+
+    def note(response: httpx.Response) -> None:
+        """Remember a change that is acknowledged, other than a part of a file."""
+        is_part = response.request.method == "PATCH" and "/uploads/" in response.url.path
+        changed = response.request.method not in ("GET", "HEAD") and response.is_success
+        if changed and (not is_part or "content-location" in response.headers):
+            written.unaudited.add(response.headers["x-request-id"])
+
+    hooks = {"response": [note]}
+    with httpx.Client(base_url=address, timeout=30, event_hooks=hooks) as connection:
         while not stop.is_set():
             try:
                 client(connection, written, draw)
             except httpx.HTTPStatusError as error:
                 if error.response.status_code == 422 and "/languages" not in str(error.request.url):
                     written.refused += 1
-                elif error.response.status_code not in (404, 429, 503):
+                elif error.response.status_code not in (404, 409, 429, 503):
                     written.lost.append(f"{error.request.method} {error.request.url.path}: {error}")
                 time.sleep(0.1)
             except httpx.HTTPError:
@@ -220,6 +271,8 @@ def check(address: str, folder: Path, written: Written, digest: str) -> None:
                 video = client.get(f"{API}/clips/{key}/video").content
                 if hashlib.sha256(video).hexdigest() != digest:
                     written.lost.append(f"clip {key}: other bytes than were sent")
+        _check_parts(client, written)
+        _check_audit(client, written)
         written.attempts.clear()
         written.deleting.clear()
         # A clip stored without an acknowledgement is complete, and is used like the others.
@@ -228,6 +281,55 @@ def check(address: str, folder: Path, written: Written, digest: str) -> None:
         for key in found.keys() - written.languages.keys():
             written.languages[key] = found[key]["revision"], found[key]["name"]
     _check_files(folder, written)
+
+
+def _check_parts(client: httpx.Client, written: Written) -> None:
+    """Ask each upload how far it is, and forget those that have become clips."""
+    for place, acknowledged in list(written.parts.items()):
+        answer = client.head(place, headers=TUS)
+        offset = int(answer.headers.get("upload-offset", -1))
+        if offset < acknowledged:
+            written.lost.append(f"{place}: {acknowledged} bytes acknowledged, {offset} there")
+        if offset < acknowledged or "content-location" in answer.headers:
+            del written.parts[place]
+
+
+def _check_audit(client: httpx.Client, written: Written) -> None:
+    """Look for the entries of all acknowledged changes, the newest first."""
+    before: dict[str, int] = {}
+    while written.unaudited:
+        page = client.get(f"{API}/audit", params={"limit": 1000} | before).json()
+        found = written.unaudited & {entry["request_id"] for entry in page}
+        written.audited += len(found)
+        written.unaudited -= found
+        if not page:
+            written.lost += [f"audit entry of request {each}" for each in written.unaudited]
+            written.unaudited.clear()
+            return
+        before = {"before": page[-1]["id"]}
+
+
+def back_up(folder: Path, written: Written) -> None:
+    """Back a running server up, restore the file elsewhere, and compare the two."""
+    # What is begun or undone meanwhile may be in the backup or not.
+    clips = {key for key, kept in written.clips.items() if kept} - written.deleting
+    file, other = folder.with_name("backup.zip"), folder.with_name("restored")
+    for command in (["backup", str(file), str(folder)], ["restore", str(file), str(other)]):
+        run = [sys.executable, "-m", "app", *command[:2], "--data-dir", command[2]]
+        environment = dict(os.environ)
+        if command[0] == "restore":
+            environment.pop(DATABASE, None)
+            environment.pop("OSG_STORAGE", None)
+        ended = subprocess.run(run, env=environment, capture_output=True, text=True, check=False)
+        if ended.returncode:
+            written.lost.append(f"{command[0]}: {ended.stderr.strip()}")
+            return
+    with closing(sqlite3.connect(other / "studio.db")) as database:
+        rows = {key for (key,) in database.execute("SELECT id FROM clip")}
+    written.lost += [f"clip {key} in the backup" for key in clips - rows]
+    written.backups += 1
+    shutil.rmtree(other)
+    file.unlink()
 
 
 def _check_language(
@@ -278,6 +380,9 @@ def crash(
         def add(client: httpx.Client, state: Written, chance: random.Random) -> None:
             upload(client, state, chance, clip)
 
+        def add_slowly(client: httpx.Client, state: Written, chance: random.Random) -> None:
+            go_on(client, state, chance, clip)
+
         for number in range(rounds):
             with serving(folder) as (address, process):
                 check(address, folder, written, digest)
@@ -286,11 +391,13 @@ def crash(
                     threading.Thread(
                         target=work, args=(address, written, each, draw.randrange(10**9), stop)
                     )
-                    for each in (edit, import_file, add)
+                    for each in (edit, import_file, add, add_slowly)
                 ]
                 for thread in threads:
                     thread.start()
                 time.sleep(draw.uniform(FEWEST_SECONDS, longest))
+                if number % ROUNDS_A_BACKUP == ROUNDS_A_BACKUP - 1:
+                    back_up(folder, written)
                 written.kills[_kill_beside(process.pid, beside, draw)] += 1
                 process.kill()
                 stop.set()
@@ -380,6 +487,7 @@ def main() -> None:
         f"{given.rounds} rounds, {written.acknowledged} changes acknowledged, {written.refused} "
         "uploads refused whose probing process was killed"
     )
+    print(f"{written.audited} audit entries found, {written.backups} backups restored and compared")
     print("\n".join(written.lost) or "nothing lost, no orphan, every job came to an end")
     sys.exit(bool(written.lost))
 
