@@ -49,6 +49,7 @@ def recognize(
 
 
 @router.get("", responses=problem_responses())
+@computed
 def list_recognitions(
     studio: CurrentStudio,
     clip_id: Annotated[str | None, Query(max_length=64)] = None,
