@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from threading import Event
 
+import httpx
 import msgspec
 import pytest
 import viser
@@ -11,6 +12,7 @@ from websockets.sync.client import connect
 from websockets.typing import Origin, Subprotocol
 
 from app.ui import loopback_server
+from app.ui.loopback_server import RELAY_HEADERS
 
 PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
 
@@ -27,15 +29,41 @@ def test_a_page_cannot_reach_it_past_the_relay(server: viser.ViserServer, origin
     url = f"ws://127.0.0.1:{server.get_port()}"
     with (
         pytest.raises(InvalidStatus) as refused,
-        connect(url, origin=Origin(origin), subprotocols=[PROTOCOL], proxy=None),
+        connect(
+            url,
+            origin=Origin(origin),
+            subprotocols=[PROTOCOL],
+            additional_headers=RELAY_HEADERS,
+            proxy=None,
+        ),
     ):
         pass
     assert refused.value.response.status_code == 403
 
 
+@pytest.mark.parametrize("headers", [[], ["Bearer x"], ["", ""], ["Bearer \u00e9"]], ids=str)
+def test_a_program_of_another_user_of_this_machine_cannot_reach_it(
+    server: viser.ViserServer, headers: list[str]
+) -> None:
+    url = f"ws://127.0.0.1:{server.get_port()}"
+    shown = [("Authorization", each) for each in headers]
+    with (
+        pytest.raises(InvalidStatus) as refused,
+        connect(url, subprotocols=[PROTOCOL], additional_headers=shown, proxy=None),
+    ):
+        pass
+    assert refused.value.response.status_code == 403
+
+
+def test_its_page_is_not_for_everybody_either(server: viser.ViserServer) -> None:
+    assert httpx.get(f"http://127.0.0.1:{server.get_port()}/").status_code == 403
+
+
 def test_the_relay_reaches_it(server: viser.ViserServer) -> None:
     url = f"ws://127.0.0.1:{server.get_port()}"
-    with connect(url, subprotocols=[PROTOCOL], proxy=None) as relay:
+    with connect(
+        url, subprotocols=[PROTOCOL], additional_headers=RELAY_HEADERS, proxy=None
+    ) as relay:
         assert relay.subprotocol == PROTOCOL
 
 
@@ -48,7 +76,9 @@ def test_no_client_can_open_a_public_tunnel(monkeypatch: pytest.MonkeyPatch) -> 
     request = msgspec.msgpack.encode({"type": "ShareUrlRequest"})
     try:
         url = f"ws://127.0.0.1:{server.get_port()}"
-        with connect(url, subprotocols=[PROTOCOL], proxy=None) as client:
+        with connect(
+            url, subprotocols=[PROTOCOL], additional_headers=RELAY_HEADERS, proxy=None
+        ) as client:
             client.send(request)
             assert refused.wait(60)
     finally:

@@ -24,6 +24,7 @@ from websockets.typing import Subprotocol
 
 from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
 from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, no_workspace
+from app.ui.loopback_server import RELAY_HEADERS
 
 CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
 
@@ -76,6 +77,7 @@ def _connect(port: int, subprotocols: list[str]) -> websockets.connect:
     return websockets.connect(
         f"ws://127.0.0.1:{port}",
         subprotocols=[Subprotocol(name) for name in subprotocols] or None,
+        additional_headers=RELAY_HEADERS,
         compression=None,
         max_size=None,
         proxy=None,
