@@ -30,8 +30,9 @@ from app.api.ingest.intake import (
 from app.api.ingest.multipart import display_name, require_space
 from app.api.ingest.quotas import SenderQuota
 from app.api.middleware.body_limit import too_large
+from app.api.middleware.identities import identity_of
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.store import ClipWithJob, NotFound, Upload
+from app.store import ClipWithJob, NotFound, Role, Upload
 
 VERSION: Final = "1.0.0"
 EXTENSIONS: Final = "creation,termination"
@@ -118,18 +119,20 @@ async def begin_upload(
 @router.head(
     "/{upload_id}", dependencies=[Depends(require_version)], responses=problem_responses(404, 412)
 )
-def tell_offset(upload_id: str, studio: CurrentStudio) -> Response:
+def tell_offset(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
     """Return how many bytes have arrived; `Content-Location` is the clip once all of it has.
 
     While all bytes are there and the clip is not, because it could not be stored, the last byte is
     asked for again: clients take an upload for finished whose offset is its length.
     """
     if clip := studio.clips.by_idempotency_key(upload_id):
+        _require_owner(request, upload_id, clip.clip.owner)
         size = str(clip.clip.size)
         return Response(
             headers=_finished_headers(clip) | {"Upload-Offset": size, "Upload-Length": size}
         )
     upload = studio.uploads.get(upload_id)
+    _require_owner(request, upload_id, upload.owner)
     offset = upload.offset if upload.missing else max(upload.size - 1, 0)
     progress = {"Upload-Offset": str(offset), "Upload-Length": str(upload.size)}
     return Response(headers=_COMMON | progress)
@@ -156,12 +159,15 @@ async def append_part(
     try:
         upload = await run_in_threadpool(studio.uploads.get, upload_id)
     except NotFound:
-        if (answer := await _answer_again(upload_id, upload_offset, studio)) is None:
+        if (answer := await _answer_again(request, studio, upload_id, upload_offset)) is None:
             raise
         return answer
+    _require_owner(request, upload_id, upload.owner)
     came = upload.offset
     # A clip shares the bytes of its upload, so none are written once there is one.
-    if came == upload.size and (answer := await _answer_again(upload_id, upload_offset, studio)):
+    if came == upload.size and (
+        answer := await _answer_again(request, studio, upload_id, upload_offset)
+    ):
         return answer
     if upload_offset not in (_ends(upload.size) if came == upload.size else (came,)):
         detail = f"{came} bytes have come; go on there instead of at {upload_offset}"
@@ -185,11 +191,21 @@ async def append_part(
     dependencies=[Depends(require_version)],
     responses=problem_responses(404, 412),
 )
-def give_up_upload(upload_id: str, studio: CurrentStudio) -> Response:
+def give_up_upload(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
     """Forget an upload and what came of it."""
-    studio.uploads.get(upload_id)
+    _require_owner(request, upload_id, studio.uploads.get(upload_id).owner)
     _forget(upload_id, studio)
     return Response(status_code=204, headers=_COMMON)
+
+
+def _require_owner(request: Request, upload_id: str, owner: str) -> None:
+    """Answer as if there were no upload to all but its owner and administrators.
+
+    An upload that began before there were tokens is everybody's.
+    """
+    identity = identity_of(request.scope)
+    if owner not in ("", identity.name) and identity.role is not Role.ADMIN:
+        raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
 
 
 def _forget(upload_id: str, studio: Studio) -> None:
@@ -220,11 +236,14 @@ def _metadata(header: str) -> dict[str, str]:
     return values
 
 
-async def _answer_again(upload_id: str, offset: int, studio: Studio) -> Response | None:
+async def _answer_again(
+    request: Request, studio: Studio, upload_id: str, offset: int
+) -> Response | None:
     """Answer a last part that is sent again because its answer was lost; None if it is not one."""
     clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload_id)
     if clip is None or offset not in _ends(clip.clip.size):
         return None
+    _require_owner(request, upload_id, clip.clip.owner)
     # It is still there when the server ended between the commit of the clip and the answer.
     await run_in_threadpool(studio.uploads.remove, upload_id)
     headers = _finished_headers(clip) | {"Upload-Offset": str(clip.clip.size)}

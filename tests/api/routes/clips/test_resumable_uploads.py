@@ -7,7 +7,7 @@ import os
 import shutil
 import socket
 import sqlite3
-from contextlib import closing
+from contextlib import ExitStack, closing
 from datetime import timedelta
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import httpx
 import pytest
 
 from app.settings import Settings
-from app.store import UploadStore
+from app.store import Role, TokenFile, UploadStore
 from app.store.models import now
 from tests.api.ingest.test_bag_clips import two_divers
 from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept
@@ -53,6 +53,47 @@ def offset_of(client: httpx.Client, place: str) -> int:
     assert answer.status_code == 200
     assert answer.headers["tus-resumable"] == "1.0.0"
     return int(answer.headers["upload-offset"])
+
+
+def test_an_upload_is_its_owners_alone(
+    settings: Settings, small_clip: Path, tmp_path: Path
+) -> None:
+    tokens = TokenFile(settings.tokens)
+    names = {"Ada": Role.EDIT, "Bob": Role.EDIT, "Cy": Role.READ, "Root": Role.ADMIN}
+    content = small_clip.read_bytes()
+    with ExitStack() as stack:
+        server = stack.enter_context(running(settings))
+        ada, bob, reader, root = (
+            stack.enter_context(
+                client_of(
+                    server.address,
+                    headers={"Authorization": f"Bearer {tokens.add(name, role)}"},
+                )
+            )
+            for name, role in names.items()
+        )
+        place = begun(ada, len(content))
+        half = len(content) // 2
+        assert sent(ada, place, 0, content[:half]).status_code == 204
+
+        def refuse_others() -> None:
+            unknown = bob.delete(f"{UPLOADS}/{'0' * 32}", headers=TUS).json()["detail"]
+            for stranger in (bob, reader):
+                assert stranger.head(place, headers=TUS).status_code == 404
+            assert_problem(sent(bob, place, half, content[half:]), 404, "not_found")
+            refused = assert_problem(bob.delete(place, headers=TUS), 404, "not_found")
+            assert str(refused["detail"]).split("'")[::2] == unknown.split("'")[::2]
+
+        refuse_others()
+        assert offset_of(ada, place) == offset_of(root, place) == half
+        assert sent(ada, place, half, content[half:]).status_code == 204
+        # The finished upload is not shown to others either.
+        refuse_others()
+        assert_problem(sent(bob, place, len(content), b""), 404, "not_found")
+        assert sent(ada, place, len(content), b"").status_code == 204
+        assert [each.clip.owner for each in server.studio.clips.all()] == ["Ada"]
+        given_up = begun(ada, 10)
+        assert root.delete(given_up, headers=TUS).status_code == 204
 
 
 def broken_off(server: Running, place: str, content: bytes, length: int) -> None:
