@@ -26,6 +26,7 @@ from app.store.models import (
 from app.store.practice import PracticeStore
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
+from app.store.sign_ins import SignInStore
 from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
 
@@ -63,6 +64,7 @@ __all__ = [
     "RecognitionRecord",
     "RecognitionStore",
     "Role",
+    "SignInStore",
     "SourceStore",
     "StoreError",
     "StoreUnavailable",

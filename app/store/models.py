@@ -299,7 +299,7 @@ class SeededSample(SQLModel, table=True):
 
 
 class AuditEntry(SQLModel, table=True):
-    """One change made by a named token."""
+    """One change made by a named token, or one use of the command line."""
 
     __tablename__ = "audit_entry"
 
@@ -311,11 +311,25 @@ class AuditEntry(SQLModel, table=True):
     address: str = Field(max_length=64)
     method: str = Field(max_length=16)
     path: str = Field(max_length=300)
-    """Path of the request with its query, which names a gesture."""
+    """Path of the request with its query, which names a gesture; what a command was given."""
     status: int
-    """HTTP status of the response."""
+    """HTTP status of the response; 0 of a command."""
     request_id: str = Field(max_length=64)
     """Id of the request, as in the log."""
+
+
+class SignIn(SQLModel, table=True):
+    """The session of a browser; neither its cookie nor its token can be told from the row."""
+
+    __tablename__ = "sign_in"
+
+    id: str = Field(primary_key=True, max_length=64)
+    """SHA-256 of the cookie."""
+    name: str = Field(max_length=80, index=True)
+    """Name of the token."""
+    proof: str = Field(max_length=64)
+    """HMAC of the token's digest, with the cookie as key."""
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 
 class UploadReservation(SQLModel, table=True):

@@ -16,7 +16,7 @@ import sqlite3
 import tempfile
 import zipfile
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -27,7 +27,7 @@ from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.backup.rows import copy_rows, snapshot
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
-from app.store.models import VIDEO, JobStatus
+from app.store.models import VIDEO, JobStatus, SignIn
 from app.store.objects import ObjectStore, SharedFolder
 
 FORMAT = "osg-studio/backup"
@@ -251,6 +251,11 @@ def _copy_file(database: Path, target: Path) -> None:
             source.backup(copy)
         except sqlite3.Error as error:
             raise OsgError(f"the database cannot be copied now: {error}; try again") from error
+        # Sessions that are ended later must not come back with the library. A database that no
+        # server of this version has used has none.
+        with suppress(sqlite3.OperationalError):
+            copy.execute(f"DELETE FROM {SignIn.__tablename__}")
+            copy.commit()
         # No journal beside the file, whatever mode the server uses.
         copy.execute("PRAGMA journal_mode=DELETE")
     _check_database(target)

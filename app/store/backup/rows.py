@@ -9,12 +9,19 @@ from sqlmodel import Session, SQLModel, col
 
 from app.recognition.errors import OsgError
 from app.store.database import Database
-from app.store.models import AuditEntry, ChangeCount, Clip, LanguageRecord, UploadReservation
+from app.store.models import (
+    AuditEntry,
+    ChangeCount,
+    Clip,
+    LanguageRecord,
+    SignIn,
+    UploadReservation,
+)
 
 AT_ONCE: Final = 100
 """Rows read and written at a time: the document of a language has up to 64 MB, most have 100 kB."""
 
-OF_A_SERVER: Final = (ChangeCount, UploadReservation)
+OF_A_SERVER: Final = (ChangeCount, SignIn, UploadReservation)
 """Tables that belong to the running servers and not to the library."""
 
 
