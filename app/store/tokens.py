@@ -1,22 +1,26 @@
 """Named tokens: a file beside the database that says who may read, edit or administer.
 
 The file holds digests, never the tokens. It is read again after a change, so that tokens can be
-added or withdrawn while the server runs.
+added or withdrawn while the server runs. A data folder remembers that it had a list, and the newest
+one: a list that is lost, emptied or replaced by an older one lets nobody in.
 """
 
 from __future__ import annotations
 
 import hashlib
-import json
+import logging
 import os
 import secrets
+import stat
+import unicodedata
 from collections.abc import Sequence
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from filelock import FileLock
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from app.store.atomic_files import publish, sync_directory
 from app.store.errors import NotFound, StoreUnavailable
@@ -24,6 +28,37 @@ from app.store.models import now
 
 TOKEN_BYTES = 24
 """Random bytes of a token: 192 bits, so that a plain digest of it cannot be inverted."""
+
+MOST_BYTES: Final = 4 * 1024 * 1024
+"""Largest list that is read: that of some 15 000 tokens."""
+
+ADMINISTRATOR: Final = "admin"
+"""Name of the sender who uses the single token of the settings."""
+
+COMMAND_LINE: Final = "command line"
+"""Name under which the audit log has what an administrator does with ``osg-studio``."""
+
+NAME: Final = r"^[\w .@-]+$"
+
+_BEGINNING: Final = datetime(1970, 1, 1, tzinfo=UTC)
+
+_LOOK_ALIKES: Final = {
+    ord(other): letter
+    for letter, others in {
+        "a": "\u0251\u0430\u03b1",
+        "c": "\u0441\u03f2",
+        "d": "\u0501",
+        "e": "\u0435",
+        "i": "1l\u0131\u0269\u03b9\u0456\u04cf",
+        "m": "\u043c",
+        "n": "\u03b7\u043f\u0578\u057c",
+        "o": "0\u043e\u03bf\u0585",
+    }.items()
+    for other in others
+}
+"""Letters and digits that look like a letter of the reserved names, in other alphabets too."""
+
+logger = logging.getLogger(__name__)
 
 
 class Role(StrEnum):
@@ -54,7 +89,7 @@ class NamedToken(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    name: Annotated[str, Field(min_length=1, max_length=80, pattern=r"^[\w .@-]+$")]
+    name: Annotated[str, Field(min_length=1, max_length=80, pattern=NAME)]
     role: Role
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
     created: datetime
@@ -66,7 +101,13 @@ class _Document(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     version: Literal[1] = 1
+    written: AwareDatetime = _BEGINNING
+    """When the list was changed; a list of an earlier version or made by hand does not say."""
     tokens: tuple[NamedToken, ...] = ()
+
+
+class TokensUnavailable(StoreUnavailable):
+    """Raised when the list of tokens cannot be read, or is not the newest one."""
 
 
 class TokenFile:
@@ -76,40 +117,62 @@ class TokenFile:
     ----------
     path
         The file; there are no tokens while it does not exist.
+    seen
+        File in the data folder that remembers the newest list, by the moment of its last change;
+        None remembers it in this object alone.
 
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, seen: Path | None = None) -> None:
         self._path = path
-        self._state: tuple[int, int, int] | None = None
+        self._seen = seen
+        self._state: tuple[int, ...] | None = None
         self._tokens: tuple[NamedToken, ...] = ()
+        self._newest: datetime | None = None
 
     def read(self) -> tuple[NamedToken, ...]:
         """Return the tokens; the same object while the file is unchanged.
 
         Raises
         ------
-        StoreUnavailable
-            When the file cannot be read or is damaged.
+        TokensUnavailable
+            When the file cannot be read, is damaged, or is older than one that was seen before.
 
         """
         try:
             found = self._path.stat()
-        except FileNotFoundError:
-            self._state, self._tokens = None, ()
-            return self._tokens
-        state = (found.st_mtime_ns, found.st_size, found.st_ino)
-        if state != self._state:
-            try:
-                content = self._path.read_text("utf-8")
-                self._tokens = _Document.model_validate_json(content).tokens
-            except (OSError, UnicodeDecodeError, ValidationError) as error:
-                raise StoreUnavailable(
-                    f"the tokens in {self._path} cannot be read, so nobody with one is let in; "
-                    "correct the file, or remove it and add the tokens again"
-                ) from error
-            self._state = state
+            place, times = (found.st_dev, found.st_ino), (found.st_mtime_ns, found.st_ctime_ns)
+            state = (*place, found.st_size, *times)
+            if state != self._state:
+                # A device or a pipe would be read for ever.
+                if not stat.S_ISREG(found.st_mode) or found.st_size > MOST_BYTES:
+                    raise ValueError("no list of tokens")
+                document = _Document.model_validate_json(self._path.read_bytes())
+                self._note(document.written)
+                self._tokens, self._state = document.tokens, state
+        except (FileNotFoundError, NotADirectoryError):
+            if self._state is not None or self._tokens:
+                self._state, self._tokens = None, ()
+        except (OSError, ValueError) as error:
+            self._state = None
+            raise TokensUnavailable(
+                f"the tokens in {self._path} cannot be read, so nobody with one is let in; "
+                "correct the file, or remove it and add the tokens again"
+            ) from error
         return self._tokens
+
+    @property
+    def in_use(self) -> bool:
+        """Whether there is a list, or ever was one; if it is lost, nobody is let in.
+
+        Raises
+        ------
+        TokensUnavailable
+            As `read`.
+
+        """
+        self.read()
+        return self._state is not None or self._remembered() is not None
 
     def add(
         self,
@@ -125,8 +188,12 @@ class TokenFile:
         ------
         ValueError
             When the name or a quota cannot be used.
+        TokensUnavailable
+            As `read`.
 
         """
+        if is_reserved(name):
+            raise ValueError(f"{name[:80]!r} is reserved, or looks like a reserved name")
         secret = secrets.token_urlsafe(TOKEN_BYTES)
         token = NamedToken(
             name=name,
@@ -136,32 +203,98 @@ class TokenFile:
             quota_bytes=quota_bytes,
             quota_clips=quota_clips,
         )
-        self._write([*(each for each in self.read() if each.name != name), token])
+        with self._changing():
+            self._write([*(each for each in self.read() if each.name != name), token])
         return secret
 
-    def remove(self, name: str) -> None:
-        """Withdraw a token.
+    def remove(self, name: str) -> int:
+        """Withdraw a token; return how many are left.
 
         Raises
         ------
         NotFound
             When there is none of that name.
+        TokensUnavailable
+            As `read`.
 
         """
-        left = [each for each in self.read() if each.name != name]
-        if len(left) == len(self.read()):
-            raise NotFound(f"there is no token named {name[:80]!r}")
-        self._write(left)
+        with self._changing():
+            left = [each for each in self.read() if each.name != name]
+            if len(left) == len(self.read()):
+                raise NotFound(f"there is no token named {name[:80]!r}")
+            self._write(left)
+        return len(left)
+
+    def _changing(self) -> FileLock:
+        """Return the lock of a change: of two at the same time, none may undo the other."""
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        return FileLock(self._path.with_name(f"{self._path.name}.lock"), mode=0o600)
 
     def _write(self, tokens: Sequence[NamedToken]) -> None:
-        document = _Document(tokens=tuple(tokens)).model_dump(mode="json", exclude_none=True)
-        self._path.parent.mkdir(parents=True, exist_ok=True)
-        partial = self._path.with_suffix(".part")
-        # Readable only by its owner, because of the names and roles; the digests reveal nothing.
-        with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-            json.dump(document, file, indent=2)
-        publish(partial, self._path)
-        sync_directory(self._path.parent)
+        # Later than every list before it, whatever the clocks of several machines say.
+        written = max(now(), (self._remembered() or _BEGINNING) + timedelta(microseconds=1))
+        document = _Document(written=written, tokens=tuple(tokens))
+        content = document.model_dump_json(indent=2, exclude_none=True)
+        _write_privately(self._path, content)
+        self.read()
+
+    def _remembered(self) -> datetime | None:
+        """Return when the newest list that was ever seen was changed; None if there was none."""
+        if self._newest is None and self._seen is not None:
+            try:
+                moment = datetime.fromisoformat(self._seen.read_text("ascii"))
+                self._newest = moment.astimezone(UTC)
+            except FileNotFoundError:
+                return None
+            except (OSError, ValueError) as error:
+                raise TokensUnavailable(
+                    f"{self._seen}, which says how new the list of tokens must be, cannot be read, "
+                    "so nobody is let in; remove it, look through the tokens, and add one"
+                ) from error
+        return self._newest
+
+    def _note(self, written: datetime) -> None:
+        """Remember a list; refuse one that is older than the newest."""
+        newest = self._remembered()
+        if newest is not None and written < newest:
+            raise TokensUnavailable(
+                f"the tokens in {self._path} are of {written:%Y-%m-%d %H:%M:%S}, older than those "
+                f"of {newest:%Y-%m-%d %H:%M:%S} that were seen before, so nobody with one is let "
+                "in; put the newer file back, or remove it and add the tokens again"
+            )
+        if written == newest:
+            return
+        self._newest = written
+        if self._seen is None:
+            return
+        try:
+            self._seen.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
+            _write_privately(self._seen, written.isoformat())
+        except OSError:
+            # This server remembers it itself; only a restart would forget.
+            logger.exception("that there are tokens could not be remembered in %s", self._seen)
+
+
+def is_reserved(name: str) -> bool:
+    """Return whether a name is one under which the audit log has something else, or looks so."""
+    return _shape(name) in {"", *map(_shape, (ADMINISTRATOR, COMMAND_LINE))}
+
+
+def _shape(name: str) -> str:
+    """Return a name without what the eye overlooks: case, accents, gaps, alphabets."""
+    plain = unicodedata.normalize("NFKD", unicodedata.normalize("NFKD", name).casefold())
+    letters = "".join(each for each in plain if each.isalnum())
+    return letters.translate(_LOOK_ALIKES).replace("rn", "m")
+
+
+def _write_privately(path: Path, content: str) -> None:
+    """Replace a file by one that only its owner can read, durably."""
+    # Named after the process, because a server and a command may write at the same time.
+    partial = path.with_name(f"{path.name}.{os.getpid()}.part")
+    with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
+        file.write(content)
+    publish(partial, path)
+    sync_directory(path.parent)
 
 
 def digest(token: str) -> str:
