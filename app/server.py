@@ -29,6 +29,7 @@ from app.api.middleware.audit import Audit
 from app.api.middleware.body_limit import BodyLimit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
+from app.api.middleware.identities import check_tokens
 from app.api.middleware.pace import BodyPace
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
@@ -213,6 +214,8 @@ def run(settings: Settings, *, open_browser: bool) -> None:
     try:
         # Checked before uvicorn starts, which would print a traceback around the error message.
         check_store(settings)
+        if advice := check_tokens(settings):
+            print(f"osg-studio: {advice}", file=sys.stderr)
     except StoreUnavailable as error:
         print(f"osg-studio: {error}", file=sys.stderr)
         raise SystemExit(BAD_STORE) from error

@@ -26,6 +26,9 @@ DASK = "dask://"
 TOKENS_FILE = "tokens.json"
 """Name of the file of the named tokens in the data folder."""
 
+TOKENS_SEEN = "tokens.seen"
+"""Name of the file in the data folder that remembers that there were named tokens."""
+
 SHORTEST_TOKEN = 16
 """Fewest characters of a token: 64 bits in hexadecimal, too many to guess at twenty attempts a
 minute."""
@@ -91,7 +94,8 @@ class Settings(BaseSettings):
     machines can reach `host`."""
 
     tokens_file: Path | None = None
-    """File of the named tokens (`osg-studio tokens`); ``tokens.json`` in `data_dir` by default."""
+    """File of the named tokens (`osg-studio tokens`); ``tokens.json`` in `data_dir` by default. A
+    server does not start without the file that is named here."""
 
     quota_bytes: Annotated[int, Field(ge=0)] = 0
     """Bytes of clips that each named token may keep, unless it has its own quota; 0 is no limit."""
@@ -178,6 +182,11 @@ class Settings(BaseSettings):
     def tokens(self) -> Path:
         """File of the named tokens, which need not exist."""
         return self.tokens_file or self.data_dir / TOKENS_FILE
+
+    @property
+    def tokens_seen(self) -> Path:
+        """File that remembers the newest list of named tokens that this data folder has seen."""
+        return self.data_dir / TOKENS_SEEN
 
     @property
     def clips(self) -> Path:

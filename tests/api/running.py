@@ -78,7 +78,8 @@ def running(
 def running_two(
     folder: Path, database_url: str, storage: Path | str
 ) -> Iterator[tuple[Running, Running]]:
-    """Serve one database, one storage of clips and one list of tokens twice."""
+    """Serve one database, one storage of clips and one list of tokens, if there is one, twice."""
+    tokens = folder / "tokens.json"
     with ExitStack() as stack:
         one, two = (
             stack.enter_context(
@@ -88,7 +89,7 @@ def running_two(
                         samples_dir=folder / "none",
                         database_url=database_url,
                         storage=storage,
-                        tokens_file=folder / "tokens.json",
+                        tokens_file=tokens if tokens.exists() else None,
                     )
                 )
             )

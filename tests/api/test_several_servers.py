@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import timedelta
 from pathlib import Path
 from threading import Barrier
@@ -30,9 +31,27 @@ JOBS = "/api/v1/jobs"
 
 @pytest.fixture
 def servers(tmp_path: Path, postgres: Cluster) -> Iterator[tuple[Running, Running]]:
-    """Serve one database and one folder of clips twice."""
+    """Serve one database and one folder of clips twice, for anybody."""
     with running_two(tmp_path, postgres.new_database(), tmp_path / "clips") as servers:
         yield servers
+
+
+@pytest.fixture
+def guarded(tmp_path: Path, postgres: Cluster, jo: str) -> Iterator[tuple[Running, Running]]:
+    """Serve the same twice, for those with a token of the list that both read."""
+    with running_two(tmp_path, postgres.new_database(), tmp_path / "clips") as servers:
+        yield servers
+
+
+@pytest.fixture
+def tokens(tmp_path: Path) -> TokenFile:
+    return TokenFile(tmp_path / "tokens.json")
+
+
+@pytest.fixture
+def jo(tokens: TokenFile) -> str:
+    """Return a token that was there before the servers were started."""
+    return tokens.add("Jo", Role.EDIT)
 
 
 @contextmanager
@@ -134,9 +153,9 @@ def test_the_job_of_a_server_that_vanished_is_run_by_the_other(
 
 @pytest.mark.slow
 def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
-    servers: tuple[Running, Running],
+    guarded: tuple[Running, Running],
     small_clip: Path,
-    tmp_path: Path,
+    tokens: TokenFile,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     together = Barrier(2)
@@ -148,7 +167,7 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
 
     add_clip = ClipStore.add
     monkeypatch.setattr(ClipStore, "add", add)
-    secret = TokenFile(tmp_path / "tokens.json").add("Jo", Role.EDIT, quota_clips=1)
+    secret = tokens.add("Jo", Role.EDIT, quota_clips=1)
     headers = {"Authorization": f"Bearer {secret}"}
 
     def send(server: Running) -> int:
@@ -156,20 +175,20 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
             return upload(client, small_clip).status_code
 
     with ThreadPoolExecutor(2) as uploaders:
-        assert sorted(uploaders.map(send, servers)) == [202, 507]
-    assert len(servers[0].studio.clips.all()) == 1
+        assert sorted(uploaders.map(send, guarded)) == [202, 507]
+    assert len(guarded[0].studio.clips.all()) == 1
     # The refused upload left nothing behind.
-    (kept,) = servers[0].studio.clips.folder.iterdir()
-    assert kept.name == servers[0].studio.clips.all()[0].clip.id
+    (kept,) = guarded[0].studio.clips.folder.iterdir()
+    assert kept.name == guarded[0].studio.clips.all()[0].clip.id
 
 
 @pytest.mark.slow
 def test_an_upload_that_one_server_receives_counts_on_the_other(
-    servers: tuple[Running, Running], small_clip: Path, tmp_path: Path
+    guarded: tuple[Running, Running], small_clip: Path, tokens: TokenFile
 ) -> None:
-    one, two = servers
+    one, two = guarded
     content = small_clip.read_bytes()
-    secret = TokenFile(tmp_path / "tokens.json").add("Jo", Role.EDIT, quota_bytes=len(content))
+    secret = tokens.add("Jo", Role.EDIT, quota_bytes=len(content))
     headers = {"Authorization": f"Bearer {secret}", "Tus-Resumable": "1.0.0"}
     length = {"Upload-Length": str(len(content))}
     part = {"Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
@@ -187,3 +206,40 @@ def test_an_upload_that_one_server_receives_counts_on_the_other(
         assert second.patch(begun, headers=part, content=content).status_code == 204
         usage = one.studio.quotas.usage("Jo")
         assert (usage.clips, usage.bytes) == (1, len(content))
+
+
+@pytest.mark.slow
+def test_a_session_is_valid_on_both_servers_until_a_log_out_on_one(
+    guarded: tuple[Running, Running], jo: str
+) -> None:
+    one, two = guarded
+    with client_of(one.address) as browser:
+        assert browser.get("/", params={"token": jo}).status_code == 303
+        cookies = dict(browser.cookies)
+        elsewhere = f"{two.address}/api/v1/session"
+        assert httpx.get(elsewhere, cookies=cookies).json()["name"] == "Jo"
+        address = f"{two.address}/api/v1/events"
+        with httpx.stream("GET", address, cookies=cookies, timeout=60) as stream:
+            lines = stream.iter_lines()
+            assert "listening" in next(lines)
+            assert browser.delete("/api/v1/session").status_code == 204
+            # The stream on the other server ends, whole or cut off; a time-out would fail.
+            with suppress(httpx.RemoteProtocolError, httpx.ReadError):
+                deque(lines, maxlen=0)
+        until(lambda: httpx.get(elsewhere, cookies=cookies).status_code == 401)
+        assert httpx.get(elsewhere, headers={"Authorization": f"Bearer {jo}"}).status_code == 200
+
+
+@pytest.mark.slow
+def test_a_list_of_tokens_that_is_not_there_lets_nobody_in_on_both_servers(
+    guarded: tuple[Running, Running], jo: str, tmp_path: Path
+) -> None:
+    bearer = {"Authorization": f"Bearer {jo}"}
+    (tmp_path / "tokens.json").rename(tmp_path / "away.json")
+    for server in guarded:
+        for headers in ({}, bearer):
+            answer = httpx.get(f"{server.address}{LANGUAGES}", headers=headers)
+            assert_problem(answer, 401, "token_required")
+    (tmp_path / "away.json").rename(tmp_path / "tokens.json")
+    for server in guarded:
+        assert httpx.get(f"{server.address}{LANGUAGES}", headers=bearer).status_code == 200

@@ -1,4 +1,4 @@
-"""ASGI middleware: checks host name, origin and token of every request.
+"""ASGI middleware: checks framing, host name, origin and token of every request.
 
 It is plain ASGI, for HTTP and websockets alike. A browser lets every web page send requests to
 127.0.0.1, and with DNS rebinding the page can even read the answers. Therefore `Host` must be ours,
@@ -8,36 +8,62 @@ tokens), and a websocket, which no same-origin policy covers, must send our own 
 
 from __future__ import annotations
 
+import logging
+import re
 import time
-from collections import OrderedDict, deque
+from collections import OrderedDict
+from http import HTTPStatus
 from http.cookies import CookieError, SimpleCookie
+from typing import Final
 from urllib.parse import parse_qsl, urlencode, urlsplit
 
+from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from app.api.http.problems import ProblemError, problem_of
+from app.api.http.problems import RETRY_SECONDS, ProblemError, problem_of
 from app.api.http.websockets import POLICY_VIOLATION
 from app.api.middleware.identities import ANYBODY, Identities, Identity
+from app.api.middleware.open_connections import OpenConnections, Proof
+from app.api.middleware.roles import SAFE_METHODS
 from app.settings import Settings, is_loopback
-from app.store import StoreError
+from app.store import SignInStore, StoreError
+from app.store.models import SignIn
+from app.store.sign_ins import LIFETIME
+from app.store.tokens import TokensUnavailable, digest
+
+logger = logging.getLogger(__name__)
 
 COOKIE = "osg_studio_session"
-COOKIE_SECONDS = 30 * 24 * 60 * 60
-"""Lifetime of the session cookie: a month, the length of a project to design gestures."""
-
+"""Name of the cookie of a session."""
 
 OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
 """Paths that are answered without a token, for monitoring."""
 
-MOST_GUESSES = 20
+MOST_GUESSES: Final = 20
 """Wrong tokens that one address may send within `GUESS_SECONDS`; several people may share it."""
 
-GUESS_SECONDS = 60.0
+GUESS_SECONDS: Final = 60.0
 
-MOST_ADDRESSES = 4096
+MOST_OWN_GUESSES: Final = 1000
+"""Wrong tokens within `OWN_GUESS_SECONDS` after which the token of the settings is not compared any
+more: a person may have made it up, and a word list has millions of entries. A named token has 192
+random bits and always passes."""
+
+OWN_GUESS_SECONDS: Final = 3600.0
+
+MOST_ADDRESSES: Final = 4096
 """Addresses whose wrong tokens are remembered."""
+
+HOST: Final = re.compile(
+    r"(\[[0-9a-f:.]{2,45}\]|[0-9a-z_-][0-9a-z._-]{0,252})(?::([0-9]{1,5}))?", re.IGNORECASE
+)
+"""A host header: an address or name, and a port; neither user, zone nor path."""
+
+LAST_PORT: Final = 65535
+
+CHALLENGE: Final = {"WWW-Authenticate": "Bearer"}
 
 SIGN_IN = """<!doctype html>
 <html lang="en">
@@ -54,11 +80,9 @@ autocomplete="current-password"></label> <button>Sign in</button></p>
 """
 """Page shown to a browser that has no session; it works without scripts and styles."""
 
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
-
 
 class SameOrigin:
-    """Refuses requests under foreign host names and from foreign pages.
+    """Refuses requests under foreign host names, from foreign pages, and of two lengths.
 
     Parameters
     ----------
@@ -79,14 +103,19 @@ class SameOrigin:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on requests of the right host and origin."""
-        if scope["type"] in ("http", "websocket") and (reason := self._refusal(scope)):
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+        elif _has_two_lengths(scope):
+            await _refuse(two_lengths(), scope, receive, send)
+        elif reason := self._refusal(scope):
             await _refuse(ProblemError(403, "foreign_origin", reason), scope, receive, send)
         else:
             await self._app(scope, receive, send)
 
     def _refusal(self, scope: Scope) -> str | None:
         headers = Headers(scope=scope)
-        host = headers.get("host", "")
+        hosts = headers.getlist("host")
+        host = hosts[0] if len(hosts) == 1 else ", ".join(hosts)
         if not self._is_ours(host):
             return (
                 f"the host name {host[:80]!r} is not this server's; open it under the address it "
@@ -104,11 +133,24 @@ class SameOrigin:
         return None
 
     def _is_ours(self, host: str) -> bool:
-        try:
-            name = urlsplit(f"//{host}").hostname or ""
-        except ValueError:
+        read = HOST.fullmatch(host)
+        if read is None or not 1 <= int(read[2] or 1) <= LAST_PORT:
             return False
-        return (self._any_host and bool(name)) or name in self._hosts or is_loopback(name)
+        name = read[1].strip("[]").lower()
+        return self._any_host or name in self._hosts or is_loopback(name)
+
+
+def _has_two_lengths(scope: Scope) -> bool:
+    """Return whether a body's end is stated twice, which a proxy may read otherwise."""
+    names = [name for name, _ in scope["headers"]]
+    lengths = names.count(b"content-length")
+    return lengths > 1 or (lengths == 1 and b"transfer-encoding" in names)
+
+
+def two_lengths() -> ProblemError:
+    """Return the problem that refuses a request whose body's end is stated twice."""
+    detail = "the length of the body is stated twice; send Content-Length or Transfer-Encoding"
+    return ProblemError(400, "bad_request", detail, headers={"Connection": "close"})
 
 
 def _is_navigation(headers: Headers) -> bool:
@@ -119,123 +161,203 @@ def _is_navigation(headers: Headers) -> bool:
 
 
 class Guesses:
-    """Counts wrong tokens by address."""
+    """Counts wrong tokens by address.
 
-    def __init__(self) -> None:
-        self._times: OrderedDict[str, deque[float]] = OrderedDict()
+    Parameters
+    ----------
+    most, seconds
+        Wrong tokens that an address may send within this time, before it has to wait.
+
+    """
+
+    def __init__(self, most: int, seconds: float) -> None:
+        self._most, self._seconds = most, seconds
+        self._counts: OrderedDict[str, tuple[float, int]] = OrderedDict()
 
     def add(self, client: str) -> None:
         """Count a wrong token."""
-        times = self._times.pop(client, deque(maxlen=MOST_GUESSES))
-        times.append(time.monotonic())
-        self._times[client] = times
-        if len(self._times) > MOST_ADDRESSES:
-            self._times.popitem(last=False)
+        began, count = self._counts.pop(client, (time.monotonic(), 0))
+        if time.monotonic() - began >= self._seconds:
+            began, count = time.monotonic(), 0
+        self._counts[client] = began, count + 1
+        if len(self._counts) > MOST_ADDRESSES:
+            self._counts.popitem(last=False)
 
     def too_many(self, client: str) -> bool:
         """Return whether an address has to wait before its next guess."""
-        times = self._times.get(client)
-        if times is None or len(times) < MOST_GUESSES:
-            return False
-        return time.monotonic() - times[0] < GUESS_SECONDS
+        began, count = self._counts.get(client, (0.0, 0))
+        return count >= self._most and time.monotonic() - began < self._seconds
 
 
 class TokenRequired:
-    """Requires a token: as bearer, or in the cookie that ``/?token=`` sets.
+    """Requires a token: as bearer, or in a session that ``/?token=`` begins.
 
-    It stores the identity of the token in the scope, see `identities.identity_of`.
+    It stores the identity of the token in the scope, see `identities.identity_of`, and ends open
+    connections once token or session are not valid any more.
 
     Parameters
     ----------
     app
         What to guard.
     settings
-        Settings with the tokens; without any, everybody who reaches the server has access.
+        Settings with the tokens; if there never were any, everybody on this machine has access.
 
     """
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
         self._identities = Identities(settings)
-        self._guesses = Guesses()
+        self._connections = OpenConnections(self._identities)
+        self._guesses = Guesses(MOST_GUESSES, GUESS_SECONDS)
+        self._own_guesses = Guesses(MOST_OWN_GUESSES, OWN_GUESS_SECONDS)
+        self._told = ""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on requests with a token."""
-        if scope["type"] not in ("http", "websocket"):
+        if scope["type"] not in ("http", "websocket") or scope["path"] in OPEN_PATHS:
             return await self._app(scope, receive, send)
+        sign_ins: SignInStore = scope["app"].state.studio.sign_ins
         try:
-            answer = self._answer(scope)
+            answer = await self._answer(scope, sign_ins)
+        except TokensUnavailable as error:
+            answer = self._no_list(error)
         except StoreError as error:
-            return await _refuse(problem_of(error), scope, receive, send)
+            answer = problem_of(error)
         match answer:
-            case Identity():
-                scope.setdefault("state", {})["identity"] = answer
-                return await self._app(scope, receive, send)
+            case (identity, proof):
+                scope.setdefault("state", {})["identity"] = identity
+                return await self._connections.answer(
+                    self._app, scope, receive, send, proof=proof, sign_ins=sign_ins
+                )
             case ProblemError():
                 return await _refuse(answer, scope, receive, send)
             case Response():
                 return await answer(scope, receive, send)
 
-    def _answer(self, scope: Scope) -> Identity | ProblemError | Response:
+    async def _answer(
+        self, scope: Scope, sign_ins: SignInStore
+    ) -> tuple[Identity, Proof] | ProblemError | Response:
         """Return the sender of a request, or the answer that refuses or redirects it."""
-        if scope["path"] in OPEN_PATHS or not self._identities.required:
-            return ANYBODY
+        if not self._identities.required:
+            return ANYBODY, Proof()
         headers = Headers(scope=scope)
-        if (found := self._of_session(headers)) is not None:
-            return found
         client = scope["client"][0] if scope.get("client") else "local"
-        if self._guesses.too_many(client):
-            # The token is not compared, so that many simultaneous guesses reveal nothing more.
-            detail = "too many wrong tokens came from this address; try again in a minute"
-            again = {"Retry-After": f"{GUESS_SECONDS:.0f}"}
-            return ProblemError(429, "too_many_guesses", detail, headers=again)
-        if (found := self._of_bearer(headers)) is not None:
+        cookie = cookie_of(headers)
+        known = None
+        if cookie and (session := await _session_of(cookie, sign_ins)) is not None:
+            known = self._identities.of_session(cookie, session)
+        if known is None and "authorization" in headers:
+            scheme, _, bearer = headers["authorization"].partition(" ")
+            shown_digest = digest(bearer.strip()) if scheme.lower() == "bearer" else ""
+            found = self._of_token(shown_digest, client)
+            return (found, Proof(token=shown_digest)) if isinstance(found, Identity) else found
+        if (shown := _shown_in_address(scope)) is not None:
+            return await self._sign_in(scope, shown, known, client, sign_ins)
+        if known is not None:
+            return known, Proof(cookie=cookie)
+        return _page_or(scope, self._no_token())
+
+    async def _sign_in(
+        self, scope: Scope, shown: str, known: Identity | None, client: str, sign_ins: SignInStore
+    ) -> ProblemError | Response:
+        """Exchange the token in a page's address for a session, and redirect without the token."""
+        found = self._of_token(digest(shown), client)
+        if isinstance(found, ProblemError) and known is None:
+            return _page_or(scope, found)
+        response = _redirect_without_token(scope)
+        if isinstance(found, Identity) and found != known:
+            cookie = await run_in_threadpool(sign_ins.begin, found.name, digest(shown))
+            response.set_cookie(
+                COOKIE,
+                cookie,
+                max_age=int(LIFETIME.total_seconds()),
+                httponly=True,
+                samesite="strict",
+                secure=scope["scheme"] == "https",
+            )
+        return response
+
+    def _of_token(self, shown: str, client: str) -> Identity | ProblemError:
+        """Return the identity of a token by its digest; count and refuse a wrong one."""
+        # Compared even when too many wrong ones came from this address, which others may share: the
+        # right one passes, and its digest cannot be found by simultaneous guesses.
+        found = self._identities.of_token(shown)
+        may_be_guessed = self._identities.is_own(shown) and self._own_guesses.too_many(client)
+        if found is not None and not may_be_guessed:
             return found
-        if (response := self._welcome(scope)) is not None:
-            return response
+        waits = self._guesses.too_many(client)
+        if found is None:
+            self._guesses.add(client)
+            self._own_guesses.add(client)
+        if not waits and not may_be_guessed:
+            return self._no_token()
+        seconds = OWN_GUESS_SECONDS if may_be_guessed else GUESS_SECONDS
+        words = "an hour" if may_be_guessed else "a minute"
+        detail = f"too many wrong tokens came from this address; try again in {words}"
+        again = {"Retry-After": f"{seconds:.0f}"}
+        return ProblemError(429, "too_many_guesses", detail, headers=again)
+
+    def _no_list(self, error: TokensUnavailable) -> ProblemError:
+        """Return the refusal of everybody; the reason, which names a path, is for the log."""
+        if str(error) != self._told:
+            self._told = str(error)
+            logger.error("%s", error)
+        detail = (
+            "this server's list of tokens cannot be used, so nobody is let in; whoever runs it "
+            "finds the reason in its log"
+        )
+        headers = {"Retry-After": RETRY_SECONDS}
+        return ProblemError(503, "store_unavailable", detail, headers=headers)
+
+    def _no_token(self) -> ProblemError:
         detail = (
             "this server wants a token; open it as /?token=..., or send the header "
             "'Authorization: Bearer ...'"
         )
-        if "authorization" in headers or b"token=" in scope["query_string"]:
-            self._guesses.add(client)
-        challenge = {"WWW-Authenticate": "Bearer"}
-        if scope["path"] == "/" and "text/html" in headers.get("accept", ""):
-            return HTMLResponse(SIGN_IN, 401, headers=challenge)
-        return ProblemError(401, "token_required", detail, headers=challenge)
+        if self._identities.nobody:
+            detail = (
+                "this server lets nobody in, because it has no tokens any more; whoever runs it "
+                "adds one with: osg-studio tokens add"
+            )
+        return ProblemError(401, "token_required", detail, headers=CHALLENGE)
 
-    def _of_bearer(self, headers: Headers) -> Identity | None:
-        scheme, _, shown = headers.get("authorization", "").partition(" ")
-        return self._identities.of_token(shown.strip()) if scheme.lower() == "bearer" else None
 
-    def _of_session(self, headers: Headers) -> Identity | None:
-        try:
-            cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
-        except CookieError:
-            return None
-        return None if cookie is None else self._identities.of_session(cookie.value)
+def _page_or(scope: Scope, problem: ProblemError) -> ProblemError | Response:
+    """Return the page to sign in where a person asked for the page, else the problem."""
+    html = "text/html" in Headers(scope=scope).get("accept", "")
+    if scope["path"] != "/" or not html or problem.status_code != HTTPStatus.UNAUTHORIZED:
+        return problem
+    return HTMLResponse(SIGN_IN, HTTPStatus.UNAUTHORIZED, headers=CHALLENGE)
 
-    def _welcome(self, scope: Scope) -> Response | None:
-        """Exchange ``?token=`` in a page's address for the cookie, and redirect without it."""
-        if scope["type"] != "http" or scope["method"] != "GET":
-            return None
-        query = parse_qsl(scope["query_string"].decode("latin-1"))
-        shown = dict(query).get("token", "")
-        if self._identities.of_token(shown) is None:
-            return None
-        rest = urlencode([(name, value) for name, value in query if name != "token"])
-        # Only one leading slash, because `//host` would be another site.
-        path = "/" + scope["path"].lstrip("/")
-        response = RedirectResponse(f"{path}?{rest}" if rest else path, 303)
-        response.set_cookie(
-            COOKIE,
-            self._identities.session(shown),
-            max_age=COOKIE_SECONDS,
-            httponly=True,
-            samesite="strict",
-            secure=scope["scheme"] == "https",
-        )
-        return response
+
+async def _session_of(cookie: str, sign_ins: SignInStore) -> SignIn | None:
+    if (found := sign_ins.cached(cookie)) is not None:
+        return found
+    return (await run_in_threadpool(sign_ins.find, [cookie])).get(cookie)
+
+
+def cookie_of(headers: Headers) -> str:
+    """Return the cookie of a session; empty if there is none."""
+    try:
+        cookie = SimpleCookie(headers.get("cookie", "")).get(COOKIE)
+    except CookieError:
+        return ""
+    return "" if cookie is None else cookie.value
+
+
+def _shown_in_address(scope: Scope) -> str | None:
+    """Return the token in the address of a page that is opened; None if there is none."""
+    if scope["type"] != "http" or scope["method"] != "GET":
+        return None
+    return dict(parse_qsl(scope["query_string"].decode("latin-1"))).get("token")
+
+
+def _redirect_without_token(scope: Scope) -> Response:
+    query = parse_qsl(scope["query_string"].decode("latin-1"))
+    rest = urlencode([(name, value) for name, value in query if name != "token"])
+    # Only one leading slash, because `//host` would be another site.
+    path = "/" + scope["path"].lstrip("/")
+    return RedirectResponse(f"{path}?{rest}" if rest else path, HTTPStatus.SEE_OTHER)
 
 
 async def _refuse(problem: ProblemError, scope: Scope, receive: Receive, send: Send) -> None:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import logging
+import os
 from dataclasses import dataclass
 
 from starlette.types import Scope
 
 from app.settings import Settings
-from app.store import NamedToken, Role, TokenFile
-from app.store.tokens import digest
+from app.store import NamedToken, Role, StoreUnavailable, TokenFile
+from app.store.models import SignIn
+from app.store.sign_ins import proof_of
+from app.store.tokens import ADMINISTRATOR, is_reserved
 
-ADMINISTRATOR = "admin"
-"""Name of the sender who uses the single token of the settings."""
+logger = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -44,6 +47,9 @@ ANYBODY = Identity("", Role.ADMIN)
 class Identities:
     """Finds the identity of a token or a session.
 
+    Tokens are needed once there was a list of them, and on a server that other machines can reach:
+    a list that is empty or lost lets nobody in.
+
     Parameters
     ----------
     settings
@@ -53,51 +59,76 @@ class Identities:
 
     def __init__(self, settings: Settings) -> None:
         self._settings = settings
-        self._file = TokenFile(settings.tokens)
+        self._file = TokenFile(settings.tokens, settings.tokens_seen)
         secret = settings.token.get_secret_value().encode() if settings.token else None
         self._own = None if secret is None else hashlib.sha256(secret).hexdigest()
-        self._own_session = None if secret is None else _session(secret)
         self._read: tuple[NamedToken, ...] | None = None
         self._by_digest: dict[str, Identity] = {}
-        self._by_session: dict[str, Identity] = {}
 
     @property
     def required(self) -> bool:
-        """Whether a token is needed at all."""
-        return self._own is not None or bool(self._file.read())
+        """Whether a token is needed at all.
 
-    def of_token(self, shown: str) -> Identity | None:
-        """Return the identity of a token; None if it is unknown."""
+        Raises
+        ------
+        TokensUnavailable
+            As `of_token`.
+
+        """
+        settings = self._settings
+        always = settings.public or settings.tokens_file is not None or self._own is not None
+        return always or self._file.in_use
+
+    @property
+    def nobody(self) -> bool:
+        """Whether no token at all would be let in; raises as `of_token`."""
+        self._update()
+        return not self._by_digest
+
+    def of_token(self, token_digest: str) -> Identity | None:
+        """Return the identity of a token by its digest; None if it is unknown.
+
+        Raises
+        ------
+        TokensUnavailable
+            When the list of tokens cannot be read.
+
+        """
         # The lookup is by digest, so that its duration reveals nothing about the token.
         self._update()
-        return self._by_digest.get(digest(shown))
+        return self._by_digest.get(token_digest)
 
-    def of_session(self, shown: str) -> Identity | None:
-        """Return the identity of a session; None if it is unknown."""
+    def of_session(self, cookie: str, session: SignIn) -> Identity | None:
+        """Return the identity of a session; None if its token is unknown, as in `of_token`."""
         self._update()
-        return self._by_session.get(shown)
+        for token_digest, identity in self._by_digest.items():
+            if identity.name == session.name:
+                shown = proof_of(cookie, token_digest)
+                if hmac.compare_digest(shown, session.proof):
+                    return identity
+        return None
 
-    def session(self, shown: str) -> str:
-        """Return the session of a token that `of_token` knows.
-
-        The cookie is not the token itself, so that a leaked cookie cannot be used as a bearer
-        token.
-        """
-        shown_digest = digest(shown)
-        if shown_digest == self._own and self._own_session is not None:
-            return self._own_session
-        return _session(shown_digest.encode())
+    def is_own(self, token_digest: str) -> bool:
+        """Return whether a token is that of the settings, which a person may have made up."""
+        return token_digest == self._own
 
     def _update(self) -> None:
         tokens = self._file.read()
         if tokens is self._read:
             return
-        by_digest = {each.sha256: self._identity(each) for each in tokens}
-        by_session = {_session(key.encode()): each for key, each in by_digest.items()}
-        if self._own is not None and self._own_session is not None:
-            own = Identity(ADMINISTRATOR, Role.ADMIN)
-            by_digest[self._own] = by_session[self._own_session] = own
-        self._read, self._by_digest, self._by_session = tokens, by_digest, by_session
+        by_digest = {}
+        for each in tokens:
+            if is_reserved(each.name):
+                logger.warning(
+                    "the token %r lets nobody in, because its name is reserved; remove it, and add "
+                    "one with another name",
+                    each.name,
+                )
+            else:
+                by_digest[each.sha256] = self._identity(each)
+        if self._own is not None:
+            by_digest[self._own] = Identity(ADMINISTRATOR, Role.ADMIN)
+        self._read, self._by_digest = tokens, by_digest
 
     def _identity(self, token: NamedToken) -> Identity:
         settings = self._settings
@@ -109,11 +140,36 @@ class Identities:
         )
 
 
+def check_tokens(settings: Settings) -> str | None:
+    """Check the tokens before a server starts; return advice when nobody would be let in.
+
+    Raises
+    ------
+    StoreUnavailable
+        When the settings name a file of tokens that does not exist.
+
+    """
+    if (named := settings.tokens_file) is not None and not os.path.lexists(named):
+        raise StoreUnavailable(
+            f"OSG_TOKENS_FILE names {named}, which does not exist, so nobody could be let in; "
+            "mount its folder, or add a token (osg-studio tokens add)"
+        )
+    identities = Identities(settings)
+    try:
+        if not identities.required or not identities.nobody:
+            return None
+    except StoreUnavailable as error:
+        return str(error)
+    way = "choose one with OSG_TOKEN"
+    if not settings.public and named is None:
+        way = f"let in everybody on this machine: remove it and {settings.tokens_seen}"
+    return (
+        f"nobody is let in, because there are no tokens in {settings.tokens}; add one (osg-studio "
+        f"tokens add), or {way}"
+    )
+
+
 def identity_of(scope: Scope) -> Identity:
     """Return the sender of a request, as stored by `TokenRequired`."""
     found: Identity = scope.get("state", {}).get("identity", ANYBODY)
     return found
-
-
-def _session(key: bytes) -> str:
-    return hmac.new(key, b"osg-studio session", hashlib.sha256).hexdigest()

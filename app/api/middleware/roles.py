@@ -8,9 +8,11 @@ from typing import Final
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
-from app.api.middleware.access import SAFE_METHODS
 from app.api.middleware.identities import identity_of
 from app.store import Role
+
+SAFE_METHODS: Final = frozenset({"GET", "HEAD", "OPTIONS"})
+"""Methods that change nothing."""
 
 ADMIN_PATHS: Final = frozenset({"/metrics", "/api/v1/audit"})
 
@@ -39,8 +41,7 @@ class RoleRequired:
         """Pass on allowed requests."""
         if scope["type"] == "http":
             identity, needed = identity_of(scope), needed_role(scope["method"], scope["path"])
-            roles = [*Role]
-            if roles.index(identity.role) < roles.index(needed):
+            if not includes(identity.role, needed):
                 detail = (
                     f"the token {identity.name!r} has the role {identity.role.value}, and this "
                     f"needs {needed.value}; ask an administrator for such a token"
@@ -48,6 +49,12 @@ class RoleRequired:
                 problem = ProblemError(403, "role_required", detail, role=needed.value)
                 return await problem.response()(scope, receive, send)
         return await self._app(scope, receive, send)
+
+
+def includes(role: Role, needed: Role) -> bool:
+    """Return whether a role allows what `needed` allows."""
+    roles = [*Role]
+    return roles.index(role) >= roles.index(needed)
 
 
 def needed_role(method: str, path: str) -> Role:

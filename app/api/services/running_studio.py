@@ -50,6 +50,7 @@ from app.store import (
     QuotaExceeded,
     QuotaStore,
     RecognitionStore,
+    SignInStore,
     SourceStore,
     StoreError,
     UploadStore,
@@ -98,7 +99,8 @@ class Studio:
     ----------
     settings
         Settings of the server.
-    clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice
+    clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice,
+    sign_ins
         The store.
     workers
         Starts processes that read clips.
@@ -132,6 +134,7 @@ class Studio:
     audit: AuditStore
     labelled: LabelledTakeStore
     practice: PracticeStore
+    sign_ins: SignInStore
     workers: Workers
     runner: JobRunner
     extractions: ExtractionQueue
@@ -319,9 +322,10 @@ async def _studio(
         languages=languages,
         sources=SourceStore(database),
         recognitions=RecognitionStore(database),
-        audit=AuditStore(database),
+        audit=AuditStore(database, settings.data_dir),
         labelled=LabelledTakeStore(database),
         practice=PracticeStore(database),
+        sign_ins=SignInStore(database),
         workers=workers,
         runner=runner,
         extractions=extractions,
@@ -349,6 +353,7 @@ async def _studio(
 def _prepare(studio: Studio, database: Database) -> None:
     """Migrate, remove leftovers of crashes, add the samples."""
     database.migrate()
+    studio.audit.import_journal()
     # A file that another server is writing to the same folder is no orphan.
     if swept := studio.clips.sweep(now() - ABANDONED if database.shared else now()):
         logger.info("removed %d orphaned files", swept)

@@ -28,7 +28,7 @@ def audit(
         raise OsgError(f"{settings.data_dir} holds no studio; give its folder with --data-dir")
     try:
         with closing(Database(settings.database)) as database:
-            entries = AuditStore(database).newest(limit, name=name)
+            entries = AuditStore(database, settings.data_dir).newest(limit, name=name)
     except StoreError as error:
         raise OsgError(str(error)) from error
     for entry in entries:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.administration.data_folder import DataDir, settings_of
+from app.cli.administration.data_folder import DataDir, audit_of, settings_of
 from app.cli.terminal import people
 from app.recognition.errors import OsgError
 
@@ -31,6 +31,8 @@ def backup(
             objects=objects,
             url=settings.database_url,
         )
+        with audit_of(settings) as note:
+            note("backup", str(file.absolute()))
     except StoreError as error:
         raise OsgError(str(error)) from error
     people.print(f"{clips} clips and all languages are in {file}", markup=False, highlight=False)
@@ -55,6 +57,8 @@ def restore(
             objects=objects,
             url=settings.database_url,
         )
+        with audit_of(settings) as note:
+            note("restore", str(file.absolute()))
     except StoreError as error:
         raise OsgError(str(error)) from error
     place = "the database of OSG_DATABASE_URL" if settings.database_url else settings.data_dir

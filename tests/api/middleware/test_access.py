@@ -1,5 +1,6 @@
 """Access: only by our host names, from our own pages, and with the token; websockets too."""
 
+import socket
 from collections.abc import Iterator
 
 import httpx
@@ -10,6 +11,7 @@ from websockets.sync.client import connect
 
 from app.api.middleware.access import COOKIE, MOST_GUESSES
 from app.settings import Settings
+from app.store import Role, TokenFile
 from tests.api.running import Running, assert_problem, client_of, running
 
 LANGUAGES = "/api/v1/languages"
@@ -48,6 +50,19 @@ def stranger(guarded: Running) -> Iterator[httpx.Client]:
         {"Host": "evil.example:8000"},
         {"Host": "127.0.0.1.evil.example"},
         {"Host": "localhost@evil.example"},
+        {"Host": "evil@127.0.0.1"},
+        {"Host": "127.0.0.1@evil.example"},
+        {"Host": "evil:secret@localhost:8000"},
+        {"Host": "@localhost"},
+        {"Host": "localhost."},
+        {"Host": "localhost/evil.example"},
+        {"Host": "localhost?"},
+        {"Host": "localhost:0"},
+        {"Host": "localhost:65536"},
+        {"Host": "localhost:80:80"},
+        {"Host": "localhost, evil.example"},
+        {"Host": "[::1%25lo]"},
+        {"Host": "[::1]evil"},
         {"Host": ""},
         {"Host": "[::1"},
         {"Origin": "http://evil.example"},
@@ -106,6 +121,52 @@ def test_scripts_our_pages_and_followed_links_are_let_in(
     assert client.get(LANGUAGES, headers=headers).status_code == 200
 
 
+@pytest.mark.parametrize("host", ["localhost", "LOCALHOST:8000", "127.0.0.1:65535", "[::1]:80"])
+def test_our_own_names_are_let_in(client: httpx.Client, host: str) -> None:
+    assert client.get(LANGUAGES, headers={"Host": host}).status_code == 200
+
+
+@pytest.mark.withstands(row="H16")
+def test_a_request_with_two_host_names_is_refused(server: Running) -> None:
+    request = (
+        f"GET {LANGUAGES} HTTP/1.1\r\nHost: localhost\r\nHost: evil.example\r\n"
+        "Connection: close\r\n\r\n"
+    )
+    status, _ = answer_to(server, request)
+    assert status in (400, 403)
+
+
+@pytest.mark.parametrize(
+    "lengths",
+    [
+        "Content-Length: 4\r\nTransfer-Encoding: chunked",
+        "Transfer-Encoding: chunked\r\nContent-Length: 15",
+        "Content-Length: 4\r\nContent-Length: 15",
+        "Content-Length: 4, 15",
+    ],
+)
+def test_a_body_with_two_lengths_is_refused_and_the_connection_closed(
+    server: Running, lengths: str
+) -> None:
+    request = (
+        f"POST {LANGUAGES} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        f'{lengths}\r\n\r\nf\r\n{{"name": "twice"}}\r\n0\r\n\r\n'
+        f"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
+    )
+    status, answer = answer_to(server, request)
+    assert status == 400
+    assert "connection: close" in answer.lower()
+    assert answer.count("HTTP/1.1") == 1
+
+
+def answer_to(server: Running, request: str) -> tuple[int, str]:
+    """Send bytes, and return the status and all that comes until the connection is closed."""
+    with socket.create_connection(("127.0.0.1", server.port), timeout=60) as connection:
+        connection.sendall(request.encode())
+        answer = b"".join(iter(lambda: connection.recv(4096), b"")).decode()
+    return int(answer.split()[1]), answer
+
+
 def test_our_own_page_may_change_things(client: httpx.Client, server: Running) -> None:
     headers = {"Origin": server.address, "Sec-Fetch-Site": "same-origin"}
     assert client.post(LANGUAGES, json={"name": "ours"}, headers=headers).status_code == 201
@@ -119,6 +180,19 @@ def test_more_host_names_can_be_allowed(settings: Settings) -> None:
         assert client.get(LANGUAGES, headers={"Host": "dive-box.local:80"}).status_code == 200
         answer = client.get(LANGUAGES, headers={"Host": "dive-box.example"})
         assert_problem(answer, 403, "foreign_origin")
+
+
+@pytest.mark.parametrize("path", ["/viser/x", "/api/v1/live", "/anything"])
+@pytest.mark.withstands(row="H16")
+def test_websockets_under_a_host_name_with_a_user_are_refused(server: Running, path: str) -> None:
+    with socket.create_connection(("127.0.0.1", server.port)) as connection:
+        handshake = (
+            f"GET {path} HTTP/1.1\r\nHost: evil@127.0.0.1:{server.port}\r\nUpgrade: websocket\r\n"
+            "Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        connection.sendall(handshake.encode())
+        assert b"403" in connection.recv(4096).split(b"\r\n")[0]
 
 
 @pytest.mark.parametrize("path", ["/viser/x", "/anything"])
@@ -174,10 +248,30 @@ def test_guesses_are_slowed_and_who_is_let_in_stays_so(settings: Settings) -> No
         for number in range(MOST_GUESSES):
             wrong = {"Authorization": f"Bearer {number}"}
             assert_problem(guesser.get(LANGUAGES, headers=wrong), 401, "token_required")
-        refused = guesser.get(LANGUAGES, headers=bearer)
-        assert_problem(refused, 429, "too_many_guesses")
-        assert refused.headers["retry-after"] == "60"
+        for wrong in ({"headers": {"Authorization": "Bearer x"}}, {"params": {"token": "x"}}):
+            refused = guesser.get("/", **wrong)
+            assert_problem(refused, 429, "too_many_guesses")
+            assert refused.headers["retry-after"] == "60"
+        # Others may share the address.
+        assert guesser.get(LANGUAGES, headers=bearer).status_code == 200
+        assert guesser.get("/", params={"token": TOKEN}).status_code == 303
         assert guest.get(LANGUAGES).status_code == 200
+
+
+def test_a_token_that_a_person_made_up_cannot_be_guessed_from_a_list_of_words(
+    settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.api.middleware.access.MOST_OWN_GUESSES", 2 * MOST_GUESSES)
+    secret = settings.model_copy(update={"token": SecretStr(TOKEN)})
+    named = {"Authorization": f"Bearer {TokenFile(settings.tokens).add('Ada', Role.READ)}"}
+    own = {"Authorization": f"Bearer {TOKEN}"}
+    with running(secret) as server, client_of(server.address) as guesser:
+        for number in range(2 * MOST_GUESSES):
+            guesser.get(LANGUAGES, headers={"Authorization": f"Bearer {number}"})
+        refused = guesser.get(LANGUAGES, headers=own)
+        assert_problem(refused, 429, "too_many_guesses")
+        assert refused.headers["retry-after"] == "3600"
+        assert guesser.get(LANGUAGES, headers=named).status_code == 200
 
 
 def test_the_token_in_the_address_becomes_a_cookie_and_leaves_the_address(
@@ -191,6 +285,18 @@ def test_the_token_in_the_address_becomes_a_cookie_and_leaves_the_address(
     assert "SameSite=strict" in cookie
     assert TOKEN not in cookie
     assert stranger.get(LANGUAGES).status_code == 200
+
+
+@pytest.mark.parametrize("shown", [TOKEN, "wrong"])
+def test_a_token_leaves_the_address_also_of_who_is_signed_in(guarded: Running, shown: str) -> None:
+    with client_of(guarded.address) as guest:
+        guest.get("/", params={"token": TOKEN})
+        session = dict(guest.cookies)
+        answer = guest.get("/", params={"token": shown, "clip": "a b"})
+        assert answer.status_code == 303
+        assert answer.headers["location"] == "/?clip=a+b"
+        assert dict(guest.cookies) == session
+        assert guest.get(LANGUAGES).status_code == 200
 
 
 def test_the_redirect_stays_on_this_server(stranger: httpx.Client) -> None:

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
-from app.api.middleware.access import COOKIE
+from app.api.middleware.access import COOKIE, cookie_of
 from app.api.middleware.identities import identity_of
 from app.api.services.running_studio import CurrentStudio
 from app.store import Role
@@ -54,8 +54,10 @@ def get_session(request: Request, studio: CurrentStudio) -> SessionView:
 
 
 @router.delete("", status_code=204, responses=problem_responses())
-def end_session() -> Response:
-    """Log out: the browser forgets the cookie that keeps the token."""
+def end_session(request: Request, studio: CurrentStudio) -> Response:
+    """Log out: the session ends on all servers, and its open streams with it."""
+    if cookie := cookie_of(request.headers):
+        studio.sign_ins.end(cookie)
     response = Response(status_code=204)
     response.delete_cookie(COOKIE, httponly=True, samesite="strict")
     return response

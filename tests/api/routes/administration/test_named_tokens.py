@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
+import hmac
+import json
 import re
+import sqlite3
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +18,8 @@ import httpx
 import pytest
 from pydantic import SecretStr
 
-from app.api.middleware.access import SAFE_METHODS
-from app.api.middleware.roles import READING, needed_role
+from app.api.middleware.access import COOKIE
+from app.api.middleware.roles import READING, SAFE_METHODS, needed_role
 from app.server import create_app
 from app.settings import Settings
 from app.store import Role, TokenFile
@@ -105,6 +110,115 @@ def test_a_browser_signs_in_and_out(guarded: Running, tokens: TokenFile) -> None
         assert secret not in str(browser.cookies)
         assert browser.delete(f"{API}/session").status_code == 204
         assert_problem(browser.get(f"{API}/session"), 401, "token_required")
+
+
+def test_who_reads_tokens_and_database_can_compute_no_session(
+    guarded: Running, settings: Settings, tokens: TokenFile
+) -> None:
+    secret = tokens.add("Eve", Role.EDIT)
+    with client_of(guarded.address) as browser:
+        browser.get("/", params={"token": secret})
+        assert browser.get(f"{API}/session").status_code == 200
+    (entry,) = json.loads(settings.tokens.read_text())["tokens"]
+    with closing(sqlite3.connect(settings.data_dir / "studio.db")) as database:
+        (row,) = database.execute("SELECT id, proof FROM sign_in").fetchall()
+    known = [entry["sha256"], *row]
+    # The cookie of version 0.2 was made of the digest alone.
+    known += [
+        hmac.new(each.encode(), b"osg-studio session", hashlib.sha256).hexdigest() for each in known
+    ]
+    for cookie in known:
+        answer = httpx.get(f"{guarded.address}{API}/session", cookies={COOKIE: cookie})
+        assert_problem(answer, 401, "token_required")
+
+
+def test_a_new_token_of_the_settings_ends_the_sessions_of_the_former_one(
+    settings: Settings,
+) -> None:
+    own = settings.model_copy(update={"token": SecretStr(ADMIN)})
+    with running(own) as server, client_of(server.address) as browser:
+        browser.get("/", params={"token": ADMIN})
+        cookie = {COOKIE: browser.cookies[COOKIE]}
+    for token, status in ((ADMIN, 200), (f"another {ADMIN}", 401)):
+        with running(settings.model_copy(update={"token": SecretStr(token)})) as server:
+            answer = httpx.get(f"{server.address}{API}/session", cookies=cookie)
+            assert answer.status_code == status
+
+
+def test_a_session_is_of_a_token_and_not_of_a_name(guarded: Running, tokens: TokenFile) -> None:
+    secret = tokens.add("Eve", Role.ADMIN)
+    with client_of(guarded.address) as browser:
+        browser.get("/", params={"token": secret})
+        tokens.add("Eve", Role.READ)
+        assert_problem(browser.get(f"{API}/session"), 401, "token_required")
+
+
+def test_another_token_signs_in_in_place_of_the_former_one(
+    guarded: Running, tokens: TokenFile
+) -> None:
+    with client_of(guarded.address) as browser:
+        for name in ("Eve", "Flo"):
+            browser.get("/", params={"token": tokens.add(name, Role.READ)})
+            assert browser.get(f"{API}/session").json()["name"] == name
+
+
+@pytest.mark.parametrize("path", [LANGUAGES, "/openapi.json", "/metrics", "/", "/static/x"])
+def test_when_the_last_token_is_withdrawn_nobody_is_let_in(settings: Settings, path: str) -> None:
+    tokens = TokenFile(settings.tokens)
+    secret = tokens.add("Di", Role.ADMIN)
+    with running(settings) as server, client_with(server, secret) as former:
+        assert former.get(LANGUAGES).status_code == 200
+        tokens.remove("Di")
+        for client in (former, httpx.Client(base_url=server.address)):
+            refused = assert_problem(client.get(path), 401, "token_required")
+            assert "osg-studio tokens add" in str(refused["detail"])
+        assert httpx.post(f"{server.address}{LANGUAGES}", json={}).status_code == 401
+        assert httpx.get(f"{server.address}/healthz").status_code == 200
+        with client_with(server, tokens.add("Di", Role.ADMIN)) as client:
+            assert client.get(LANGUAGES).status_code == 200
+
+
+def test_a_list_that_is_lost_between_two_starts_lets_nobody_in(settings: Settings) -> None:
+    TokenFile(settings.tokens).add("Di", Role.ADMIN)
+    with running(settings) as server:
+        assert_problem(httpx.get(server.address + LANGUAGES), 401, "token_required")
+    settings.tokens.unlink()
+    with running(settings) as server:
+        assert_problem(httpx.get(server.address + LANGUAGES), 401, "token_required")
+        assert_problem(httpx.get(f"{server.address}{API}/audit"), 401, "token_required")
+    # The way back that the advice at the start names.
+    settings.tokens_seen.unlink()
+    with running(settings) as server:
+        assert httpx.get(server.address + LANGUAGES).status_code == 200
+
+
+def test_a_server_for_other_machines_needs_a_token_whatever_becomes_of_the_list(
+    settings: Settings,
+) -> None:
+    TokenFile(settings.tokens).add("Di", Role.ADMIN)
+    public = Settings(**settings.model_dump() | {"host": "0.0.0.0"})
+    settings.tokens.unlink()
+    with running(public) as server:
+        assert_problem(httpx.get(server.address + LANGUAGES), 401, "token_required")
+        settings.tokens_seen.unlink(missing_ok=True)
+        assert_problem(httpx.get(server.address + LANGUAGES), 401, "token_required")
+
+
+def test_strangers_are_not_told_where_the_list_is(guarded: Running, settings: Settings) -> None:
+    settings.tokens.write_text("{")
+    answer = httpx.get(guarded.address + LANGUAGES)
+    refused = assert_problem(answer, 503, "store_unavailable")
+    assert str(settings.data_dir) not in str(refused["detail"])
+
+
+def test_a_named_token_of_a_reserved_name_lets_nobody_in(
+    guarded: Running, settings: Settings, tokens: TokenFile
+) -> None:
+    secret = tokens.add("Eve", Role.EDIT)
+    content = settings.tokens.read_text()
+    settings.tokens.write_text(content.replace('"Eve"', '"Admin"'))
+    with client_with(guarded, secret) as client:
+        assert_problem(client.get(LANGUAGES), 401, "token_required")
 
 
 def test_without_tokens_everybody_administers(client: httpx.Client) -> None:

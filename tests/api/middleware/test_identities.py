@@ -1,0 +1,59 @@
+"""The start of a server: what it says about tokens that are missing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from pydantic import SecretStr
+
+from app.api.middleware.identities import check_tokens
+from app.settings import Settings
+from app.store import Role, StoreUnavailable, TokenFile
+
+
+@pytest.fixture
+def tokens(settings: Settings) -> TokenFile:
+    return TokenFile(settings.tokens, settings.tokens_seen)
+
+
+def test_a_server_on_this_machine_needs_no_tokens(settings: Settings) -> None:
+    assert check_tokens(settings) is None
+    assert not settings.tokens_seen.exists()
+
+
+@pytest.mark.parametrize("own", [None, "correct-horse-battery"])
+def test_a_named_file_that_is_absent_refuses_the_start(
+    settings: Settings, tmp_path: Path, own: str | None
+) -> None:
+    named = settings.model_copy(
+        update={
+            "tokens_file": tmp_path / "mnt" / "tokens.json",
+            "token": None if own is None else SecretStr(own),
+        }
+    )
+    with pytest.raises(StoreUnavailable, match=r"mnt/tokens.json, which does not exist.*mount"):
+        check_tokens(named)
+
+
+def test_an_empty_or_lost_list_is_said_with_the_way_out(
+    settings: Settings, tokens: TokenFile
+) -> None:
+    tokens.add("Ada", Role.EDIT)
+    assert check_tokens(settings) is None
+    tokens.remove("Ada")
+    for lose in (lambda: None, settings.tokens.unlink):
+        lose()
+        advice = check_tokens(settings) or ""
+        assert "nobody is let in" in advice
+        assert "osg-studio tokens add" in advice
+        assert str(settings.tokens_seen) in advice
+        assert "\n" not in advice
+    own = settings.model_copy(update={"token": SecretStr("correct-horse-battery")})
+    assert check_tokens(own) is None
+
+
+def test_a_damaged_list_is_said_too(settings: Settings, tokens: TokenFile) -> None:
+    tokens.add("Ada", Role.EDIT)
+    settings.tokens.write_text("{")
+    assert "cannot be read" in (check_tokens(settings) or "")
