@@ -13,6 +13,7 @@ import app.api
 from app.recognition import OsgError, errors
 
 MEANINGS = {
+    "bad_request": "the request states the length of its body twice",
     "check_cancelled": "the health check was cancelled by another request",
     "client_left": "the client closed the connection before it was answered",
     "clip_deleted": "the clip of this `Idempotency-Key` was deleted",
@@ -42,11 +43,11 @@ MEANINGS = {
     "server_stopping": "the server is shutting down",
     "service_unavailable": "no further viser workspace can be opened now",
     "storage_unavailable": "the server's storage cannot be read or written",
-    "store_unavailable": "the database cannot answer now",
+    "store_unavailable": "the database, the audit log or the list of tokens cannot be used now",
     "take_ambiguous": "the range holds several takes",
     "test_run_cancelled": "the run of the test set was cancelled by another request",
     "test_set_full": "the test set of the language holds as many takes as it may",
-    "token_required": "the token is missing or wrong",
+    "token_required": "the token is missing, wrong or withdrawn, or the session has ended",
     "too_large": "the body is above the limit for its kind",
     "quota_exceeded": "this name may keep no more clips, or bytes of them; 413 for a clip that is "
     "larger than the whole quota",

@@ -67,7 +67,7 @@ export interface components {
             time: string;
             /**
              * Name
-             * @description Of the token; empty where the server needs none
+             * @description Of the token; empty where the server needs none; `command line` of a command
              */
             name: string;
             /** Role */
@@ -77,16 +77,19 @@ export interface components {
              * @description Of the client, or as a trusted proxy says
              */
             address: string;
-            /** Method */
+            /**
+             * Method
+             * @description Of the request; or the command, such as `tokens add`
+             */
             method: string;
             /**
              * Path
-             * @description What was changed
+             * @description What was changed, or what the command was given
              */
             path: string;
             /**
              * Status
-             * @description What was answered
+             * @description What was answered; 0 of a command
              */
             status: number;
             /**

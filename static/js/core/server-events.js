@@ -46,6 +46,16 @@ export function followServer(handlers) {
 }
 
 /**
+ * Whether the session has ended, here or by a log-out elsewhere: it does not come back, and the
+ * server then shows the page to sign in.
+ */
+const isSignedOut = () =>
+  api.session.get().then(
+    () => false,
+    (error) => error.status === 401,
+  );
+
+/**
  * @param {Handlers} handlers
  * @param {() => void} [after]  what to do after a break, once the stream opens
  */
@@ -75,8 +85,11 @@ function listen(handlers, after) {
     update({ connected: false });
     // The browser reconnects by itself, but not after an HTTP error, such as a proxy's 502.
     if (stream.readyState === EventSource.CLOSED)
-      setTimeout(() => {
-        if (current === stream) listen(handlers, handlers.returned);
+      setTimeout(async () => {
+        const signedOut = current === stream && (await isSignedOut());
+        if (current !== stream) return;
+        if (signedOut) location.assign("/");
+        else listen(handlers, handlers.returned);
       }, RETRY);
   };
   stream.addEventListener("clips", (event) => handlers.clips(data(event).id));

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Browser, Route, expect
 
 from app.settings import Settings
@@ -65,6 +66,30 @@ def test_a_reader_signs_in_sees_why_nothing_can_be_changed_and_logs_out(
         page.get_by_role("button", name="Log out").click()
         expect(page.get_by_label("Token")).to_be_visible()
         page.context.close()
+
+
+@pytest.mark.parametrize("end", ["log out in another tab", "withdraw the token"])
+def test_a_page_whose_session_has_ended_asks_to_sign_in(
+    browser: Browser, tmp_path: Path, end: str
+) -> None:
+    settings = Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "none")
+    tokens = TokenFile(settings.tokens)
+    token = tokens.add("Ada", Role.EDIT)
+    with running(settings) as server:
+        context = browser.new_context(base_url=server.address)
+        context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+        context.route("**/viser/**", lambda route: route.fulfill(body=""))
+        page = context.new_page()
+        page.goto(f"/?token={token}")
+        expect(page.locator("#connection")).to_have_text("Connected")
+        if end == "withdraw the token":
+            tokens.remove("Ada")
+        else:
+            other = context.new_page()
+            other.goto("/")
+            other.get_by_role("button", name="Log out").click()
+        expect(page.get_by_label("Token")).to_be_visible(timeout=30_000)
+        context.close()
 
 
 def test_a_reader_is_told_who_can_open_the_example(browser: Browser, tmp_path: Path) -> None:

@@ -27,12 +27,14 @@ class AuditView(BaseModel):
 
     id: int
     time: datetime
-    name: str = Field(description="Of the token; empty where the server needs none")
+    name: str = Field(
+        description="Of the token; empty where the server needs none; `command line` of a command"
+    )
     role: str
     address: str = Field(description="Of the client, or as a trusted proxy says")
-    method: str
-    path: str = Field(description="What was changed")
-    status: int = Field(description="What was answered")
+    method: str = Field(description="Of the request; or the command, such as `tokens add`")
+    path: str = Field(description="What was changed, or what the command was given")
+    status: int = Field(description="What was answered; 0 of a command")
     request_id: str = Field(description="The same as in the log")
 
 
