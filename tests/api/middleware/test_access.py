@@ -150,7 +150,7 @@ def test_a_body_with_two_lengths_is_refused_and_the_connection_closed(
 ) -> None:
     request = (
         f"POST {LANGUAGES} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-        f'{lengths}\r\n\r\nf\r\n{{"name": "twice"}}\r\n0\r\n\r\n'
+        f'{lengths}\r\n\r\n11\r\n{{"name": "twice"}}\r\n0\r\n\r\n'
         f"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n"
     )
     status, answer = answer_to(server, request)
@@ -248,8 +248,8 @@ def test_guesses_are_slowed_and_who_is_let_in_stays_so(settings: Settings) -> No
         for number in range(MOST_GUESSES):
             wrong = {"Authorization": f"Bearer {number}"}
             assert_problem(guesser.get(LANGUAGES, headers=wrong), 401, "token_required")
-        for wrong in ({"headers": {"Authorization": "Bearer x"}}, {"params": {"token": "x"}}):
-            refused = guesser.get("/", **wrong)
+        for headers, params in (({"Authorization": "Bearer x"}, {}), ({}, {"token": "x"})):
+            refused = guesser.get("/", headers=headers, params=params)
             assert_problem(refused, 429, "too_many_guesses")
             assert refused.headers["retry-after"] == "60"
         # Others may share the address.

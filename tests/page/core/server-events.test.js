@@ -25,13 +25,19 @@ globalThis.document = page;
 const { followServer } = await import("../../../static/js/core/server-events.js");
 const { state, update } = await import("../../../static/js/core/state.js");
 
+let status = 502;
+globalThis.fetch = async () => new Response("{}", { status });
+
+/** Wait until all requests are answered. */
+const answered = () => new Promise((resolve) => setImmediate(resolve));
+
 /** The page is looked at, or no more. */
 function look(hidden) {
   page.hidden = hidden;
   page.dispatchEvent(new Event("visibilitychange"));
 }
 
-test("a page that nobody looks at gives its connection back, and catches up once it is seen", (t) => {
+test("a page that nobody looks at gives its connection back, and catches up once it is seen", async (t) => {
   t.mock.timers.enable({ apis: ["setTimeout"] });
   const heard = [];
   const names = ["opened", "returned", "seen", "clips", "languages", "jobs"];
@@ -74,10 +80,26 @@ test("a page that nobody looks at gives its connection back, and catches up once
   second.onerror();
   assert.equal(state.connected, false);
   t.mock.timers.tick(5_000);
+  await answered();
   Stream.all[2].onopen();
   assert.deepEqual(
     heard.map(([name]) => name),
     ["opened", "returned"],
   );
   assert.equal(state.connected, true);
+});
+
+test("a page whose session has ended goes to the page to sign in, and asks no more", async (t) => {
+  t.mock.timers.enable({ apis: ["setTimeout"] });
+  const opened = [];
+  globalThis.location.assign = (address) => opened.push(address);
+  const stream = Stream.all.at(-1);
+  const { length } = Stream.all;
+  status = 401;
+  stream.readyState = Stream.CLOSED;
+  stream.onerror();
+  t.mock.timers.tick(5_000);
+  await answered();
+  assert.deepEqual(opened, ["/"]);
+  assert.equal(Stream.all.length, length);
 });
