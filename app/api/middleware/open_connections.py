@@ -19,7 +19,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.api.http.problems import ProblemError
 from app.api.http.websockets import POLICY_VIOLATION
 from app.api.middleware.identities import ANYBODY, Identities, Identity
-from app.api.middleware.roles import includes, needed_role
+from app.api.middleware.roles import SAFE_METHODS, includes, needed_role
 from app.store import Role, SignInStore, StoreError
 from app.store.tokens import TokensUnavailable
 
@@ -135,7 +135,7 @@ class _Connection:
         self._scope, self._receive, self._send = scope, receive, send
         self._task = asyncio.current_task()
         self._receiver: asyncio.Task[Any] | None = None
-        self._interrupted = self._cut = False
+        self._interrupted = self._cut = self._refused = False
         self._complete = self._begun = self._closed = False
         self._ended_at: float | None = None
 
@@ -154,7 +154,7 @@ class _Connection:
                 await self._send({"type": "websocket.close", "code": code, "reason": reason})
 
     def end(self) -> None:
-        """End it: refuse the rest of its body, or cut off its answer.
+        """End it: refuse the rest of its body, cut off its answer, or refuse one that is not begun.
 
         A change whose body has arrived is made, because it was sent while it was allowed; so it is
         answered, and is in the audit log.
@@ -198,16 +198,20 @@ class _Connection:
             if self._ended_at is not None:
                 return  # It is closed when its route has ended.
             self._closed = self._closed or message["type"] == "websocket.close"
-        elif message["type"] == "http.response.start":
+        elif message["type"] == "http.response.start" and not self._begun:
+            if self._ended_at is not None and self._scope["method"] in SAFE_METHODS:
+                self._refused = True
+                await withdrawn().response()(self._scope, self._receive, self._send)
             self._begun = True
-        await self._send(message)
+        if not self._refused:
+            await self._send(message)
 
 
 def withdrawn() -> ProblemError:
-    """Return the problem of a request whose token was withdrawn before its body had arrived."""
+    """Return the problem of a request whose token was withdrawn before it was answered."""
     detail = (
-        "the token was withdrawn or may do less now, or its session has ended, so the rest of this "
-        "was refused; sign in again"
+        "the token was withdrawn or may do less now, or its session has ended, so this was "
+        "refused; sign in again"
     )
     # The rest of the body stays unread, so the connection cannot be reused.
     headers = {"WWW-Authenticate": "Bearer", "Connection": "close"}

@@ -9,8 +9,11 @@ import socket
 import sqlite3
 from collections import deque
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing, suppress
 from pathlib import Path
+from threading import Event
+from typing import Any
 
 import httpx
 import pytest
@@ -271,6 +274,36 @@ def test_an_upload_is_refused_in_mid_body_with_the_token_or_the_role(
     # What arrived is kept for who may go on.
     with client_of(guarded.address, headers=bearer(OWN) | TUS) as admin:
         assert admin.head(place).headers["upload-offset"] == "1000"
+
+
+def test_what_was_computed_meanwhile_is_not_shown(
+    guarded: Running, tokens: TokenFile, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    secret = tokens.add("Ada", Role.READ)
+    listing, withdrawn = Event(), Event()
+    entries = guarded.studio.languages.all
+
+    def list_slowly(*given: Any) -> Any:
+        listing.set()
+        assert withdrawn.wait(60)
+        return entries(*given)
+
+    monkeypatch.setattr(guarded.studio.languages, "all", list_slowly)
+    with (
+        ThreadPoolExecutor(1) as asking,
+        httpx.stream(
+            "GET", f"{guarded.address}{API}/events", headers=bearer(secret), timeout=60
+        ) as stream,
+    ):
+        lines = listen(stream)
+        answer = asking.submit(
+            httpx.get, f"{guarded.address}{API}/languages", headers=bearer(secret), timeout=60
+        )
+        assert listing.wait(60)
+        tokens.remove("Ada")
+        read_to_the_end(lines)
+        withdrawn.set()
+        assert_problem(answer.result(), 401, "token_required")
 
 
 def test_who_came_before_there_were_tokens_is_shut_out_too(settings: Settings) -> None:
