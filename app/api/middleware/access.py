@@ -122,7 +122,7 @@ class SameOrigin:
                 "printed at start, or add the name to OSG_ALLOWED_HOSTS"
             )
         origin = headers.get("origin")
-        if origin is not None and urlsplit(origin).netloc.lower() != host.lower():
+        if origin is not None and _host_of(origin) != host.lower():
             return f"the page {origin[:80]!r} is another site; only this server's pages may do this"
         site = headers.get("sec-fetch-site", "none")
         if site in ("none", "same-origin"):
@@ -138,6 +138,14 @@ class SameOrigin:
             return False
         name = read[1].strip("[]").lower()
         return self._any_host or name in self._hosts or is_loopback(name)
+
+
+def _host_of(origin: str) -> str:
+    """Return host and port of an origin; empty if it is malformed, as only a program sends it."""
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return ""
 
 
 def _has_two_lengths(scope: Scope) -> bool:

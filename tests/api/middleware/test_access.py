@@ -67,6 +67,7 @@ def stranger(guarded: Running) -> Iterator[httpx.Client]:
         {"Host": "[::1"},
         {"Origin": "http://evil.example"},
         {"Origin": "null"},
+        {"Origin": "http://[::1"},
         {"Origin": "http://127.0.0.1:1"},
         {"Sec-Fetch-Site": "cross-site"},
         {"Sec-Fetch-Site": "same-site"},

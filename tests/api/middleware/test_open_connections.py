@@ -168,7 +168,6 @@ def test_streams_outlast_a_database_that_does_not_answer(
             lines = listen(stream)
             with closing(sqlite3.connect(settings.data_dir / "studio.db")) as database:
                 database.execute("ALTER TABLE sign_in RENAME TO away")
-                assert browser.get(f"{API}/session").status_code == 200  # known a moment ago
                 answer: dict[str, object] = {}
                 while answer.get("status") != 503:
                     answer = browser.get(f"{API}/session").json()
