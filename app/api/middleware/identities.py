@@ -162,7 +162,10 @@ def check_tokens(settings: Settings) -> str | None:
         return str(error)
     way = "choose one with OSG_TOKEN"
     if not settings.public and named is None:
-        way = f"let in everybody on this machine: remove it and {settings.tokens_seen}"
+        way = (
+            f"to let in everybody on this machine, remove it and {settings.tokens_seen}, and start "
+            "again"
+        )
     return (
         f"nobody is let in, because there are no tokens in {settings.tokens}; add one (osg-studio "
         f"tokens add), or {way}"
