@@ -22,6 +22,7 @@ from typing import Annotated, Final, Literal
 from filelock import FileLock
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
+from app.recognition.text.look_alikes import skeleton
 from app.store.atomic_files import publish, sync_directory
 from app.store.errors import NotFound, StoreUnavailable
 from app.store.models import now
@@ -41,22 +42,6 @@ COMMAND_LINE: Final = "command line"
 NAME: Final = r"^[\w .@-]+$"
 
 _BEGINNING: Final = datetime(1970, 1, 1, tzinfo=UTC)
-
-_LOOK_ALIKES: Final = {
-    ord(other): letter
-    for letter, others in {
-        "a": "\u0251\u0430\u03b1",
-        "c": "\u0441\u03f2",
-        "d": "\u0501",
-        "e": "\u0435",
-        "i": "1l\u0131\u0269\u03b9\u0456\u04cf",
-        "m": "\u043c",
-        "n": "\u03b7\u043f\u0578\u057c",
-        "o": "0\u043e\u03bf\u0585",
-    }.items()
-    for other in others
-}
-"""Letters and digits that look like a letter of the reserved names, in other alphabets too."""
 
 logger = logging.getLogger(__name__)
 
@@ -282,9 +267,9 @@ def is_reserved(name: str) -> bool:
 
 def _shape(name: str) -> str:
     """Return a name without what the eye overlooks: case, accents, gaps, alphabets."""
-    plain = unicodedata.normalize("NFKD", unicodedata.normalize("NFKD", name).casefold())
-    letters = "".join(each for each in plain if each.isalnum())
-    return letters.translate(_LOOK_ALIKES).replace("rn", "m")
+    seen = skeleton(unicodedata.normalize("NFKD", name).casefold()).casefold()
+    # A 1 has the skeleton of an l, and stands for an i as well.
+    return "".join(each for each in seen.replace("i", "l") if each.isalnum())
 
 
 def _write_privately(path: Path, content: str) -> None:

@@ -114,8 +114,9 @@ async def inspect(
 
 
 async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> ClipAccepted:
-    """Store an inspected file as its sender's `clip`, queue its job, and publish the change.
+    """Store an inspected file as `clip`, queue its job, and publish the change.
 
+    The clip is its sender's, unless it names an owner: whoever began a resumable upload.
     The job of a dive recording whose topic is not chosen yet is stored as failed, for that reason.
 
     Raises
@@ -125,7 +126,7 @@ async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> 
 
     """
     quota = quota_of(request)
-    clip.owner = quota.owner
+    clip.owner = clip.owner or quota.owner
     add = functools.partial(studio.clips.add, clip, partial, client_of(request), quota)
     added = await run_in_threadpool(studio.keep_within, quota, add)
     if not added.clip.needs_topic:

@@ -17,7 +17,8 @@ from app.recognition import Language
 from app.settings import Settings
 from app.store import NotFound, StoreUnavailable
 from app.store.models import now
-from app.ui.slate.layout import Page, lay_out
+from app.ui.slate.layout import lay_out
+from app.ui.slate.primitives import Page
 from tests.api.running import PATIENCE_SECONDS, Running, client_of, running, until
 from tests.postgres import Cluster
 from tests.store.conftest import add_clip

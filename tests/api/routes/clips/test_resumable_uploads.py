@@ -94,6 +94,9 @@ def test_an_upload_is_its_owners_alone(
         assert [each.clip.owner for each in server.studio.clips.all()] == ["Ada"]
         given_up = begun(ada, 10)
         assert root.delete(given_up, headers=TUS).status_code == 204
+        # An administrator may complete it for her.
+        assert sent(root, begun(ada, len(content)), 0, content).status_code == 204
+        assert [each.clip.owner for each in server.studio.clips.all()] == ["Ada", "Ada"]
 
 
 def broken_off(server: Running, place: str, content: bytes, length: int) -> None:
