@@ -2,8 +2,9 @@
 
 A misrecognised gesture must not move a robot. So a command is given when the diver repeats its
 gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. A cancel
-and an emergency are never ignored, however old they are, because stopping is the safe direction.
-All else is taken in the order of arrival, while it is fresh. In a language with phrases the whole
+is never ignored, however old it is, because stopping is the safe direction. An emergency may be
+older than other gestures, but must be sure, stamped, and of the language of the commands. All else
+is taken in the order of arrival, while it is fresh. In a language with phrases the whole
 message is repeated and executed, not its single gestures.
 """
 
@@ -22,6 +23,13 @@ STALE_SECONDS = 3.0
 """Longest delay from the picture that ended a gesture to its arrival. Pose estimation on a slow
 robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
 
+EMERGENCY_AGE_SECONDS = 10.0
+"""Largest age of an emergency: a slow robot's queue of pictures is shorter, a recording that is
+played again is older."""
+
+EMERGENCY_CONFIDENCE = 0.2
+"""Lowest confidence of an emergency; the weakest recognitions of the sample clips have 0.3."""
+
 MOST_BODIES = 32
 """Number of bodies whose last event is kept: more than the divers near one robot."""
 
@@ -38,14 +46,18 @@ class Rules:
         Longest time from a gesture to the end of its repetition. For a message: longest time to
         each next gesture of its repetition, and from the last one to its end.
     stale_seconds
-        Largest difference between a gesture's stamp and the current time, in either direction;
-        labels in `cancel` and `emergency` may be older.
+        Largest difference between a gesture's stamp and the current time, in either direction; for
+        labels in `cancel` there is no limit.
     least_confidence
         Lowest confidence that counts: a gesture below it is rejected, a message not understood.
     cancel
         Labels that cancel a pending gesture or message. Their own commands are not given.
     emergency
         Labels whose commands are given at once.
+    emergency_seconds
+        The same as `stale_seconds`, of an emergency.
+    emergency_confidence
+        The same as `least_confidence`, of an emergency; the larger of the two counts.
 
     Raises
     ------
@@ -60,15 +72,18 @@ class Rules:
     least_confidence: float = 0.0
     cancel: frozenset[str] = frozenset()
     emergency: frozenset[str] = frozenset()
+    emergency_seconds: float = EMERGENCY_AGE_SECONDS
+    emergency_confidence: float = EMERGENCY_CONFIDENCE
 
     def __post_init__(self) -> None:
         """Validate the values; a wrong one would give commands at the wrong moment."""
-        for name in ("confirm_seconds", "stale_seconds"):
+        for name in ("confirm_seconds", "stale_seconds", "emergency_seconds"):
             seconds = getattr(self, name)
             if not (math.isfinite(seconds) and seconds > 0):
                 raise ValueError(f"{name} is {seconds}; give seconds above 0")
-        if not 0 <= self.least_confidence <= 1:
-            raise ValueError(f"least_confidence is {self.least_confidence}; give 0 to 1")
+        for name in ("least_confidence", "emergency_confidence"):
+            if not 0 <= (share := getattr(self, name)) <= 1:
+                raise ValueError(f"{name} is {share}; give 0 to 1")
         if both := sorted(self.cancel & self.emergency):
             raise ValueError(
                 f"{both} cancel and are emergencies as well; take them out of one of the two lists"
@@ -184,6 +199,8 @@ class Decision:
         Whether the command needed no repetition because its label is an emergency.
     reason
         One line for the diver's display and the log.
+    cancels
+        Whether the diver takes back what was asked before, also a command in progress.
 
     """
 
@@ -191,6 +208,7 @@ class Decision:
     command: str | None = None
     label: str | None = None
     emergency: bool = False
+    cancels: bool = False
 
 
 @dataclass(frozen=True)
@@ -288,12 +306,19 @@ class CommandDialogue:
 
         """
         self._follow_clock(now)
+        least = self.rules.least_confidence
+        if is_emergency := gesture.label in self.rules.emergency:
+            least = max(least, self.rules.emergency_confidence)
         # `>=` is False for NaN, so a confidence of NaN is too low.
-        sure = gesture.confidence >= self.rules.least_confidence
-        safe = sure and gesture.label in self.rules.cancel | self.rules.emergency
+        sure = gesture.confidence >= least
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
-        refused = None if safe else self._find_refusal(gesture, now, before, is_newer=is_newer)
+        if sure and gesture.label in self.rules.cancel:
+            refused = None
+        elif sure and is_emergency:
+            refused = self._find_foreign(gesture, now, self.rules.emergency_seconds)
+        else:
+            refused = self._find_refusal(gesture, now, before, is_newer=is_newer)
         if refused is not None:
             return Decision(refused)
         label = gesture.label if sure else None
@@ -383,7 +408,7 @@ class CommandDialogue:
         """Store the last event of a body."""
         last = shown.pop(input_.body_id, Shown())
         # A stamp in the future must not make later events count as old.
-        stamp = min(input_.stamp, now)
+        stamp = now if math.isnan(input_.stamp) else min(input_.stamp, now)
         middle = (input_.began + stamp) / 2 if understood else last.middle
         shown[input_.body_id] = Shown(
             max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
@@ -400,16 +425,26 @@ class CommandDialogue:
         is_newer: bool,
     ) -> str | None:
         """Return why a gesture or message is ignored; None where it is not."""
-        what = "message" if isinstance(input_, RecognizedPhrase) else "gesture"
-        age = now - input_.stamp
-        if not abs(age) <= self.rules.stale_seconds:
-            return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"
+        what = _name(input_)
+        if refused := self._find_foreign(input_, now, self.rules.stale_seconds):
+            return refused
         if not is_newer:
             return f"ignored: the {what} is not newer than the one before"
-        if input_.language_id != self.table.language_id:
-            return f"ignored: the {what} is of another language than the commands"
         if input_.began < before.middle:
             return f"ignored: the {what} is the one before, recognised once more"
+        return None
+
+    def _find_foreign(
+        self, input_: RecognizedGesture | RecognizedPhrase, now: float, oldest: float
+    ) -> str | None:
+        """Return why a gesture or message is not of here and now; None where it is."""
+        what, age = _name(input_), now - input_.stamp
+        if math.isnan(input_.stamp):
+            return f"ignored: the {what} has no stamp"
+        if not abs(age) <= oldest:
+            return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"
+        if input_.language_id != self.table.language_id:
+            return f"ignored: the {what} is of another language than the commands"
         return None
 
     def _is_repetition(
@@ -431,7 +466,7 @@ class CommandDialogue:
             return Decision(f"{label!r} counts within a phrase only", label=label)
         if label in self.rules.cancel:
             what = f"{pending.label!r} is cancelled" if pending else "nothing to cancel"
-            return Decision(what, label=label)
+            return Decision(what, label=label, cancels=True)
         if command is None:
             return Decision(f"{label!r} has no command", label=label)
         if label in self.rules.emergency:
@@ -454,3 +489,7 @@ class CommandDialogue:
         deadline = phrase.stamp + self.rules.confirm_seconds
         self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
         return Decision(f"repeat the message to confirm: {phrase.text}", label=phrase.text)
+
+
+def _name(input_: RecognizedGesture | RecognizedPhrase) -> str:
+    return "message" if isinstance(input_, RecognizedPhrase) else "gesture"

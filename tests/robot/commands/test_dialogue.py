@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given
@@ -23,6 +24,7 @@ RULES = Rules(
     least_confidence=0.5,
     cancel=frozenset({"cross"}),
     emergency=frozenset({"line"}),
+    emergency_seconds=10.0,
 )
 LABELS = [*TABLE.commands, "cross", "wave", None]
 
@@ -108,13 +110,39 @@ def test_a_gesture_of_another_language_is_ignored() -> None:
 
 @pytest.mark.parametrize("now", [4.1, 3600.0, -3600.0])
 @pytest.mark.parametrize("language", ["language", "older"])
-def test_an_emergency_and_a_cancel_pass_however_old_they_are(now: float, language: str) -> None:
+def test_a_cancel_passes_however_old_it_is(now: float, language: str) -> None:
     made = dialogue()
-    assert made.decide(shown("line", 0, language=language), now).command == "surface"
-    made.decide(shown("circle", 5000), 5000)
-    decision = made.decide(shown("cross", 1, language=language), 5000.0)
+    made.decide(shown("circle", now), now)
+    decision = made.decide(shown("cross", 0, language=language), now)
     assert "'circle' is cancelled" in decision.reason
+    assert decision.cancels
     assert made.pending is None
+
+
+@pytest.mark.parametrize(
+    ("age", "emergency"),
+    [
+        (9.9, {}),
+        (10.1, {"refused": "stale"}),
+        (24 * 3600.0, {"refused": "stale"}),
+        (-3600.0, {"refused": "another clock"}),
+        (0.0, {"language": "older", "refused": "of another language"}),
+        (0.0, {"stamp": math.nan, "refused": "has no stamp"}),
+        (0.0, {"confidence": 0.0, "refused": "not understood"}),
+        (0.0, {"confidence": 0.19, "refused": "not understood"}),
+        (0.0, {"confidence": 0.2}),
+    ],
+)
+def test_an_emergency_is_recent_sure_and_of_the_language(
+    age: float, emergency: dict[str, Any]
+) -> None:
+    refused = emergency.pop("refused", None)
+    stamp = emergency.pop("stamp", 5000.0)
+    made = dialogue(Rules(emergency=frozenset({"line"})))
+    decision = made.decide(shown("line", stamp, **emergency), 5000.0 + age)
+    assert decision.command == (None if refused else "surface")
+    assert (refused or "emergency") in decision.reason
+    assert made.decide(shown("circle", 9000), 9000).reason.startswith("repeat")
 
 
 def test_a_clock_that_is_set_back_changes_no_order() -> None:
@@ -192,6 +220,8 @@ def test_what_is_not_repeated_in_time_is_given_up_and_said_once() -> None:
         ({"confirm_seconds": 0.0}, "confirm_seconds is 0.0"),
         ({"stale_seconds": math.nan}, "stale_seconds is nan"),
         ({"least_confidence": 1.5}, "least_confidence is 1.5"),
+        ({"emergency_seconds": 0.0}, "emergency_seconds is 0.0"),
+        ({"emergency_confidence": math.nan}, "emergency_confidence is nan"),
         ({"cancel": frozenset({"line"}), "emergency": frozenset({"line"})}, "'line'"),
     ],
 )
@@ -226,8 +256,9 @@ def test_no_command_comes_of_a_rejected_stale_unsure_or_foreign_gesture(
         if decision.command is not None:
             assert gesture.label is not None
             assert gesture.confidence >= RULES.least_confidence
-            assert decision.emergency or abs(late) <= RULES.stale_seconds
-            assert decision.emergency or gesture.language_id == TABLE.language_id
+            limit = RULES.emergency_seconds if decision.emergency else RULES.stale_seconds
+            assert abs(late) <= limit
+            assert gesture.language_id == TABLE.language_id
             assert decision.command == TABLE.commands[gesture.label]
 
 

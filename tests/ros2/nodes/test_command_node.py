@@ -105,13 +105,25 @@ def test_nothing_comes_of_what_is_rejected_or_unsure(bench: Bench, other: dict[s
     assert [command.label for command in robot.commands] == ["circle"]
 
 
-@pytest.mark.parametrize("other", [{"seconds_ago": STALE}, {"language_id": "older"}])
-def test_only_an_emergency_may_be_stale_or_of_another_language(
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"seconds_ago": STALE},
+        {"seconds_ago": 86_400.0},
+        {"language_id": "older"},
+        {"language_id": "older", "header": Header()},
+        {"header": Header()},
+        {"confidence": 0.0},
+    ],
+)
+def test_an_emergency_of_a_bag_of_another_language_or_unsure_moves_nothing(
     bench: Bench, other: dict[str, Any]
 ) -> None:
     robot = Robot(bench, emergency=["line"])
-    assert robot.show("circle", **other).startswith("ignored")
-    assert robot.show("line", **other).startswith("emergency")
+    assert robot.show("line", **other).startswith(("ignored", "not understood"))
+    assert robot.show("circle").startswith("repeat")
+    assert robot.commands == []
+    assert robot.show("line").startswith("emergency")
     bench.wait(lambda: bool(robot.commands), "command")
     assert [command.label for command in robot.commands] == ["line"]
 

@@ -6,6 +6,7 @@ Studio, so it runs wherever ROS 2 does.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -15,6 +16,8 @@ from std_msgs.msg import Header
 
 from osg_ros.commands.dialogue import (
     CONFIRM_SECONDS,
+    EMERGENCY_AGE_SECONDS,
+    EMERGENCY_CONFIDENCE,
     STALE_SECONDS,
     CommandDialogue,
     CommandTable,
@@ -61,6 +64,21 @@ CANCEL: Final = Setting(
 )
 EMERGENCY: Final = Setting("emergency", [""], "Labels whose commands need no repetition.")
 
+EMERGENCY_AFTER: Final = Setting(
+    "emergency_seconds",
+    EMERGENCY_AGE_SECONDS,
+    "As stale_seconds, of an emergency.",
+    0.1,
+    60.0,
+)
+EMERGENCY_LEAST: Final = Setting(
+    "emergency_confidence",
+    EMERGENCY_CONFIDENCE,
+    "As least_confidence, of an emergency; the larger one counts.",
+    0.0,
+    1.0,
+)
+
 CHECK_SECONDS: Final = 0.2
 """Seconds between two checks of the deadline; a diver notices a delay of 0.5 s on the display."""
 
@@ -77,6 +95,8 @@ class CommandNode(ManagedNode):
             LEAST_CONFIDENCE,
             CANCEL,
             EMERGENCY,
+            EMERGENCY_AFTER,
+            EMERGENCY_LEAST,
         )
         # Divers show no gesture most of the time, so silence is not a fault.
         super().__init__("command_node", settings, "recognition", steady=False, **options)
@@ -101,6 +121,8 @@ class CommandNode(ManagedNode):
             least_confidence=self.settings["least_confidence"],
             cancel=frozenset(self.settings["cancel"]),
             emergency=frozenset(self.settings["emergency"]),
+            emergency_seconds=self.settings["emergency_seconds"],
+            emergency_confidence=self.settings["emergency_confidence"],
         )
         path = self.settings["language"]
         self._table = read_commands(path) if path else CommandTable()
@@ -155,7 +177,7 @@ class CommandNode(ManagedNode):
         gesture = RecognizedGesture(
             label,
             recognition.confidence,
-            stamp / NANOSECONDS,
+            to_seconds(stamp),
             recognition.language_id,
             # Publishers of other projects may leave it out.
             start=start / NANOSECONDS if start else None,
@@ -172,7 +194,7 @@ class CommandNode(ManagedNode):
             text=phrase.text,
             confidence=phrase.confidence,
             start=to_nanoseconds(phrase.start) / NANOSECONDS,
-            stamp=to_nanoseconds(phrase.header.stamp) / NANOSECONDS,
+            stamp=to_seconds(to_nanoseconds(phrase.header.stamp)),
             label=phrase.label or None,
             language_id=phrase.language_id,
             body_id=phrase.body_id,
@@ -213,6 +235,11 @@ class CommandNode(ManagedNode):
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
+
+
+def to_seconds(nanoseconds: int) -> float:
+    """Convert a stamp to seconds; NaN for a message without one."""
+    return nanoseconds / NANOSECONDS if nanoseconds else math.nan
 
 
 def main() -> None:
