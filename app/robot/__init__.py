@@ -8,11 +8,14 @@ landmarks into takes and recognitions.
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
+    FrameRateChanged,
     FramesDropped,
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
+    OutputFailed,
     PhraseHeard,
+    RecognitionReady,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -21,6 +24,7 @@ from app.robot.events import (
     StateChanged,
     TakeRecognized,
     TakeRejected,
+    VehicleReported,
 )
 from app.robot.listeners.factory import create_listener
 from app.robot.listeners.phrase_listener import PhraseListener
@@ -34,6 +38,7 @@ __all__ = [
     "ActiveLanguage",
     "Event",
     "Frame",
+    "FrameRateChanged",
     "FramesDropped",
     "Heartbeat",
     "LandmarkListener",
@@ -42,8 +47,10 @@ __all__ = [
     "Listener",
     "NoFrame",
     "Notice",
+    "OutputFailed",
     "PhraseHeard",
     "PhraseListener",
+    "RecognitionReady",
     "Runtime",
     "Source",
     "SourceEnded",
@@ -55,6 +62,7 @@ __all__ = [
     "StateChanged",
     "TakeRecognized",
     "TakeRejected",
+    "VehicleReported",
     "create_listener",
     "open_source",
 ]

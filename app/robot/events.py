@@ -93,7 +93,7 @@ class SourceRestored:
 
 @dataclass(frozen=True)
 class SourceEnded:
-    """The recording is over, or the robot was stopped; the last line."""
+    """The recording is over, or the robot was stopped; after it only a vehicle may report."""
 
     time: Seconds
     frames: Annotated[Count, Field(description="Looked at.")]
@@ -125,6 +125,50 @@ class Heartbeat:
     frames: Annotated[Count, Field(description="Looked at since the beginning.")]
     dropped: Annotated[Count, Field(description="Left out since the beginning.")]
     lost: Annotated[bool, Field(description="Whether the source gives no frames at present.")]
+
+
+@dataclass(frozen=True)
+class RecognitionReady:
+    """The models have processed their first frame: from now on gestures are seen."""
+
+    time: Seconds
+
+
+@dataclass(frozen=True)
+class FrameRateChanged:
+    """The processed frames are too few a second to recognise gestures, or enough again.
+
+    Emitted when that changes, for the rate in `app.robot.runtime.RATE_SECONDS`.
+    """
+
+    time: Seconds
+    frames_per_second: Annotated[float, Field(ge=0, description="Frames looked at in a second.")]
+    sufficient: Annotated[bool, Field(description="Whether gestures can be recognised.")]
+
+    @property
+    def words(self) -> str:
+        """The event in words."""
+        rate = f"{self.frames_per_second:.1f} frames a second"
+        return f"enough again: {rate}" if self.sufficient else f"too slow for gestures: {rate}"
+
+
+@dataclass(frozen=True)
+class OutputFailed:
+    """A log cannot be written any more; everything else goes on."""
+
+    time: Seconds
+    output: Annotated[
+        Literal["stdout", "stderr"], Field(description="What is not written any more.")
+    ]
+    reason: Reason
+
+
+@dataclass(frozen=True)
+class VehicleReported:
+    """A line about the vehicle: what was asked of it, and what it did."""
+
+    time: Seconds
+    text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
 
 
 @dataclass(frozen=True)
@@ -281,6 +325,10 @@ Event = (
     | SourceEnded
     | FramesDropped
     | Heartbeat
+    | RecognitionReady
+    | FrameRateChanged
+    | OutputFailed
+    | VehicleReported
     | StateChanged
     | LanguageChanged
     | LanguageRefused

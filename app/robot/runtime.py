@@ -17,10 +17,12 @@ from app.recognition.recording.salute import best_salute
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
     Event,
+    FrameRateChanged,
     FramesDropped,
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
+    RecognitionReady,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -35,6 +37,12 @@ REPORT_SECONDS: Final = 10.0
 
 HEARTBEAT_SECONDS: Final = 5.0
 """Seconds between two heartbeats; a supervisor (`docs/robots/service.md`) waits for six of them."""
+
+RATE_SECONDS: Final = 5.0
+"""Seconds over which the rate of processed frames is measured: a gesture with its salutes."""
+
+LEAST_RATE: Final = 4.0
+"""Processed frames a second below which gestures are missed; see `docs/robots/on-the-boat.md`."""
 
 THE_ESTIMATOR: Final = "the pose estimator"
 """Subject of the message about a missing landmark."""
@@ -104,6 +112,7 @@ class Runtime:
         self._observer = observer
         self._stopped = False
         self._drops = DropCounter()
+        self._rate = RateWatch()
         self._time = 0.0
         self._beaten = 0.0
         self._lost = False
@@ -135,6 +144,7 @@ class Runtime:
             if self._stopped:
                 break
         yield from self._listener.finish()
+        yield from self._rate.finish()
         yield SourceEnded(self._time, self._drops.frames, self._drops.dropped, self._stopped)
 
     def _build_source_opened(self) -> SourceOpened:
@@ -150,12 +160,16 @@ class Runtime:
             found, frame.time, (width, height), list_landmarks(self._estimator)
         )
         yield from self._listener.feed(moment, best_salute(found.hands))
+        if not self._drops.frames:
+            yield RecognitionReady(frame.time)
         yield from self._drops.count(frame)
+        yield from self._rate.count(frame.time)
 
     def _handle_notice(self, notice: Notice) -> Iterator[Event]:
         match notice:
             case SourceLost(time, reason):
                 self._lost = True
+                self._rate.restart()
                 yield notice
                 yield from self._listener.abandon(time, f"the source was lost: {reason}")
             case SourceRestored():
@@ -223,6 +237,50 @@ class DropCounter:
         self._since, self._reported = frame.time, (self.frames, self.dropped)
         if dropped:
             yield FramesDropped(frame.time, seconds, dropped, frames)
+
+
+class RateWatch:
+    """Watch on the rate of processed frames.
+
+    The first frame does not count, because the models are loaded while it is processed.
+    """
+
+    def __init__(self) -> None:
+        self._is_first = True
+        self._began: float | None = None
+        self._last = 0.0
+        self._frames = 0
+        self._sufficient = True
+        self._judged = False
+
+    def count(self, time: float) -> Iterator[FrameRateChanged]:
+        """Count a frame; yield an event when the rate has become too low, or enough again."""
+        if self._is_first or self._began is None:
+            self._began = None if self._is_first else time
+            self._is_first = False
+            return
+        self._frames += 1
+        self._last = time
+        if time - self._began >= RATE_SECONDS:
+            yield from self._judge(time)
+            self._began, self._frames = time, 0
+
+    def restart(self) -> None:
+        """Measure anew, after a gap that has another cause."""
+        self._began, self._frames = None, 0
+
+    def finish(self) -> Iterator[FrameRateChanged]:
+        """Judge a source that was too short for a measurement, if it lasted a second."""
+        if not self._judged and self._began is not None and self._last - self._began >= 1:
+            yield from self._judge(self._last)
+
+    def _judge(self, time: float) -> Iterator[FrameRateChanged]:
+        assert self._began is not None
+        self._judged = True
+        rate = round(self._frames / (time - self._began), 1)
+        if (rate >= LEAST_RATE) != self._sufficient:
+            self._sufficient = not self._sufficient
+            yield FrameRateChanged(time, rate, self._sufficient)
 
 
 def build_language_changed(time: float, language: ActiveLanguage) -> LanguageChanged:

@@ -14,12 +14,15 @@ from app.recognition.phrases.parser import PhraseParser
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     Event,
+    FrameRateChanged,
     FramesDropped,
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
     Listener,
+    OutputFailed,
     PhraseHeard,
+    RecognitionReady,
     SourceEnded,
     SourceLost,
     SourceOpened,
@@ -28,6 +31,7 @@ from app.robot import (
     StateChanged,
     TakeRecognized,
     TakeRejected,
+    VehicleReported,
 )
 from app.robot.event_messages import (
     MESSAGES,
@@ -73,6 +77,11 @@ EVENTS: list[Event] = [
     SourceEnded(9.0, 120, 4, True),
     FramesDropped(10.0, 10.0, 3, 200),
     Heartbeat(5.0, 100, 3, lost=False),
+    RecognitionReady(8.0),
+    FrameRateChanged(13.0, 2.0, sufficient=False),
+    FrameRateChanged(18.0, 4.0, sufficient=True),
+    OutputFailed(19.0, "stdout", "No space left on device"),
+    VehicleReported(20.0, "done: hold"),
     StateChanged(1.0, TakeState.recording),
     LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲"), "full", "as the profile does"),
     LanguageRefused(5.0, "/format: not a language file", SEAL, 3),

@@ -18,10 +18,12 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     ActiveLanguage,
     Event,
+    FrameRateChanged,
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
     Listener,
+    RecognitionReady,
     Runtime,
     SourceEnded,
     SourceLost,
@@ -32,6 +34,7 @@ from app.robot import (
     open_source,
 )
 from app.robot import runtime as runtime_module
+from app.robot.runtime import RateWatch
 from app.robot.sources.cameras import NetworkStream
 from app.robot.sources.live import LiveSource
 from tests.recognition.damaged_clips import HEIGHT, WIDTH, cut_off, write_clip
@@ -64,6 +67,7 @@ def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: 
             0.0, "pool", spoken("circle").sha256, 1, ("circle",), "full", "as the profile does"
         ),
         StateChanged(0.0, TakeState.idle),
+        RecognitionReady(0.0),
         SourceEnded(looked_at[-1], 6, 0, False),
     ]
 
@@ -87,7 +91,7 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
         source = LiveSource("reef", partial(NetworkStream, first.address), first_wait=0.05)
         runtime = Runtime(source, estimator, Listener(spoken("circle")))
         events = iter(runtime)
-        emitted = [next(events) for _ in range(3)]
+        emitted = [next(events) for _ in range(4)]
     with closing(source):
         told = (event for event in events if not isinstance(event, Heartbeat))
         emitted.append(next(told))
@@ -95,16 +99,58 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
             emitted.append(next(told))
             runtime.stop()
             emitted.extend(told)
-    opened, _, idle, lost, restored, *_, ended = emitted
+    opened, _, idle, ready, lost, restored, *_, ended = emitted
     assert isinstance(opened, SourceOpened)
     assert opened.live
     assert opened.began == source.began
     assert idle == StateChanged(idle.time, TakeState.idle)
+    assert isinstance(ready, RecognitionReady)
     assert isinstance(lost, SourceLost)
     assert isinstance(restored, SourceRestored)
     assert isinstance(ended, SourceEnded)
     assert ended.stopped
     assert ended.frames > 0
+
+
+@pytest.mark.parametrize(("rate", "told"), [(2, [(2.0, False)]), (5, [])])
+def test_a_source_with_too_few_frames_a_second_is_told(
+    estimator: PoseEstimator, tmp_path: Path, rate: int, told: list[tuple[float, bool]]
+) -> None:
+    clip = write_clip(
+        tmp_path / "dive.mp4", frames=6 * rate, times=[each / rate for each in range(6 * rate)]
+    )
+    with closing(open_source(str(clip))) as source:
+        emitted = list(Runtime(source, estimator, Listener(spoken("circle"))))
+    changes = [event for event in emitted if isinstance(event, FrameRateChanged)]
+    assert [(each.frames_per_second, each.sufficient) for each in changes] == told
+
+
+def rates(times: list[float]) -> list[tuple[float, bool]]:
+    """Return the changes of the rate of frames at these times."""
+    watch = RateWatch()
+    events = [event for time in times for event in watch.count(time)]
+    events += watch.finish()
+    return [(event.frames_per_second, event.sufficient) for event in events]
+
+
+def test_the_rate_is_told_once_for_each_change() -> None:
+    slow = [each / 2 for each in range(42)]
+    fast = [21 + each / 4 for each in range(60)]
+    assert rates(slow) == [(2.0, False)]
+    assert rates(slow + fast) == [(2.0, False), (4.0, True)]
+    assert rates(fast) == []
+
+
+def test_the_time_in_which_the_models_are_loaded_is_no_low_rate() -> None:
+    assert rates([0.0, *[8 + each / 5 for each in range(60)]]) == []
+
+
+def test_a_gap_in_which_the_source_is_lost_is_no_low_rate() -> None:
+    watch = RateWatch()
+    events = [event for each in range(10) for event in watch.count(each / 5)]
+    watch.restart()
+    events += [event for each in range(60) for event in watch.count(60 + each / 5)]
+    assert events == []
 
 
 def test_a_live_source_gives_heartbeats_also_while_it_is_lost(

@@ -94,6 +94,16 @@ class Step(Protocol):
         """Number of the command whose acknowledgement answers it; None for no answer."""
         ...
 
+    @property
+    def mode(self) -> int | None:
+        """Mode that it sets; None for no mode."""
+        ...
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves the vehicle."""
+        ...
+
     def build(self, repetition: int) -> Message:
         """Build the message; `repetition` counts from 0."""
         ...
@@ -123,6 +133,9 @@ class CommandStep:
     system: int
     component: int
 
+    mode = None
+    moves = False
+
     def build(self, repetition: int) -> Message:
         """Build the message."""
         padded = (*self.parameters, *(0.0,) * (7 - len(self.parameters)))
@@ -144,6 +157,7 @@ class ModeStep:
     component: int
 
     command = mavlink.MAV_CMD_DO_SET_MODE
+    moves = True
 
     def build(self, repetition: int) -> Message:
         """Build the message."""
@@ -164,6 +178,8 @@ class DepthStep:
     component: int
 
     command = None
+    mode = None
+    moves = True
 
     def build(self, repetition: int) -> Message:
         """Build the message."""

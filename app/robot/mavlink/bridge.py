@@ -6,6 +6,7 @@ import json
 import threading
 import time as clock
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -19,10 +20,21 @@ from app.robot.commands.dialogue import (
     RecognizedGesture,
     RecognizedPhrase,
 )
-from app.robot.events import Event, LanguageChanged, PhraseHeard, TakeRecognized, TakeRejected
+from app.robot.events import (
+    Event,
+    FrameRateChanged,
+    LanguageChanged,
+    OutputFailed,
+    PhraseHeard,
+    RecognitionReady,
+    SourceEnded,
+    TakeRecognized,
+    TakeRejected,
+)
 from app.robot.mavlink.actions import Message, Step, build_steps
-from app.robot.mavlink.links import VehicleLink
+from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
 
 TEXT_BYTES: Final = 50
@@ -34,14 +46,18 @@ TICK_SECONDS: Final = 0.05
 HEARTBEAT_SECONDS: Final = 1.0
 """Seconds between two of our heartbeats, as MAVLink requires."""
 
-SILENT_SECONDS: Final = 5.0
-"""Seconds without a heartbeat after which the vehicle counts as lost."""
+CLOSE_SECONDS: Final = 3.5
+"""Longest time that closing waits for the active order and the last texts, whatever the vehicle
+answers: a service that is stopped must let go of its vehicle."""
 
 SEVERITIES: Final = {
     "done": mavlink.MAV_SEVERITY_NOTICE,
     "replaced": mavlink.MAV_SEVERITY_NOTICE,
     "refused": mavlink.MAV_SEVERITY_WARNING,
     "unanswered": mavlink.MAV_SEVERITY_WARNING,
+    "cancelled": mavlink.MAV_SEVERITY_NOTICE,
+    "stopped": mavlink.MAV_SEVERITY_WARNING,
+    "waits": mavlink.MAV_SEVERITY_CRITICAL,
 }
 
 
@@ -64,6 +80,8 @@ class MavlinkBridge:
     now
         Returns the current time in seconds of the source's clock; None takes the time of the last
         event, for recordings.
+    without_salutes
+        Whether gestures are spotted without triggers, whatever the language's.
 
     """
 
@@ -74,23 +92,29 @@ class MavlinkBridge:
         language: Callable[[], ActiveLanguage],
         tell: Callable[[str], None],
         now: Callable[[], float] | None = None,
+        *,
+        without_salutes: bool = False,
     ) -> None:
         self._table = table
         self._link = link
         self._language = language
         self._tell_people = tell
         self._now = now
+        self._without_salutes = without_salutes
         self._time = 0.0
         self._dialogue = CommandDialogue(table.rules)
         self._desk = OrderDesk(table.vehicle)
         self._texts: list[Message] = []
         self._pictures = 0
-        self._beaten = self._heard = clock.monotonic()
+        self._beaten = clock.monotonic()
+        self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
         self._silent = self._broken = False
         self._reboots = 0
         self._fault: Exception | None = None
-        self._lock = threading.Lock()
+        # Reentrant, because a line for people may cause an event: that it cannot be printed.
+        self._lock = threading.RLock()
         self._closing = threading.Event()
+        self._close_by = float("inf")
         self._thread = threading.Thread(target=self._work, name="mavlink", daemon=True)
         self._thread.start()
 
@@ -115,15 +139,26 @@ class MavlinkBridge:
                     self._decide_take(event)
                 case PhraseHeard():
                     self._decide_phrase(event)
+                case FrameRateChanged():
+                    self._say(event.words, mavlink.MAV_SEVERITY_WARNING)
+                case RecognitionReady():
+                    self._say("ready for gestures", mavlink.MAV_SEVERITY_NOTICE)
+                case OutputFailed(output=output):
+                    self._say(f"{output} cannot be written", mavlink.MAV_SEVERITY_WARNING)
+                case SourceEnded(stopped=True):
+                    self._report(self._desk.stop("robot is stopped"))
+                case _:
+                    pass
 
     def close(self) -> None:
-        """Wait for the active order, at most until its own deadline, and disconnect.
+        """Wait for the active order, at most `CLOSE_SECONDS`, and disconnect.
 
         Texts that were announced before are sent to the vehicle's displays first.
         """
+        self._close_by = clock.monotonic() + CLOSE_SECONDS
         self._closing.set()
-        self._thread.join()
-        self._link.close()
+        # A link that hangs must not keep the process from ending.
+        self._thread.join(CLOSE_SECONDS + TICK_SECONDS)
 
     def _set_language(self) -> None:
         active = self._language()
@@ -134,6 +169,11 @@ class MavlinkBridge:
         used = grammar.uses() if grammar is not None and grammar.phrases else ()
         labels = frozenset(use.label for use in used)
 
+        if self._without_salutes or active.trigger.spots:
+            unguarded = self._table.find_unguarded(language)
+            if unguarded:
+                words = {}
+                self._say(f"no commands without salutes: {unguarded}", mavlink.MAV_SEVERITY_ALERT)
         decision = self._dialogue.set_table(CommandTable(active.sha256, words, labels))
         if decision is not None:
             self._say(decision.reason)
@@ -175,11 +215,17 @@ class MavlinkBridge:
             language_id=event.sha256,
         )
         decision = self._dialogue.decide_phrase(heard, self._source_time())
+        grammar = self._language().recognizer.language.grammar
+        if grammar is not None and grammar.cancel is not None and heard.label == grammar.cancel:
+            decision = replace(decision, cancels=True)
         meant = [] if decision.command is None else json.loads(decision.command)
         self._act(decision, self._table.resolve_mission(meant))
 
     def _act(self, decision: Decision, actions: Sequence[Action]) -> None:
         """Announce the decision and send its actions to the vehicle."""
+        if decision.cancels and (outcome := self._desk.cancel()):
+            self._report(outcome)
+            return
         if not actions:
             self._say(decision.reason)
             return
@@ -191,9 +237,11 @@ class MavlinkBridge:
         order = Order(words, tuple(steps), decision.emergency)
         severity = mavlink.MAV_SEVERITY_CRITICAL if order.emergency else mavlink.MAV_SEVERITY_NOTICE
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
-        replaced = self._desk.give(order, clock.monotonic())
-        if replaced is not None:
-            self._report(replaced)
+        now = clock.monotonic()
+        if fault := self._peer.find_fault(now):
+            self._report(Outcome(order, "stopped", fault))
+        else:
+            self._report(self._desk.give(order, now))
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -204,52 +252,64 @@ class MavlinkBridge:
             self._talk()
         except Exception as error:  # passed on to the thread that publishes
             self._fault = error
+        finally:
+            self._link.close()
 
     def _talk(self) -> None:
-        while not self._closing.is_set() or self._desk.order is not None or self._texts:
+        while self._is_needed():
             try:
-                messages = self._link.receive(TICK_SECONDS)
+                packets = self._link.receive(TICK_SECONDS)
                 with self._lock:
-                    due = self._step(messages)
+                    due = self._step(packets)
                 for message in due:
-                    self._link.send(message)
+                    self._link.send(message, self._peer.sender)
                 self._broken = False
             except (OSError, OsgError) as error:
                 self._tell_broken(str(error))
                 self._closing.wait(TICK_SECONDS)
                 with self._lock:
                     self._step([])
+        ignored = self._peer.dropped + self._link.dropped
+        if ignored:
+            self._tell_people(f"{ignored} messages that are not the vehicle's were ignored")
 
-    def _step(self, messages: Sequence[Message]) -> list[Message]:
+    def _is_needed(self) -> bool:
+        """Return whether the thread goes on: not after the time for closing is over."""
+        if not self._closing.is_set():
+            return True
+        if clock.monotonic() > self._close_by:
+            with self._lock:
+                self._report(self._desk.stop("robot has ended"))
+            return False
+        return self._desk.order is not None or bool(self._texts)
+
+    def _step(self, packets: Sequence[Packet]) -> list[Message]:
         """Process the received messages and return the messages to send."""
         now = clock.monotonic()
-        outcomes = [self._desk.hear(message, now) for message in messages]
-        outcomes.append(self._desk.check_deadline(now))
-        for outcome in outcomes:
-            if outcome is not None:
-                self._report(outcome)
+        for message, sender in packets:
+            if self._peer.admit(message, sender, now, busy=self._desk.order is not None):
+                self._report(self._desk.hear(message, now))
+        self._report(self._desk.check_deadline(now))
         decision = self._dialogue.check_deadline(self._source_time())
         if decision is not None:
             self._say(decision.reason)
-        self._watch_vehicle(messages, now)
-        due = [*self._texts, *self._desk.list_due(now)]
+        self._watch_vehicle(now)
+        due = [*self._texts]
+        if self._peer.is_proven(now):
+            due += self._desk.list_due(now)
         self._texts.clear()
         if now - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = now
             due.append(build_heartbeat())
         return due
 
-    def _watch_vehicle(self, messages: Sequence[Message], now: float) -> None:
-        """Announce that the vehicle is silent, is back, or has restarted."""
-        vehicle = self._table.vehicle
-        if any(
-            message.get_type() == "HEARTBEAT"
-            and (message.get_srcSystem(), message.get_srcComponent())
-            == (vehicle.system, vehicle.component)
-            for message in messages
-        ):
-            self._heard = now
-        silent = now - self._heard > SILENT_SECONDS
+    def _watch_vehicle(self, now: float) -> None:
+        """Announce that the vehicle is silent, is back, has restarted, or must not be commanded."""
+        for notice in self._peer.take_notices():
+            self._say(notice, mavlink.MAV_SEVERITY_ALERT)
+        if fault := self._peer.find_fault(now):
+            self._report(self._desk.stop(fault))
+        silent = self._peer.is_silent(now)
         if silent != self._silent:
             self._silent = silent
             self._say(
@@ -259,13 +319,19 @@ class MavlinkBridge:
             self._reboots = self._desk.reboots
             self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
 
-    def _report(self, outcome: Outcome) -> None:
+    def _report(self, outcome: Outcome | None) -> None:
+        """Announce what became of an order; None: nothing new."""
+        if outcome is None:
+            return
         words = outcome.order.words
         text = {
             "done": f"done: {words}",
             "replaced": f"replaced: {words}",
             "refused": f"refused ({outcome.answer}): {words}",
             "unanswered": f"NOT DONE, no answer: {words}",
+            "cancelled": f"cancelled: {words}",
+            "stopped": f"NOT DONE, {outcome.answer}: {words}",
+            "waits": f"{outcome.answer}: {words}",
         }[outcome.kind]
         self._say(text, SEVERITIES[outcome.kind])
 

@@ -6,6 +6,7 @@ stdout, where the robot's events go.
 
 from __future__ import annotations
 
+import math
 import select
 import socket
 import time as clock
@@ -16,8 +17,16 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
+from app.robot.mavlink.peer import Sender
 
-LARGEST_DATAGRAM: Final = 65536
+LARGEST_DATAGRAM: Final = 4096
+"""Bytes of a datagram that are read; a vehicle's or router's are at most 1500."""
+
+MOST_DATAGRAMS: Final = 64
+"""Datagrams read at once, so that a flood leaves time to send."""
+
+MOST_FAULTS: Final = 8
+"""Faulty messages in a datagram after which the rest of it is dropped."""
 
 CONNECT_SECONDS: Final = 3.0
 """Time to connect over TCP; a vehicle on the same boat answers within milliseconds."""
@@ -25,17 +34,39 @@ CONNECT_SECONDS: Final = 3.0
 RECONNECT_SECONDS: Final = 1.0
 """Seconds between two attempts to reconnect."""
 
+SIGNING_BEGAN: Final = 1_420_070_400
+"""Seconds from 1970 to 2015, at which the time of MAVLink's signatures begins."""
+
+SIGNING_TICKS: Final = 100_000
+"""Units of that time in a second."""
+
 FORMS: Final = "udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or http://HOST[:PORT][/PATH]"
 
 
-class VehicleLink(Protocol):
-    """Protocol of a connection to a vehicle, used by one thread."""
+Packet = tuple[Message, Sender]
+"""A message and where it came from."""
 
-    def send(self, message: Message) -> None:
-        """Send a message; raises `OSError` when that fails."""
+
+class VehicleLink(Protocol):
+    """Protocol of a connection to a vehicle, used by one thread.
+
+    Attributes
+    ----------
+    expected
+        The only address that may be the vehicle's; None for any.
+    dropped
+        Number of messages that were damaged, or not signed as they should be.
+
+    """
+
+    expected: Sender | None
+    dropped: int
+
+    def send(self, message: Message, to: Sender | None) -> None:
+        """Send a message to the vehicle's address; raises `OSError` when that fails."""
         ...
 
-    def receive(self, seconds: float) -> list[Message]:
+    def receive(self, seconds: float) -> list[Packet]:
         """Return the messages that arrived; wait at most `seconds` for the first."""
         ...
 
@@ -44,8 +75,60 @@ class VehicleLink(Protocol):
         ...
 
 
+class Reader:
+    """Parser of received bytes, which verifies signatures.
+
+    Parameters
+    ----------
+    signing
+        pymavlink's state of the signatures, shared by all readers of a link; without a key nothing
+        is verified.
+    most_faults
+        Faulty messages after which the rest is left.
+
+    """
+
+    def __init__(self, signing: mavlink.MAVLinkSigning, most_faults: float = math.inf) -> None:
+        self._codec = mavlink.MAVLink(None)
+        self._codec.robust_parsing = True
+        self._codec.signing = self._signing = signing
+        self._most_faults = most_faults
+
+    def read(self, data: bytes) -> tuple[list[Message], int]:
+        """Parse bytes; return the messages, and the number of those that were dropped."""
+        known, bad = dict(self._signing.stream_timestamps), self._signing.badsig_count
+        found: list[Message] = []
+        faults = 0
+        while faults < self._most_faults:
+            message = self._codec.parse_char(data)
+            data = b""
+            if message is None:
+                break
+            if isinstance(message, mavlink.MAVLink_bad_data):
+                faults += 1
+            elif not isinstance(message, mavlink.MAVLink_unknown):
+                found.append(message)
+        if self._signing.badsig_count != bad:
+            # pymavlink notes the time of a message before it verifies the signature: a forged one
+            # would make it reject the vehicle's.
+            self._signing.stream_timestamps = known
+        return found, faults
+
+
+def create_signing(key: bytes | None) -> mavlink.MAVLinkSigning:
+    """Create pymavlink's state of the signatures; without a key nothing is signed."""
+    signing = mavlink.MAVLinkSigning()
+    if key is not None:
+        signing.secret_key = key
+        signing.sign_outgoing = True
+        signing.timestamp = max(0, round((clock.time() - SIGNING_BEGAN) * SIGNING_TICKS))
+    return signing
+
+
 class DatagramLink:
     """UDP to a vehicle; a `VehicleLink`.
+
+    Each datagram is parsed by itself, so that a stranger's bytes never join the vehicle's.
 
     Parameters
     ----------
@@ -54,37 +137,45 @@ class DatagramLink:
     system
         Our MAVLink system id: that of the vehicle, of which this computer is a part.
     listens
-        Whether the vehicle sends first; replies go to the address that its packets come from.
+        Whether the vehicle sends first; its address is then not known before.
+    key
+        Key of the signatures; None for none.
 
     """
 
-    def __init__(self, host: str, port: int, system: int, *, listens: bool) -> None:
+    def __init__(
+        self, host: str, port: int, system: int, *, listens: bool, key: bytes | None = None
+    ) -> None:
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
-        self._target = None if listens else address
-        self._listens = listens
+        self.expected = None if listens else address
+        self.dropped = 0
         if listens:
             self._socket.bind(address)
+        self._to: Sender | None = None
         self._codec = mavlink.MAVLink(self, system, OUR_COMPONENT)
-        self._codec.robust_parsing = True
+        self._codec.signing = create_signing(key)
 
     def write(self, data: bytes) -> None:
         """Send bytes; pymavlink calls this. Nothing is sent before the vehicle is known."""
-        if self._target is not None:
-            self._socket.sendto(data, self._target)
+        if self._to is not None:
+            self._socket.sendto(data, self._to)
 
-    def send(self, message: Message) -> None:
+    def send(self, message: Message, to: Sender | None) -> None:
         """Send a message."""
+        self._to = to if self.expected is None else self.expected
         self._codec.send(message)
 
-    def receive(self, seconds: float) -> list[Message]:
+    def receive(self, seconds: float) -> list[Packet]:
         """Return the messages that arrived."""
-        found: list[Message] = []
-        while select.select([self._socket], [], [], 0 if found else seconds)[0]:
+        found: list[Packet] = []
+        for number in range(MOST_DATAGRAMS):
+            if not select.select([self._socket], [], [], 0 if number else seconds)[0]:
+                break
             data, sender = self._socket.recvfrom(LARGEST_DATAGRAM)
-            if self._listens:
-                self._target = sender
-            found += self._codec.parse_buffer(data) or []
+            messages, dropped = Reader(self._codec.signing, MOST_FAULTS).read(data)
+            self.dropped += dropped
+            found += [(message, sender) for message in messages]
         return found
 
     def close(self) -> None:
@@ -101,12 +192,18 @@ class StreamLink:
         Address to connect to.
     system
         Our MAVLink system id.
+    key
+        Key of the signatures; None for none.
 
     """
 
-    def __init__(self, host: str, port: int, system: int) -> None:
+    expected: Sender | None = ()
+
+    def __init__(self, host: str, port: int, system: int, key: bytes | None = None) -> None:
         self._address = (host, port)
         self._system = system
+        self._signing = create_signing(key)
+        self.dropped = 0
         self._tried = 0.0
         self._socket: socket.socket | None = None
         self._connect()
@@ -122,11 +219,11 @@ class StreamLink:
             self._drop()
             raise
 
-    def send(self, message: Message) -> None:
-        """Send a message."""
+    def send(self, message: Message, to: Sender | None) -> None:
+        """Send a message; `to` is the other end of the connection."""
         self._codec.send(message)
 
-    def receive(self, seconds: float) -> list[Message]:
+    def receive(self, seconds: float) -> list[Packet]:
         """Return the messages that arrived."""
         if self._socket is None:
             clock.sleep(seconds)
@@ -141,7 +238,9 @@ class StreamLink:
         if not data:
             self._drop()
             raise ConnectionError("the vehicle closed the connection")
-        return self._codec.parse_buffer(data) or []
+        messages, dropped = self._reader.read(data)
+        self.dropped += dropped
+        return [(message, ()) for message in messages]
 
     def close(self) -> None:
         """Close the connection."""
@@ -154,7 +253,8 @@ class StreamLink:
         self._tried = clock.monotonic()
         self._socket = socket.create_connection(self._address, CONNECT_SECONDS)
         self._codec = mavlink.MAVLink(self, self._system, OUR_COMPONENT)
-        self._codec.robust_parsing = True
+        self._codec.signing = self._signing
+        self._reader = Reader(self._signing)
 
     def _drop(self) -> None:
         if self._socket is not None:
@@ -162,7 +262,7 @@ class StreamLink:
             self._socket = None
 
 
-def open_link(address: str, system: int, component: int) -> VehicleLink:
+def open_link(address: str, system: int, component: int, key: bytes | None = None) -> VehicleLink:
     """Open the link of an address.
 
     Parameters
@@ -171,11 +271,14 @@ def open_link(address: str, system: int, component: int) -> VehicleLink:
         One of `FORMS`; ``http`` is the address of mavlink2rest.
     system, component
         MAVLink ids of the vehicle.
+    key
+        Key of 32 bytes that signs all messages; None: they are not signed.
 
     Raises
     ------
     VehicleError
-        When the address has another form, or nothing answers there.
+        When the address has another form, nothing answers there, or messages cannot be signed
+        there.
 
     """
     from app.robot.mavlink.rest_link import RestLink
@@ -183,14 +286,19 @@ def open_link(address: str, system: int, component: int) -> VehicleLink:
     kind, _, rest = address.partition(":")
     try:
         if kind in ("http", "https"):
+            if key is not None:
+                raise VehicleError(
+                    "mavlink2rest signs no messages: connect by udpout, udpin or tcp, or take "
+                    "vehicle.key_file out of the table"
+                )
             return RestLink(address, system, component)
         place = urlsplit(f"//{rest}")
         host, port = place.hostname, place.port
         if kind not in ("udpout", "udpin", "tcp") or not host or not port or place.path:
             raise ValueError("no such form")
         if kind == "tcp":
-            return StreamLink(host, port, system)
-        return DatagramLink(host, port, system, listens=kind == "udpin")
+            return StreamLink(host, port, system, key)
+        return DatagramLink(host, port, system, listens=kind == "udpin", key=key)
     except VehicleError:
         raise
     except ValueError as error:

@@ -29,7 +29,19 @@ GO_ON: Final = (
 )
 """Results after which a command is repeated until it is done; all others refuse it."""
 
-OutcomeKind = Literal["done", "refused", "unanswered", "replaced"]
+SHOW_SECONDS: Final = 1.5
+"""Seconds for an accepted mode to show: half again the period of the vehicle's heartbeat. Until
+then it is not requested again."""
+
+MOST_OVERRIDES: Final = 2
+"""Accepted requests of a mode that did not show it, after which somebody else has set another one;
+the first may be a late answer to an earlier request."""
+
+OTHER_PILOT: Final = "the pilot changed the mode"
+
+DISARMED: Final = "vehicle is disarmed"
+
+OutcomeKind = Literal["done", "refused", "unanswered", "replaced", "cancelled", "stopped", "waits"]
 
 
 @dataclass(frozen=True)
@@ -51,6 +63,11 @@ class Order:
     steps: tuple[Step, ...]
     emergency: bool = False
 
+    @property
+    def moves(self) -> bool:
+        """Whether it moves the vehicle, which only an armed one can do."""
+        return any(step.moves for step in self.steps)
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -62,9 +79,10 @@ class Outcome:
         The order.
     kind
         ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
-        time. ``replaced``: by a newer order.
+        time. ``replaced``: by a newer order. ``cancelled``: by the diver. ``stopped``: for the
+        reason in `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
     answer
-        Result of a refusal, such as ``DENIED``.
+        Result of a refusal, such as ``DENIED``, or the reason.
 
     """
 
@@ -102,20 +120,50 @@ class OrderDesk:
         self._reported = Reported()
         self._uptime = 0
         self._refused = False
+        self._mode: int | None = None
+        self._armed: bool | None = None
+        self._waits = False
+        self._watch = ModeWatch(None)
 
     def give(self, order: Order, now: float) -> Outcome | None:
-        """Begin an order; return the outcome of the one that it replaces."""
+        """Begin an order.
+
+        Returns
+        -------
+        The outcome of the order that it replaces, or its own if it is not begun: an ordinary order
+        never replaces an emergency, and does not move a disarmed vehicle.
+
+        """
+        if not order.emergency:
+            if self.order is not None and self.order.emergency:
+                return Outcome(order, "stopped", "EMERGENCY goes on")
+            if order.moves and self._armed is False:
+                return Outcome(order, "stopped", DISARMED)
         replaced = None if self.order is None else Outcome(self.order, "replaced")
         seconds = EMERGENCY_SECONDS if order.emergency else self._vehicle.give_up_seconds
         self.order = order
-        self._refused = False
+        self._refused = self._waits = False
         self._deadline = now + seconds * len(order.steps)
         self._begin(0, now)
         return replaced
 
+    def cancel(self) -> Outcome | None:
+        """Drop the active order unless it is an emergency; return what became of it."""
+        if self.order is None:
+            return None
+        if self.order.emergency:
+            return Outcome(self.order, "waits", "EMERGENCY is not cancelled")
+        return self._end("cancelled")
+
+    def stop(self, reason: str) -> Outcome | None:
+        """Drop the active order, also an emergency, for a reason; return its outcome."""
+        return None if self.order is None else self._end("stopped", reason)
+
     def list_due(self, now: float) -> Sequence[Message]:
         """Return the messages to send now."""
         if self.order is None or now < self._next or now > self._deadline:
+            return ()
+        if self._watch.keeps_back:
             return ()
         message = self.order.steps[self._position].build(self._sent)
         self._sent += 1
@@ -126,6 +174,8 @@ class OrderDesk:
         """Return the outcome of an order that the vehicle has not done in time."""
         if self.order is None or now <= self._deadline:
             return None
+        if self.order.moves and self._armed is False:
+            return self._end("stopped", DISARMED)
         return self._end("unanswered")
 
     def hear(self, message: Message, now: float) -> Outcome | None:
@@ -133,23 +183,50 @@ class OrderDesk:
 
         Returns
         -------
-        The outcome of the order that the message ends; for an emergency also its first refusal.
+        The outcome of the order that the message ends; for an emergency also its first refusal, and
+        that the vehicle is disarmed.
 
         """
         if not self._is_from_vehicle(message):
             return None
-        if message.get_type() == "SYSTEM_TIME":
-            self._note_uptime(message.time_boot_ms, now)
-        self._reported.hear(message)
-        if self.order is None or not self._sent:
+        self._note_state(message, now)
+        if self.order is None:
+            return None
+        if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
+            return outcome
+        if self._watch.other_pilot:
+            return self._end("stopped", OTHER_PILOT)
+        if not self._sent:
             return None
         step = self.order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(now)
         answered = message.get_type() == "COMMAND_ACK" and message.command == step.command
+        if answered and message.result == mavlink.MAV_RESULT_ACCEPTED:
+            self._watch.accept(now)
         if not answered or message.result in GO_ON:
             return None
         return self._refuse(message.result)
+
+    def _note_state(self, message: Message, now: float) -> None:
+        """Note what a message says of the vehicle's state."""
+        self._reported.hear(message)
+        match message.get_type():
+            case "SYSTEM_TIME":
+                self._note_uptime(message.time_boot_ms, now)
+                self._watch.hear_clock()
+            case "HEARTBEAT":
+                self._mode = message.custom_mode
+                self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
+                self._watch.hear_mode(message.custom_mode, now, sent=self._sent > 0)
+
+    def _wait_for_arming(self) -> Outcome | None:
+        """End an ordinary order of a disarmed vehicle; an emergency goes on, which is said once."""
+        assert self.order is not None
+        if not self.order.emergency:
+            return self._end("stopped", DISARMED)
+        told, self._waits = self._waits, True
+        return None if told else Outcome(self.order, "waits", DISARMED)
 
     def _refuse(self, result: int) -> Outcome | None:
         """End a refused order; an emergency goes on, and only its first refusal is reported."""
@@ -179,23 +256,108 @@ class OrderDesk:
         if uptime + REBOOT_MS < self._uptime:
             self.reboots += 1
             self._reported = Reported()
+            self._mode = None
             if self.order is not None:
                 self._begin(0, now)
         self._uptime = uptime
 
     def _advance(self, now: float) -> Outcome | None:
         assert self.order is not None
-        if self._position + 1 == len(self.order.steps):
-            return self._end("done")
-        self._begin(self._position + 1, now)
-        return None
+        if self._position + 1 < len(self.order.steps):
+            self._begin(self._position + 1, now)
+            return None
+        if self.order.moves and self._armed is False:
+            return None
+        return self._end("done")
 
     def _begin(self, position: int, now: float) -> None:
         """Begin a step; earlier reports of the vehicle do not prove it."""
+        assert self.order is not None
         self._position, self._sent, self._next = position, 0, now
         self._reported = Reported()
+        modes = [step.mode for step in self.order.steps[: position + 1] if step.mode is not None]
+        is_shown = bool(modes) and self.order.steps[position].mode is None
+        self._watch = ModeWatch(modes[-1] if modes else None, self._mode, is_shown=is_shown)
 
     def _end(self, kind: OutcomeKind, answer: str = "") -> Outcome:
         assert self.order is not None
         order, self.order = self.order, None
+        self._watch = ModeWatch(None)
         return Outcome(order, kind, answer)
+
+
+class ModeWatch:
+    """Watch on the vehicle's mode during a step: a pilot who sets another mode wins.
+
+    A heartbeat may be older than the request by its period, so the first one after it proves
+    nothing. A mode that contradicts the order counts once the vehicle's clock shows that it did not
+    start again, or half a second later.
+
+    Parameters
+    ----------
+    wanted
+        Mode that the order sets or has set; None for any.
+    before
+        Mode before the order, if known.
+    is_shown
+        Whether an earlier step has set the mode.
+
+    Attributes
+    ----------
+    other_pilot
+        Whether somebody else has changed the mode.
+
+    """
+
+    DOUBT_SECONDS: Final = 0.5
+
+    def __init__(
+        self, wanted: int | None, before: int | None = None, *, is_shown: bool = False
+    ) -> None:
+        self._wanted = wanted
+        self._old = {before}
+        self._is_shown = is_shown
+        self._heard_any = False
+        self._accepted: float | None = None
+        self._overrides = 0
+        self._doubted: float | None = None
+        self.other_pilot = False
+
+    def accept(self, now: float) -> None:
+        """Note that the vehicle has accepted the mode."""
+        if self._wanted is not None and self._accepted is None:
+            self._accepted = now
+
+    @property
+    def keeps_back(self) -> bool:
+        """Whether the request must not be repeated: it was accepted, or the mode is in doubt."""
+        return self._accepted is not None or self._doubted is not None
+
+    def hear_clock(self) -> None:
+        """Note that the vehicle's clock goes on: a contradicting mode is then a pilot's."""
+        self.other_pilot |= self._doubted is not None
+
+    def hear_mode(self, mode: int, now: float, *, sent: bool) -> None:
+        """Process the mode of a heartbeat; `sent`: the mode was requested before."""
+        if self._wanted is None:
+            return
+        if not sent and not self._is_shown:
+            self._old.add(mode)
+        elif mode == self._wanted:
+            self._is_shown, self._doubted = True, None
+        elif self._is_shown or (self._heard_any and mode not in self._old):
+            if self._doubted is not None and now - self._doubted >= self.DOUBT_SECONDS:
+                self.other_pilot = True
+            self._doubted = now if self._doubted is None else self._doubted
+        else:
+            self._old.add(mode)
+            self._note_override(now)
+        self._heard_any |= sent
+
+    def _note_override(self, now: float) -> None:
+        """Count an accepted mode that does not show: somebody has set the old one again."""
+        if self._accepted is None or now - self._accepted <= SHOW_SECONDS:
+            return
+        self._accepted = None
+        self._overrides += 1
+        self.other_pilot = self._overrides >= MOST_OVERRIDES

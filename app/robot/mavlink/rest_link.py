@@ -13,6 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
+from app.robot.mavlink.peer import Sender
 
 ANSWER_SECONDS: Final = 2.0
 """Seconds for the server to answer; it runs on the vehicle and answers from memory."""
@@ -48,6 +49,9 @@ class RestLink:
 
     """
 
+    expected: Sender | None = ()
+    dropped = 0
+
     def __init__(self, address: str, system: int, component: int) -> None:
         place = urlsplit(address)
         kind = (
@@ -63,20 +67,20 @@ class RestLink:
         # Messages from before the connection answer no request of ours.
         self._counters = {name: count for name, (count, _) in self._fetch_all().items()}
 
-    def send(self, message: Message) -> None:
-        """Send a message."""
+    def send(self, message: Message, to: Sender | None) -> None:
+        """Send a message; `to` is the server."""
         header = {"system_id": self._system, "component_id": OUR_COMPONENT, "sequence": 0}
         body = json.dumps({"header": header, "message": to_json(message)}, allow_nan=False)
         self._request("POST", self._path, body)
 
-    def receive(self, seconds: float) -> list[Message]:
+    def receive(self, seconds: float) -> list[tuple[Message, Sender]]:
         """Return the new messages."""
         clock.sleep(min(seconds, POLL_SECONDS))
-        news = []
+        news: list[tuple[Message, Sender]] = []
         for name, (count, message) in self._fetch_all().items():
             if count != self._counters.get(name):
                 self._counters[name] = count
-                news.append(message)
+                news.append((message, ()))
         return news
 
     def close(self) -> None:

@@ -6,6 +6,7 @@ with its limits, so that no file can make the bridge send anything else.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sys
 from collections.abc import Iterator
@@ -17,7 +18,13 @@ from typing_extensions import Self
 
 from app.recognition import Language
 from app.recognition.errors import VehicleError
-from app.robot.commands.dialogue import CONFIRM_SECONDS, STALE_SECONDS, Rules
+from app.robot.commands.dialogue import (
+    CONFIRM_SECONDS,
+    EMERGENCY_AGE_SECONDS,
+    EMERGENCY_CONFIDENCE,
+    STALE_SECONDS,
+    Rules,
+)
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -33,6 +40,12 @@ when a fifth of all packets is lost. After that the diver has given up too."""
 DEEPEST: Final = 30.0
 """Largest depth in metres, unless a table sets its own limit: a number below the depths of sport
 divers is more likely misread than meant."""
+
+MOST_BYTES: Final = 65_536
+"""Largest size of a table in bytes: some hundred gestures."""
+
+KEY_BYTES: Final = 32
+"""Size of the key of MAVLink's signatures."""
 
 ModeName = Literal[
     "STABILIZE",
@@ -153,6 +166,8 @@ class Vehicle(_Entry):
         Time between two repetitions of a command that was not acknowledged.
     give_up_seconds
         Time after which an action that the vehicle has not done counts as failed.
+    key_file
+        File of the key that signs all messages (MAVLink 2), beside the table; None: no signatures.
 
     """
 
@@ -163,6 +178,7 @@ class Vehicle(_Entry):
     deepest: Annotated[float, Field(gt=0, le=1000)] = DEEPEST
     repeat_seconds: Annotated[float, Field(ge=0.01, le=5)] = 0.5
     give_up_seconds: Annotated[float, Field(gt=0, le=120)] = GIVE_UP_SECONDS
+    key_file: Annotated[str, Field(min_length=1)] | None = None
 
 
 class VehicleTable(_Entry):
@@ -178,7 +194,7 @@ class VehicleTable(_Entry):
         Labels of gestures that are obeyed at once: ``surface`` or ``hold``, nothing else.
     cancel
         Labels of gestures that cancel a gesture or message that waits for its repetition.
-    confirm_seconds, stale_seconds, least_confidence
+    confirm_seconds, stale_seconds, least_confidence, emergency_seconds, emergency_confidence
         As in `app.robot.commands.dialogue.Rules`.
     vehicle
         Address of the vehicle, and its limits.
@@ -194,6 +210,8 @@ class VehicleTable(_Entry):
     confirm_seconds: Annotated[float, Field(ge=1, le=300)] = CONFIRM_SECONDS
     stale_seconds: Annotated[float, Field(ge=0.1, le=60)] = STALE_SECONDS
     least_confidence: Annotated[float, Field(ge=0, le=1)] = 0.0
+    emergency_seconds: Annotated[float, Field(ge=0.1, le=60)] = EMERGENCY_AGE_SECONDS
+    emergency_confidence: Annotated[float, Field(ge=0, le=1)] = EMERGENCY_CONFIDENCE
     vehicle: Vehicle = Vehicle()
 
     @model_validator(mode="after")
@@ -225,6 +243,8 @@ class VehicleTable(_Entry):
             confirm_seconds=self.confirm_seconds,
             stale_seconds=self.stale_seconds,
             least_confidence=self.least_confidence,
+            emergency_seconds=self.emergency_seconds,
+            emergency_confidence=self.emergency_confidence,
             cancel=frozenset(self.cancel),
             emergency=frozenset(self.emergency),
         )
@@ -266,6 +286,18 @@ class VehicleTable(_Entry):
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 
+    def find_unguarded(self, language: Language) -> str:
+        """Return why no gesture may move the vehicle without triggers; empty if one may.
+
+        A continuous movement would confirm itself: only a message of several gestures may act.
+        """
+        grammar = language.grammar
+        if grammar is None or not grammar.phrases:
+            return f"the language {language.name!r} has no phrases"
+        words = {use.label for use in grammar.uses()}
+        alone = sorted({*self.gestures, *self.emergency} - (words - {*self.emergency}))
+        return f"{', '.join(alone)} would act alone" if alone else ""
+
     def list_unknown(self, language: Language) -> Iterator[str]:
         """Yield, in words, the labels and phrases of the table that the language lacks."""
         for role, names in (("gestures", self.gestures), ("emergency", self.emergency)):
@@ -287,16 +319,66 @@ def read_vehicle_table(path: str | Path) -> VehicleTable:
         When the file cannot be read.
 
     """
-    text = Path(path).read_text(encoding="utf-8")
+    return parse_vehicle_table(Path(path).read_bytes(), path)
+
+
+def parse_vehicle_table(content: bytes, path: str | Path) -> VehicleTable:
+    """Parse the content of a vehicle table, TOML, or JSON by the path's ending.
+
+    Raises
+    ------
+    VehicleError
+        When it is not valid; the message names the key.
+
+    """
     try:
-        content = json.loads(text) if Path(path).suffix == ".json" else tomllib.loads(text)
-    except ValueError as error:
+        if len(content) > MOST_BYTES:
+            raise ValueError(f"it has {len(content)} bytes, a table has at most {MOST_BYTES}")
+        text = content.decode("utf-8")
+        found = json.loads(text) if Path(path).suffix == ".json" else tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         raise VehicleError(f"{path} cannot be read: {error}") from error
     try:
-        return VehicleTable.model_validate(content)
+        return VehicleTable.model_validate(found)
     except ValidationError as error:
         fault = error.errors()[0]
         place = ".".join(str(part) for part in fault["loc"])
         message = fault["msg"].removeprefix("Value error, ")
         where = f"{place}: " if place else ""
         raise VehicleError(f"{path}: {where}{message}; see docs/robots/mavlink.md") from error
+
+
+def read_signing_key(table: VehicleTable, path: str | Path) -> bytes | None:
+    """Read the key that signs the messages; None if the table names none.
+
+    A file of 32 bytes is the key; any other text is a passphrase, whose SHA-256 is the key, as
+    ground stations make it.
+
+    Parameters
+    ----------
+    table
+        The vehicle table.
+    path
+        Its file, whose folder the key's path is relative to.
+
+    Raises
+    ------
+    VehicleError
+        When the file is empty, or longer than a passphrase.
+    OSError
+        When it cannot be read.
+
+    """
+    if table.vehicle.key_file is None:
+        return None
+    file = Path(path).parent / table.vehicle.key_file
+    with file.open("rb") as opened:
+        content = opened.read(MOST_BYTES + 1)
+    if len(content) == KEY_BYTES:
+        return content
+    phrase = content.strip()
+    if not phrase or len(content) > MOST_BYTES:
+        raise VehicleError(
+            f"vehicle.key_file: {file} is no key; it holds {KEY_BYTES} bytes, or a passphrase"
+        )
+    return hashlib.sha256(phrase).digest()

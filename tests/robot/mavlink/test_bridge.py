@@ -21,15 +21,19 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
 from app.robot import (
     ActiveLanguage,
+    FrameRateChanged,
     Listener,
+    OutputFailed,
     PhraseHeard,
     PhraseListener,
+    RecognitionReady,
+    SourceEnded,
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.mavlink import bridge
+from app.robot.mavlink import peer
 from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
-from app.robot.mavlink.links import open_link
+from app.robot.mavlink.links import VehicleLink, open_link
 from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
@@ -94,12 +98,19 @@ def a_rejected_take() -> TakeRejected:
 class Diver:
     """Shows gestures to a bridge, one every five seconds of the source's clock."""
 
-    def __init__(self, vehicle: Ardusub, address: str, table: VehicleTable) -> None:
+    def __init__(
+        self,
+        vehicle: Ardusub | None,
+        address: str,
+        table: VehicleTable,
+        link: VehicleLink | None = None,
+    ) -> None:
         self.time = 0.0
         self.delay = 0.0
         self.lines: queue.Queue[str] = queue.Queue()
-        self.vehicle = vehicle
-        link = open_link(address, table.vehicle.system, table.vehicle.component)
+        if vehicle is not None:
+            self.vehicle = vehicle
+        link = link or open_link(address, table.vehicle.system, table.vehicle.component)
         clock: Callable[[], float] = lambda: self.time + self.delay  # noqa: E731
         self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock)
         self.bridge.publish(build_language_changed(0.0, crew()))
@@ -124,6 +135,14 @@ class Diver:
             line = self.lines.get(timeout=WAIT)
             if line.startswith(beginnings):
                 return line
+
+
+def wait_until(happens: Callable[[], bool]) -> None:
+    """Wait until something happens; an error after a long time."""
+    by = time.monotonic() + WAIT
+    while not happens():
+        assert time.monotonic() < by
+        time.sleep(0.01)
 
 
 @contextmanager
@@ -190,9 +209,9 @@ def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
     assert diver.vehicle.obeyed == []
 
 
-def test_an_emergency_is_obeyed_at_once_and_however_late() -> None:
+def test_an_emergency_is_obeyed_at_once_and_somewhat_late() -> None:
     with diving() as diver:
-        diver.delay = 60.0
+        diver.delay = 9.0
         diver.show("help")
         assert diver.wait_for("done") == "done: surface"
     assert diver.vehicle.obeyed == ["SURFACE"]
@@ -208,6 +227,147 @@ def test_an_emergency_replaces_what_is_on_its_way() -> None:
         diver.vehicle.loss = 0.0
         assert diver.wait_for("done") == "done: surface"
     assert diver.vehicle.obeyed == ["SURFACE"]
+
+
+def test_an_ordinary_command_never_replaces_an_emergency() -> None:
+    with diving() as diver:
+        diver.vehicle.loss = 1.0
+        diver.show("help")
+        diver.confirm("free")
+        assert diver.wait_for("replaced", "NOT DONE") == (
+            "NOT DONE, EMERGENCY goes on: mode STABILIZE"
+        )
+        diver.vehicle.loss = 0.0
+        assert diver.wait_for("done") == "done: surface"
+        diver.confirm("free")
+        assert diver.wait_for("done") == "done: mode STABILIZE"
+    assert diver.vehicle.obeyed == ["SURFACE", "STABILIZE"]
+
+
+def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> None:
+    with diving(is_slow=True) as diver:
+        diver.confirm("deep")
+        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.show("no")
+        assert diver.wait_for("cancelled", "nothing") == "cancelled: depth 5 m"
+        asked = diver.vehicle.asked
+        diver.vehicle.is_slow = False
+        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
+        time.sleep(0.3)
+        diver.show("no")
+        assert diver.wait_for("cancelled", "nothing") == "nothing to cancel"
+    assert diver.vehicle.asked <= asked + 1
+    assert diver.vehicle.obeyed == ["ALT_HOLD"]
+    assert "cancelled: depth 5 m" in diver.vehicle.texts
+
+
+def test_a_cancel_never_stops_an_emergency() -> None:
+    with diving(is_slow=True) as diver:
+        diver.show("help")
+        diver.show("no")
+        assert diver.wait_for("EMERGENCY is") == "EMERGENCY is not cancelled: surface"
+        diver.vehicle.is_slow = False
+        assert diver.wait_for("done") == "done: surface"
+
+
+def test_a_pilot_who_sets_the_old_mode_again_and_again_is_not_fought() -> None:
+    with diving(pilot=mavlink.SUB_MODE_MANUAL) as diver:
+        for label, words in (("help", "surface"), ("stop", "hold")):
+            diver.vehicle.obeyed.clear()
+            if label == "help":
+                diver.show(label)
+            else:
+                diver.confirm(label)
+            said = diver.wait_for("done", "NOT DONE")
+            assert said == f"NOT DONE, the pilot changed the mode: {words}"
+            assert len(diver.vehicle.obeyed) <= 2
+    assert diver.vehicle.texts.count("NOT DONE, the pilot changed the mode: surface") == 1
+
+
+@pytest.mark.parametrize("label", ["help", "stop"])
+def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
+    with diving(is_slow=True) as diver:
+        if label == "help":
+            diver.show(label)
+        else:
+            diver.confirm(label)
+        wait_until(lambda: diver.vehicle.asked > 0)
+        time.sleep(0.1)  # the first heartbeat after a request may be older than it
+        diver.vehicle.pilot = mavlink.SUB_MODE_STABILIZE
+        assert diver.wait_for("done", "NOT DONE").startswith(
+            "NOT DONE, the pilot changed the mode: "
+        )
+        asked = diver.vehicle.asked
+        time.sleep(0.3)
+        assert diver.vehicle.asked == asked
+
+
+def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
+    with diving(armed=False) as diver:
+        wait_until(lambda: diver.bridge._peer.sender is not None)
+        time.sleep(0.1)
+        for label, words in (("stop", "hold"), ("deep", "depth 5 m")):
+            diver.confirm(label)
+            assert diver.wait_for("done", "NOT DONE") == f"NOT DONE, vehicle is disarmed: {words}"
+        assert diver.vehicle.asked == 0
+        diver.confirm("bright")
+        assert diver.wait_for("done", "NOT DONE") == "done: lights 50 %"
+        diver.show("help")
+        assert diver.wait_for("done", "vehicle is") == "vehicle is disarmed: surface"
+        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_SURFACE)
+        time.sleep(0.2)
+        assert diver.lines.empty()
+        diver.vehicle.armed = True
+        assert diver.wait_for("done", "NOT DONE") == "done: surface"
+    assert "vehicle is disarmed: surface" in diver.vehicle.texts
+
+
+def test_a_vehicle_that_is_disarmed_ends_an_ordinary_order() -> None:
+    with diving(is_slow=True) as diver:
+        diver.confirm("stop")
+        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.vehicle.armed = False
+        assert diver.wait_for("done", "NOT DONE") == "NOT DONE, vehicle is disarmed: hold"
+
+
+@pytest.mark.parametrize("stopped", [True, False])
+def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bool) -> None:
+    with diving() as diver:
+        diver.vehicle.loss = 1.0
+        diver.show("help")
+        diver.wait_for("EMERGENCY")
+        diver.bridge.publish(SourceEnded(diver.time, 100, 0, stopped))
+        diver.bridge.close()
+        assert not diver.bridge._thread.is_alive()
+        reason = "robot is stopped" if stopped else "robot has ended"
+        assert diver.wait_for("NOT DONE") == f"NOT DONE, {reason}: surface"
+
+
+def test_what_a_diver_must_know_of_the_robot_is_on_the_vehicles_displays() -> None:
+    with diving() as diver:
+        wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.bridge.publish(RecognitionReady(1.0))
+        diver.bridge.publish(FrameRateChanged(6.0, 2.0, False))
+        diver.bridge.publish(OutputFailed(7.0, "stdout", "No space left on device"))
+    assert diver.vehicle.texts[:3] == [
+        "ready for gestures",
+        "too slow for gestures: 2.0 frames a second",
+        "stdout cannot be written",
+    ]
+
+
+def test_without_salutes_a_new_language_without_phrases_commands_nothing() -> None:
+    table = VehicleTable.model_validate(TABLE)
+    lines: queue.Queue[str] = queue.Queue()
+    with sailing() as vehicle:
+        link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
+        opened = MavlinkBridge(table, link, crew, lines.put, without_salutes=True)
+        with closing(opened):
+            opened.publish(build_language_changed(0.0, crew()))
+            assert lines.get(timeout=WAIT).startswith("no commands without salutes: ")
+            opened.publish(replace(a_take(), label="help", time=5.0, sha256=crew().sha256))
+            assert lines.get(timeout=WAIT) == "'help' has no command"
+    assert vehicle.asked == 0
 
 
 def test_an_emergency_that_is_refused_is_told_once_and_sent_again() -> None:
@@ -237,7 +397,7 @@ def test_a_refusal_and_silence_are_told_and_not_taken_for_obedience() -> None:
 def test_a_vehicle_that_starts_again_or_falls_silent_is_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(bridge, "SILENT_SECONDS", 0.2)
+    monkeypatch.setattr(peer, "SILENT_SECONDS", 0.2)
     with diving() as diver:
         diver.confirm("deep")
         assert diver.wait_for("done")

@@ -45,11 +45,13 @@ def test_who_listens_answers_where_the_vehicle_speaks_from() -> None:
     port = listening._socket.getsockname()[1]
     vehicle = DatagramLink("127.0.0.1", port, 1, listens=False)
     try:
-        listening.send(build_heartbeat())  # nobody is known yet
-        vehicle.send(build_heartbeat())
-        assert [each.get_type() for each in listening.receive(5)] == ["HEARTBEAT"]
-        listening.send(build_heartbeat())
-        assert [each.get_type() for each in vehicle.receive(5)] == ["HEARTBEAT"]
+        listening.send(build_heartbeat(), None)  # nobody is known yet
+        vehicle.send(build_heartbeat(), None)
+        ((message, sender),) = listening.receive(5)
+        assert message.get_type() == "HEARTBEAT"
+        listening.send(build_heartbeat(), sender)
+        ((message, _),) = vehicle.receive(5)
+        assert message.get_type() == "HEARTBEAT"
     finally:
         listening.close()
         vehicle.close()
@@ -69,11 +71,11 @@ def test_a_stream_that_breaks_is_connected_again(monkeypatch: pytest.MonkeyPatch
         thread = threading.Thread(target=serve)
         thread.start()
         link = StreamLink("127.0.0.1", server.getsockname()[1], 1)
-        link.send(build_heartbeat())
+        link.send(build_heartbeat(), ())
         with pytest.raises(ConnectionError, match="closed the connection"):
             link.receive(10)
         assert link.receive(0) == []
-        link.send(build_heartbeat())
+        link.send(build_heartbeat(), ())
         thread.join(10)
         link.close()
     assert len(heard) == 2

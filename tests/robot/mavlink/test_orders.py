@@ -31,7 +31,7 @@ def from_vehicle(message: Any, system: int = 1, component: int = 1) -> Any:
 
 
 def heartbeat(mode: int, system: int = 1) -> Any:
-    return from_vehicle(mavlink.MAVLink_heartbeat_message(12, 3, 1, mode, 4, 3), system)
+    return from_vehicle(mavlink.MAVLink_heartbeat_message(12, 3, 129, mode, 4, 3), system)
 
 
 def answer(

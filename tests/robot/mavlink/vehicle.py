@@ -28,6 +28,8 @@ class Ardusub:
 
     Attributes
     ----------
+    kind
+        Its connection: ``udpin`` or ``tcpin``, or ``udpout:PORT``.
     loss
         Share of messages that are lost, in each direction.
     refused
@@ -40,6 +42,16 @@ class Ardusub:
         Texts that it was shown.
     restarts_at_next
         Whether the next command makes it restart instead of being answered.
+    vehicle_type, autopilot
+        What its heartbeat says that it is.
+    armed
+        Whether it is armed.
+    is_slow
+        Whether it accepts modes, and stays in the old one until this is False.
+    pilot
+        Mode that a pilot sets again before every heartbeat; None: there is no pilot.
+    key
+        Key of its signatures; None: it signs nothing.
 
     """
 
@@ -51,15 +63,25 @@ class Ardusub:
     asked: int = 0
     texts: list[str] = field(default_factory=list)
     restarts_at_next: bool = False
+    vehicle_type: int = mavlink.MAV_TYPE_SUBMARINE
+    autopilot: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    armed: bool = True
+    is_slow: bool = False
+    pilot: int | None = None
+    key: bytes | None = None
 
     def __post_init__(self) -> None:
         self._chance = random.Random(self.seed)
+        kind, _, port = self.kind.partition(":")
         self._connection: Any = mavutil.mavlink_connection(
-            f"{self.kind}:127.0.0.1:0", source_system=SYSTEM, source_component=COMPONENT
+            f"{kind}:127.0.0.1:{port or 0}", source_system=SYSTEM, source_component=COMPONENT
         )
-        listening = self._connection.listen if self.kind == "tcpin" else self._connection.port
+        listening = self._connection.listen if kind == "tcpin" else self._connection.port
         self.port: int = listening.getsockname()[1]
+        if self.key is not None:
+            self._connection.setup_signing(self.key, sign_outgoing=True)
         self._closing = threading.Event()
+        self._accepted: int | None = None
         self._boot()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -96,9 +118,15 @@ class Ardusub:
             self._connection.mav.send(message)
 
     def _report(self) -> None:
-        armed = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+        if self._accepted is not None and not self.is_slow:
+            self._take_mode(self._accepted)
+        if self.pilot is not None:
+            self.mode = self.pilot
+        flags = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
+        if self.armed:
+            flags |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
         uptime = round((clock.monotonic() - self._began) * 1000)
-        heartbeat = (mavlink.MAV_TYPE_SUBMARINE, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, armed)
+        heartbeat = (self.vehicle_type, self.autopilot, flags)
         active = mavlink.MAV_STATE_ACTIVE
         self._send(mavlink.MAVLink_heartbeat_message(*heartbeat, self.mode, active, 3))
         self._send(mavlink.MAVLink_system_time_message(0, uptime))
@@ -140,8 +168,9 @@ class Ardusub:
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
             if int(message.param2) not in MODES:
                 return int(mavlink.MAV_RESULT_FAILED)
-            done = MODES[int(message.param2)] if self.mode != message.param2 else ""
-            self.mode = int(message.param2)
+            self._accepted = int(message.param2)
+            if not self.is_slow:
+                self._take_mode(self._accepted)
         elif message.command == mavlink.MAV_CMD_DO_SET_SERVO:
             done = f"servo {message.param1:g} {message.param2:g}"
             done, self.pulse = "" if self.pulse == message.param2 else done, message.param2
@@ -153,6 +182,13 @@ class Ardusub:
         if done:
             self.obeyed.append(done)
         return int(mavlink.MAV_RESULT_ACCEPTED)
+
+    def _take_mode(self, mode: int) -> None:
+        """Take a mode that was accepted."""
+        self._accepted = None
+        if self.mode != mode:
+            self.mode = mode
+            self.obeyed.append(MODES[mode])
 
 
 @contextmanager

@@ -1,0 +1,173 @@
+"""Vehicle peer: decides whose messages are the vehicle's, without a network.
+
+The peer is the address from which a heartbeat of the table's system and component came, of a
+submarine with ArduPilot. It stays the peer while it is heard. All else is dropped and counted.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Final
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.robot.mavlink.actions import Message
+from app.robot.mavlink.orders import REBOOT_MS
+from app.robot.mavlink.table import Vehicle
+
+Sender = tuple[Any, ...]
+"""Address of a socket; empty for a connection that has one sender alone."""
+
+SILENT_SECONDS: Final = 5.0
+"""Seconds without a heartbeat after which the vehicle counts as lost."""
+
+NO_ARDUSUB: Final = "no ArduSub"
+
+RIVAL_SECONDS: Final = 60.0
+"""Seconds without a second vehicle after which the next one is announced again."""
+
+
+class VehiclePeer:
+    """State of the other end of a link.
+
+    Parameters
+    ----------
+    vehicle
+        MAVLink ids of the vehicle.
+    now
+        Present time; every method takes it in seconds of a steady clock.
+    expected
+        The only address that may be the vehicle's; None for any.
+
+    Attributes
+    ----------
+    sender
+        Address of the vehicle; None before its first valid heartbeat.
+    dropped
+        Number of messages that were not the vehicle's.
+
+    """
+
+    def __init__(self, vehicle: Vehicle, now: float, expected: Sender | None = None) -> None:
+        self._vehicle = vehicle
+        self._expected = expected
+        self.sender: Sender | None = None
+        self.dropped = 0
+        self._heard = now
+        self._refused = self._rival = self._contradicted = -math.inf
+        self._fault = ""
+        self._clock: tuple[int, float] | None = None
+        self._set_back = False
+        self._notices: list[str] = []
+
+    def find_fault(self, now: float) -> str:
+        """Return, in few words, why nothing may be sent to the vehicle; empty for no fault."""
+        return self._fault if now - self._refused <= SILENT_SECONDS else ""
+
+    def is_proven(self, now: float) -> bool:
+        """Return whether commands may be sent."""
+        return self.sender is not None and not self.find_fault(now)
+
+    def is_silent(self, now: float) -> bool:
+        """Return whether its last heartbeat is too long ago."""
+        return now - self._heard > SILENT_SECONDS
+
+    def take_notices(self) -> list[str]:
+        """Return, once, the lines for people."""
+        notices, self._notices = self._notices, []
+        return notices
+
+    def admit(self, message: Message, sender: Sender, now: float, *, busy: bool) -> bool:
+        """Return whether a message comes from the vehicle's address, and may be believed.
+
+        Parameters
+        ----------
+        message, sender
+            The message and its address.
+        now
+            Seconds of a steady clock.
+        busy
+            Whether an order is in progress: the peer then changes to an address of the same host
+            alone, such as a router that was started again.
+
+        """
+        named = (message.get_srcSystem(), message.get_srcComponent())
+        is_its = named == (self._vehicle.system, self._vehicle.component)
+        beats = is_its and message.get_type() == "HEARTBEAT"
+        if not self._may_be(sender, now, busy=busy):
+            if beats:
+                self._note_rival(sender, now)
+            self.dropped += 1
+            return False
+        if beats and (kind := describe_other_kind(message)):
+            self._refuse(NO_ARDUSUB, f"vehicle is no ArduSub but {kind}", now)
+        elif beats and not self.find_fault(now):
+            if sender != self.sender:
+                self.sender, self._clock = sender, None
+            self._heard = now
+        if is_its and message.get_type() == "SYSTEM_TIME" and sender == self.sender:
+            self._watch_clock(message.time_boot_ms, now)
+        admitted = sender == self.sender and self.is_proven(now)
+        self.dropped += not admitted
+        return admitted
+
+    def _may_be(self, sender: Sender, now: float, *, busy: bool) -> bool:
+        """Return whether an address is, or may become, that of the vehicle."""
+        if self._expected is not None:
+            return sender == self._expected
+        if self.sender is None or sender == self.sender:
+            return True
+        return self.is_silent(now) and (not busy or sender[:1] == self.sender[:1])
+
+    def _note_rival(self, sender: Sender, now: float) -> None:
+        """Announce a second sender with the vehicle's ids, once while it is heard."""
+        if now - self._rival > RIVAL_SECONDS:
+            address = ":".join(str(part) for part in sender[:2])
+            number = self._vehicle.system
+            self._notices.append(f"two vehicles with system {number}: {address} is ignored")
+        self._rival = now
+
+    def _refuse(self, fault: str, words: str, now: float) -> None:
+        """Withdraw the proof while the fault is seen, and say why once."""
+        if fault != self.find_fault(now):
+            self._notices.append(f"{words}; nothing is sent")
+        self._fault, self._refused = fault, now
+
+    def _watch_clock(self, uptime: int, now: float) -> None:
+        """Detect two vehicles behind one address: their clocks jump back and forth.
+
+        A vehicle that starts again goes back and never returns; one late packet does both once.
+        """
+        before, self._clock = self._clock, (uptime, now)
+        if before is None:
+            return
+        passed = (now - before[1]) * 1000
+        if uptime + REBOOT_MS < before[0]:
+            self._set_back = True
+        elif self._set_back and uptime - before[0] > passed + REBOOT_MS:
+            self._set_back = False
+            if now - self._contradicted <= SILENT_SECONDS:
+                words = f"two vehicles with system {self._vehicle.system}"
+                self._refuse("two vehicles", words, now)
+            self._contradicted = now
+
+
+def describe_other_kind(heartbeat: Message) -> str:
+    """Describe the kind of a vehicle that is no ArduSub; empty for an ArduSub.
+
+    The numbers of modes mean something else in every other kind, so none may be sent there.
+    """
+    if (heartbeat.type, heartbeat.autopilot) == (
+        mavlink.MAV_TYPE_SUBMARINE,
+        mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
+    ):
+        return ""
+    words = []
+    for prefix, number in (
+        ("MAV_AUTOPILOT", heartbeat.autopilot),
+        ("MAV_TYPE", heartbeat.type),
+    ):
+        known = mavlink.enums[prefix]
+        name = known[number].name.removeprefix(f"{prefix}_") if number in known else ""
+        words.append(name or f"{prefix} {number}")
+    return ", ".join(words)
