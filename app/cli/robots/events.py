@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from app.robot import (
     Event,
+    FrameRateChanged,
     FramesDropped,
     LanguageChanged,
     LanguageRefused,
+    OutputFailed,
     PhraseHeard,
+    RecognitionReady,
     SourceLost,
     SourceOpened,
     SourceRestored,
     SourceWarned,
     TakeRecognized,
     TakeRejected,
+    VehicleReported,
 )
 
 
@@ -23,6 +27,10 @@ def describe_event(event: Event) -> str:
         return _describe_take(event)
     if isinstance(event, PhraseHeard):
         return event.phrase.text
+    if isinstance(event, VehicleReported):
+        return f"vehicle: {event.text}"
+    if isinstance(event, OutputFailed):
+        return f"{event.output} is not written any more: {event.reason}; recognition goes on"
     if isinstance(event, LanguageChanged | LanguageRefused):
         return _describe_language(event)
     return _describe_source(event)
@@ -56,6 +64,10 @@ def _describe_source(event: Event) -> str:
             return f"source lost: {reason}; it is opened again and again"
         case SourceRestored(missing=missing):
             return f"source restored after {missing:.1f} s"
+        case RecognitionReady(time=time):
+            return f"ready for gestures, {time:.1f} s after the source was opened"
+        case FrameRateChanged():
+            return event.words
         case FramesDropped(seconds=seconds, dropped=dropped, frames=frames):
             return f"{dropped} of {dropped + frames} frames dropped in {seconds:.0f} s"
         case _:

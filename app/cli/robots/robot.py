@@ -5,47 +5,42 @@ Packages that only some options need are imported when the option is given.
 
 from __future__ import annotations
 
-import os
-import signal
-import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager
+from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from types import FrameType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
+from app.cli.robots.channels import Channels
 from app.cli.robots.events import describe_event
 from app.cli.robots.ros_arguments import BEGIN
-from app.cli.robots.supervision import report_event
-from app.cli.terminal import people
-from app.recognition.errors import EstimatorError, PublishError
-from app.recognition.estimation import create_estimator
-from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.estimation.factory import MEDIAPIPE_HANDS, NO_HANDS
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.gestures.profile import PROFILES
-from app.robot import (
-    Event,
-    LandmarkListener,
-    Runtime,
-    Source,
-    TakeRecognized,
-    create_listener,
-    open_source,
+from app.cli.robots.run import (
+    Control,
+    RobotOptions,
+    handle_signals,
+    profile_until_stopped,
+    run_robot,
+    run_with_uploads,
 )
-from app.robot.event_messages import format_line
-from app.robot.language_watcher import LanguageWatcher
-from app.robot.publishing.publisher import Network, Publisher, open_publisher
-from app.robot.runtime import Observer
+from app.cli.robots.supervision import report_event
+from app.recognition.errors import PublishError
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS
+from app.recognition.gestures.profile import PROFILES
+from app.robot.publishing.publisher import Network
 from app.robot.sources.cameras import SCHEMES
 from app.system.service_manager import ServiceManager
 
+if TYPE_CHECKING:
+    from app.robot.publishing.robot_files import RobotFiles
+    from app.robot.publishing.status_page import StatusPage
+
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""
+
+LOG_LOST = 4
+"""Exit code of a robot that went on though stdout or stderr could not be written."""
 
 
 def robot(
@@ -99,6 +94,14 @@ def robot(
             help="Also serve a page with the robot's state; on this machine alone without HOST.",
         ),
     ] = None,
+    upload: Annotated[
+        bool,
+        typer.Option(
+            "--upload",
+            help="The page also takes the language file and the vehicle table; the robot waits for "
+            "the language if there is none. Everybody who reaches the page can replace them.",
+        ),
+    ] = False,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
@@ -113,50 +116,53 @@ def robot(
         raise typer.BadParameter(f"{BEGIN} needs --ros2: add that option", context)
     if (mavlink is None) != (vehicle is None):
         raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
+    if upload and not page:
+        raise typer.BadParameter("--upload needs --page: give both", context)
+    options = RobotOptions(
+        language=language,
+        source=source,
+        profile=profile,
+        without_salutes=without_salutes,
+        water=water,
+        estimator=estimator,
+        hands=hands,
+        ros2=context.obj if ros2 else None,
+        publish=publish,
+        mavlink=mavlink,
+        vehicle=vehicle,
+        upload=upload,
+    )
+    if profile_stages:
+        profile_until_stopped(options)
+        return
+    channels = Channels(ends_with_reader=mavlink is None)
+    channels.add(partial(report_event, ServiceManager()))
+    control = Control()
     with ExitStack() as opened:
-        watcher = opened.enter_context(LanguageWatcher(language, profile))
-        sees_hands = hands != NO_HANDS
-        if watcher.first.trigger.kind == "salute" and not (without_salutes or sees_hands):
-            raise EstimatorError(
-                f"--hands {hands} finds no hand and so no salute: choose other hands, give the "
-                "language another trigger, or add --without-salutes"
-            )
-        listener = create_listener(watcher.first, without_salutes=without_salutes, hands=sees_hands)
-        frames = opened.enter_context(closing(open_source(source)))
-        finder = opened.enter_context(closing(create_estimator(estimator, hands=hands)))
-        if profile_stages:
-            body = opened.enter_context(closing(create_estimator(estimator, hands=NO_HANDS)))
-            profile_until_stopped(frames, body, finder, listener, water)
-            return
-        report = partial(report_event, ServiceManager())
-        handlers: list[Callable[[Event], None]] = [print_event, report]
-        observer: Observer | None = None
-        if ros2:
-            from app.cli.robots.ros2_topics import open_ros2_topics
-
-            topics = opened.enter_context(open_ros2_topics(context.obj))
-            handlers.append(lambda event: topics.publish_event(event, listener.language))
-            observer = topics.publish_frame
-        if publish:
-            handlers.append(opened.enter_context(closing(open_publisher(publish))).publish)
         if page:
-            handlers.append(opened.enter_context(closing(open_page(page))).publish)
-        if mavlink and vehicle:
-            from app.cli.robots.vehicle import open_bridge
-
-            bridge = open_bridge(mavlink, vehicle, listener, frames)
-            handlers.append(opened.enter_context(closing(bridge)).publish)
-        runtime = Runtime(
-            frames, finder, listener, water=water, changes=watcher.next_change, observer=observer
-        )
-        with handle_signals(runtime.stop, watcher.reload):
-            recognised = emit_all(runtime, handlers)
-    if not recognised and not frames.live:
+            files = open_files(options, control) if upload else None
+            shown = opened.enter_context(closing(open_page(page, files)))
+            channels.add(shown.publish)
+            if upload:
+                opened.enter_context(handle_signals(control.stop, control.reload))
+                recognised = run_with_uploads(options, channels, control, shown)
+        if not upload:
+            recognised = run_robot(options, channels, control)
+    if channels.failed:
+        raise typer.Exit(LOG_LOST)
+    if not recognised:
         raise typer.Exit(NOTHING_RECOGNISED)
 
 
-def open_page(address: str) -> Publisher:
-    """Serve the status page at ``[HOST:]PORT``.
+def open_files(options: RobotOptions, control: Control) -> RobotFiles:
+    """Return the files that the page takes by upload."""
+    from app.robot.publishing.robot_files import RobotFiles
+
+    return RobotFiles(options.language, options.vehicle, options.profile, control.take_file)
+
+
+def open_page(address: str, files: RobotFiles | None = None) -> StatusPage:
+    """Serve the status page at ``[HOST:]PORT``; it takes `files` by upload.
 
     Raises
     ------
@@ -169,67 +175,4 @@ def open_page(address: str) -> Publisher:
     host, _, port = address.rpartition(":")
     if not port.isdecimal():
         raise PublishError(f"{address!r} is no place for the page; give PORT or HOST:PORT")
-    return StatusPage(host.strip("[]") or "127.0.0.1", int(port), describe_event)
-
-
-def emit_all(events: Iterable[Event], handlers: Sequence[Callable[[Event], None]]) -> int:
-    """Pass every event to all handlers; return the number of recognised takes.
-
-    It ends early when the reader of stdout has closed the pipe.
-    """
-    recognised = 0
-    try:
-        for event in events:
-            recognised += isinstance(event, TakeRecognized)
-            for handler in handlers:
-                handler(event)
-    except BrokenPipeError:
-        # Python flushes stdout at exit, which would raise the error again.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return recognised
-
-
-def profile_until_stopped(
-    source: Source,
-    body: PoseEstimator,
-    whole: PoseEstimator,
-    listener: LandmarkListener,
-    water: WaterCorrection,
-) -> None:
-    """Print the costs of the stages when the source ends or a signal stops it."""
-    from app.cli.robots.stages import show_stages
-
-    stops: list[bool] = []
-    with handle_signals(lambda: stops.append(True), lambda: None):
-        show_stages(source, body, whole, listener, water=water, is_over=lambda: bool(stops))
-
-
-def print_event(event: Event) -> None:
-    """Print one event as JSON on stdout and in words on stderr."""
-    typer.echo(format_line(event))
-    if sentence := describe_event(event):
-        people.print(sentence, markup=False, highlight=False, soft_wrap=True)
-
-
-@contextmanager
-def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
-    """Stop after the current frame on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
-    actions = {signal.SIGINT: stop, signal.SIGTERM: stop}
-    if hasattr(signal, "SIGHUP"):  # not on Windows
-        actions[signal.SIGHUP] = reload
-
-    before = {number: signal.getsignal(number) for number in actions}
-
-    def handle(number: int, frame: FrameType | None) -> None:
-        kind = signal.Signals(number)
-        if actions[kind] is stop:
-            signal.signal(kind, before[kind])
-        actions[kind]()
-
-    for number in actions:
-        signal.signal(number, handle)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    return StatusPage(host.strip("[]") or "127.0.0.1", int(port), describe_event, files)

@@ -7,21 +7,26 @@ import threading
 import time as clock
 from collections import deque
 from collections.abc import Callable
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from importlib import resources
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from app import __version__
-from app.recognition.errors import PublishError
+from app.recognition.errors import OsgError, PublishError
 from app.robot.event_messages import to_message
 from app.robot.events import (
     Event,
+    FrameRateChanged,
     Heartbeat,
     LanguageChanged,
     SourceLost,
     SourceOpened,
     SourceRestored,
 )
+from app.robot.publishing.page_server import PageServer, is_own_host, is_own_origin
+
+if TYPE_CHECKING:  # it reads vehicle tables, which need a package of the extra mavlink
+    from app.robot.publishing.robot_files import FileKind, RobotFiles
 
 MOST_EVENTS: Final = 50
 """Events that the page shows; older ones are in the log."""
@@ -32,6 +37,15 @@ heartbeats."""
 
 POLL_SECONDS: Final = 0.1
 """Longest time in seconds until the server notices that it is closed."""
+
+POLICY: Final = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'"
+)
+"""Content security policy: the page loads nothing from elsewhere, and sends nothing there."""
+
+UPLOAD_TYPE: Final = "application/octet-stream"
+"""Content type of an upload, which a form of another page cannot send."""
 
 SERVICE: Final = {
     "name": "Diver gestures",
@@ -50,8 +64,10 @@ SERVICE: Final = {
 class StatusPage:
     """Web server with one page; a `Publisher`.
 
-    The server is read-only. ``/`` is the page and ``/status.json`` its data, ``/healthz`` answers
-    200 or 503, and ``/register_service`` registers the page in BlueOS.
+    ``/`` is the page and ``/status.json`` its data, ``/healthz`` answers 200 or 503, and
+    ``/register_service`` registers the page in BlueOS. With `files`, the page takes uploads at
+    ``/files/language`` and ``/files/vehicle``; without, it changes nothing. A host name that a
+    foreign page could have let point here is refused.
 
     Parameters
     ----------
@@ -59,6 +75,8 @@ class StatusPage:
         Address to listen on; port 0 finds a free one.
     describe
         Describes an event in one sentence; empty for events that need none.
+    files
+        Files that the page takes by upload; None: it takes none.
 
     Raises
     ------
@@ -67,22 +85,35 @@ class StatusPage:
 
     """
 
-    def __init__(self, host: str, port: int, describe: Callable[[Event], str]) -> None:
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        describe: Callable[[Event], str],
+        files: RobotFiles | None = None,
+    ) -> None:
         self._describe = describe
+        self.files = files
+        self._waits_for = ""
         self._lock = threading.Lock()
         self._events: deque[dict[str, Any]] = deque(maxlen=MOST_EVENTS)
-        self._facts: dict[str, Any] = {"source": None, "language": None, "lost": False}
+        self._facts: dict[str, Any] = {
+            "source": None,
+            "language": None,
+            "lost": False,
+            "slow": "",
+        }
         self._live = False
         self._heard = clock.monotonic()
-        page = (resources.files("app.robot.publishing") / "status_page.html").read_bytes()
+        html = (resources.files("app.robot.publishing") / "status_page.html").read_bytes()
         try:
-            self._server = ThreadingHTTPServer((host, port), _build_handler(self, page))
+            shown = {"page": self, "html": html, "uploading": threading.Lock()}
+            self._server = PageServer((host, port), type("Handler", (PageHandler,), shown))
         except (OSError, OverflowError) as error:
             raise PublishError(
                 f"the page cannot be served at {host}:{port} ({error}); another program may have "
                 "the port, choose another"
             ) from error
-        self._server.daemon_threads = True
         self._thread = threading.Thread(
             target=self._server.serve_forever, args=(POLL_SECONDS,), name="page", daemon=True
         )
@@ -107,12 +138,20 @@ class StatusPage:
                     self._facts["lost"] = True
                 case SourceRestored():
                     self._facts["lost"] = False
+                case FrameRateChanged(sufficient=sufficient):
+                    self._facts["slow"] = "" if sufficient else event.words
                 case Heartbeat(frames=frames, dropped=dropped):
                     self._facts |= {"frames": frames, "dropped": dropped}
             if text := self._describe(event):
                 message = to_message(event).model_dump(mode="json")
                 kind, time = message["event"], message["time"]
                 self._events.append({"event": kind, "time": time, "text": text})
+
+    def wait_for(self, reason: str) -> None:
+        """Show why the robot does not run yet; empty: it runs."""
+        with self._lock:
+            self._waits_for = reason
+            self._live &= not reason
 
     def close(self) -> None:
         """Stop serving."""
@@ -129,41 +168,128 @@ class StatusPage:
                 "version": __version__,
                 "works": works,
                 "silent_seconds": round(seconds, 1),
+                "waits_for": self._waits_for,
+                "files": None if self.files is None else {"missing": self.files.list_missing()},
                 **self._facts,
                 "events": list(self._events),
             }
 
 
-def _build_handler(page: StatusPage, html: bytes) -> type[BaseHTTPRequestHandler]:
-    class Handler(BaseHTTPRequestHandler):
-        def do_GET(self) -> None:
-            match self.path.partition("?")[0]:
-                case "/":
-                    self._answer(200, html, "text/html; charset=utf-8")
-                case "/status.json":
-                    self._answer_json(200, page.read_status())
-                case "/healthz":
-                    works = page.read_status()["works"]
-                    self._answer_json(200 if works else 503, {"works": works})
-                case "/register_service":
-                    self._answer_json(200, SERVICE)
-                case _:
-                    self._answer_json(404, {"detail": "there is no such page"})
+class PageHandler(BaseHTTPRequestHandler):
+    """Answers one request to a `StatusPage`.
 
-        def _answer_json(self, status: int, content: dict[str, Any]) -> None:
-            body = json.dumps(content, allow_nan=False).encode()
-            self._answer(status, body, "application/json")
+    Attributes
+    ----------
+    page
+        The page, which `StatusPage` sets in a class of its own.
+    html
+        Its document.
+    uploading
+        Held while an upload is read, so that there is one in memory at most.
 
-        def _answer(self, status: int, body: bytes, kind: str) -> None:
-            self.send_response(status)
-            self.send_header("Content-Type", kind)
-            self.send_header("Content-Length", str(len(body)))
-            self.send_header("Cache-Control", "no-store")
-            self.send_header("X-Content-Type-Options", "nosniff")
-            self.end_headers()
-            self.wfile.write(body)
+    """
 
-        def log_message(self, format: str, *args: object) -> None:
-            """Print nothing: stderr is for the robot's own words."""
+    page: StatusPage
+    html: bytes
+    uploading: threading.Lock
 
-    return Handler
+    server_version = "osg-studio"
+    sys_version = ""
+
+    def do_GET(self) -> None:
+        """Answer a request that changes nothing."""
+        if not self._is_for_us():
+            return
+        match self.path.partition("?")[0]:
+            case "/":
+                self._answer(200, self.html, "text/html; charset=utf-8")
+            case "/status.json":
+                self._answer_json(200, self.page.read_status())
+            case "/healthz":
+                works = self.page.read_status()["works"]
+                self._answer_json(200 if works else 503, {"works": works})
+            case "/register_service":
+                self._answer_json(200, SERVICE)
+            case _:
+                self._refuse(404, "there is no such page")
+
+    def do_POST(self) -> None:
+        """Take an upload; see `RobotFiles`."""
+        if not self._is_for_us():
+            return
+        files, kind = self.page.files, self.path.rpartition("/files/")[2]
+        if files is None or files.find_path(kind) is None:
+            self._refuse(404, "there is no such page")
+        elif refused := self._find_upload_fault(files.most_bytes):
+            self._refuse(*refused)
+        elif not self.uploading.acquire(blocking=False):
+            self._refuse(503, "another file is being uploaded; try again in a moment")
+        else:
+            try:
+                self._take(files, cast("FileKind", kind))
+            finally:
+                self.uploading.release()
+
+    def _find_upload_fault(self, most_bytes: int) -> tuple[int, str] | None:
+        """Return status and detail of a request that is no upload of this page's own."""
+        if not is_own_origin(self.headers["Origin"], self.headers["Host"]):
+            return 403, "only this robot's own page may do this: open it by its address"
+        if self.headers["Content-Type"] != UPLOAD_TYPE:
+            return 415, f"send the file as {UPLOAD_TYPE}"
+        size = self.headers["Content-Length"] or ""
+        if not (size.isascii() and size.isdecimal()):
+            return 411, "the size of the file is missing"
+        if len(size) > len(str(most_bytes)) or int(size) > most_bytes:
+            return 413, f"a file has at most {most_bytes / 1e6:g} million bytes"
+        return None
+
+    def _take(self, files: RobotFiles, kind: FileKind) -> None:
+        size = int(self.headers["Content-Length"])
+        content = self.rfile.read(size)
+        if len(content) < size:
+            self._refuse(400, "the file broke off; send it again")
+            return
+        token = self.headers["Confirm"]
+        try:
+            proposal = (
+                files.propose(kind, content)
+                if token is None
+                else files.replace(kind, content, token)
+            )
+        except OsgError as error:
+            self._refuse(422, str(error))
+        except OSError as error:
+            self._refuse(507, f"the file cannot be written: {error.strerror or error}")
+        else:
+            if proposal is None:
+                self._answer_json(200, {"replaced": True})
+            else:
+                changed = {"changes": proposal.changes, "token": proposal.token}
+                self._answer_json(200 if token is None else 409, changed)
+
+    def _is_for_us(self) -> bool:
+        """Refuse a request for another host; see `is_own_host`."""
+        if is_own_host(self.headers["Host"]):
+            return True
+        self._refuse(403, "the robot does not know this host: open its page by its address")
+        return False
+
+    def _refuse(self, status: int, detail: str) -> None:
+        self._answer_json(status, {"detail": detail})
+
+    def _answer_json(self, status: int, content: dict[str, Any]) -> None:
+        body = json.dumps(content, allow_nan=False).encode()
+        self._answer(status, body, "application/json")
+
+    def _answer(self, status: int, body: bytes, kind: str) -> None:
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        self.send_header("Content-Length", str(len(body)))
+        self.send_header("Cache-Control", "no-store")
+        self.send_header("X-Content-Type-Options", "nosniff")
+        self.send_header("Content-Security-Policy", POLICY)
+        self.end_headers()
+        self.wfile.write(body)
+
+    def log_message(self, format: str, *args: object) -> None:
+        """Print nothing: stderr is for the robot's own words."""

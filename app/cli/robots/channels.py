@@ -1,0 +1,149 @@
+"""Channels of the robot's events: stdout and stderr, which may fail, and the publishers."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Literal, TextIO
+
+from app.cli.robots.events import describe_event
+from app.robot import Event, OutputFailed, VehicleReported
+from app.robot.event_messages import format_line
+
+Handler = Callable[[Event], None]
+"""Called with every event."""
+
+
+class Channels:
+    """Passes every event to stdout as JSON, to stderr in words, and to the handlers.
+
+    A stream that cannot be written, such as a log on a full disk, is given up: the other channels
+    say so once, and everything else goes on.
+
+    Parameters
+    ----------
+    ends_with_reader
+        Whether a reader of stdout that closes the pipe ends the robot, by `BrokenPipeError`.
+
+    Attributes
+    ----------
+    failed
+        Whether a stream was given up.
+    vehicle
+        Handler that commands a vehicle; it gets no reports about the vehicle. None: there is none.
+
+    """
+
+    def __init__(self, *, ends_with_reader: bool) -> None:
+        self._ends_with_reader = ends_with_reader
+        self._streams: list[Stream] = [
+            Stream("stdout", sys.stdout, format_line),
+            Stream("stderr", sys.stderr, describe_event),
+        ]
+        self._handlers: list[Handler] = []
+        self.vehicle: Handler | None = None
+        self._lock = threading.RLock()
+        self._time = 0.0
+        self.failed = False
+
+    def add(self, handler: Handler) -> None:
+        """Add a handler for as long as the process runs."""
+        self._handlers.append(handler)
+
+    @contextmanager
+    def joined_by(self, handlers: Sequence[Handler]) -> Iterator[None]:
+        """Pass events to further handlers, and to a vehicle, for one run."""
+        kept = list(self._handlers)
+        self._handlers += handlers
+        try:
+            yield
+        finally:
+            self._handlers, self.vehicle = kept, None
+
+    def emit(self, event: Event) -> None:
+        """Pass an event to all channels; any thread may call this.
+
+        Raises
+        ------
+        BrokenPipeError
+            When the reader of stdout has closed the pipe and the robot ends with it.
+
+        """
+        waiting = [event]
+        while waiting:
+            current = waiting.pop(0)
+            with self._lock:
+                self._time = current.time
+                waiting += self._write(current)
+                for handler in self._handlers:
+                    handler(current)
+            # Outside the lock: the vehicle's own thread reports through `emit`.
+            if self.vehicle is not None and not isinstance(current, VehicleReported):
+                self.vehicle(current)
+
+    def report_vehicle(self, text: str) -> None:
+        """Pass a line about the vehicle to all channels."""
+        self.emit(VehicleReported(self._time, text))
+
+    def _write(self, event: Event) -> list[OutputFailed]:
+        """Write an event to the streams; return the failures."""
+        failures = []
+        for stream in list(self._streams):
+            try:
+                stream.write(event)
+            except OSError as error:
+                stream.give_up()
+                if (
+                    self._ends_with_reader
+                    and isinstance(error, BrokenPipeError)
+                    and stream.name == "stdout"
+                ):
+                    raise
+                self._streams.remove(stream)
+                self.failed = True
+                reason = error.strerror or str(error)
+                failures.append(OutputFailed(event.time, stream.name, reason))
+        return failures
+
+
+class Stream:
+    """One standard stream.
+
+    Parameters
+    ----------
+    name
+        Its name.
+    file
+        The stream; None if the process was started without it.
+    format_event
+        Formats an event as a line; empty for events that it leaves out.
+
+    """
+
+    def __init__(
+        self,
+        name: Literal["stdout", "stderr"],
+        file: TextIO | None,
+        format_event: Callable[[Event], str],
+    ) -> None:
+        self.name: Literal["stdout", "stderr"] = name
+        self._file = file
+        self._format = format_event
+
+    def write(self, event: Event) -> None:
+        """Write an event; raises `OSError` when that fails."""
+        if self._file is not None and (line := self._format(event)):
+            self._file.write(f"{line}\n")
+            self._file.flush()
+
+    def give_up(self) -> None:
+        """Drop what was not written: Python would write it at exit, and fail again."""
+        if self._file is None:
+            return
+        null = os.open(os.devnull, os.O_WRONLY)
+        with suppress(OSError):  # a stream of another program that runs this one has no descriptor
+            os.dup2(null, self._file.fileno())
+        os.close(null)

@@ -1,0 +1,276 @@
+"""Run of ``osg-studio robot``: opens everything that the options name, and ends it in order.
+
+Packages that only some options need are imported when the option is given.
+"""
+
+from __future__ import annotations
+
+import signal
+import time as clock
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Final
+
+from app.cli.robots.channels import Channels, Handler
+from app.cli.terminal import describe_error, people
+from app.recognition.errors import EstimatorError, OsgError
+from app.recognition.estimation import create_estimator
+from app.recognition.estimation.factory import NO_HANDS
+from app.recognition.estimation.water import WaterCorrection
+from app.robot import (
+    ActiveLanguage,
+    Event,
+    LandmarkListener,
+    Runtime,
+    TakeRecognized,
+    create_listener,
+    open_source,
+)
+from app.robot.language_watcher import LanguageWatcher
+from app.robot.publishing.publisher import Network, open_publisher
+from app.robot.runtime import Observer
+
+if TYPE_CHECKING:
+    from app.robot.publishing.status_page import StatusPage
+
+RETRY_SECONDS: Final = 10.0
+"""Seconds between two attempts to begin while the page waits for files, or for a source."""
+
+WAIT_STEP: Final = 0.1
+"""Seconds after which a waiting robot looks for a signal or an upload."""
+
+
+@dataclass(frozen=True)
+class RobotOptions:
+    """Options of the command; `ros2` holds the arguments of ROS 2, None without it."""
+
+    language: Path
+    source: str
+    profile: str | None
+    without_salutes: bool
+    water: WaterCorrection
+    estimator: str
+    hands: str
+    ros2: Sequence[str] | None
+    publish: Network | None
+    mavlink: str | None
+    vehicle: Path | None
+    upload: bool
+
+    def open_listener(self, first: ActiveLanguage) -> LandmarkListener:
+        """Create the listener for the first language."""
+        sees_hands = self.hands != NO_HANDS
+        if first.trigger.kind == "salute" and not (self.without_salutes or sees_hands):
+            raise EstimatorError(
+                f"--hands {self.hands} finds no hand and so no salute: choose other hands, give "
+                "the language another trigger, or add --without-salutes"
+            )
+        return create_listener(first, without_salutes=self.without_salutes, hands=sees_hands)
+
+    def find_vehicle_table(self) -> Path | None:
+        """Return the vehicle table; None where there is none, or none was uploaded yet."""
+        missing = self.vehicle is None or (self.upload and not self.vehicle.exists())
+        return None if missing else self.vehicle
+
+
+class Control:
+    """What signals and uploads want of a run.
+
+    Only plain attributes are set, because a signal handler must not wait for a lock.
+
+    Attributes
+    ----------
+    stopped
+        Whether a signal has ended the robot.
+    changed
+        Whether a file was replaced that a run reads at its start.
+
+    """
+
+    def __init__(self) -> None:
+        self.stopped = self.changed = False
+        self._runtime: Runtime | None = None
+        self._watcher: LanguageWatcher | None = None
+
+    def begin(self, runtime: Runtime, watcher: LanguageWatcher) -> None:
+        """Control a run from now on."""
+        self._runtime, self._watcher = runtime, watcher
+        if self.stopped or self.changed:
+            runtime.stop()
+
+    def stop(self) -> None:
+        """End the robot."""
+        self.stopped = True
+        if self._runtime is not None:
+            self._runtime.stop()
+
+    def reload(self) -> None:
+        """Read the language file again."""
+        if self._watcher is not None:
+            self._watcher.reload()
+
+    def take_file(self, kind: str) -> None:
+        """Note a replaced file: a running robot reads a new language, and begins a table anew."""
+        if self._runtime is None or kind == "vehicle":
+            self.changed = True
+            if self._runtime is not None:
+                self._runtime.stop()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until a file is replaced or the robot ends, at most so long."""
+        self._runtime = self._watcher = None
+        by = clock.monotonic() + seconds
+        while not (self.stopped or self.changed) and clock.monotonic() < by:
+            clock.sleep(WAIT_STEP)
+
+
+def run_with_uploads(
+    options: RobotOptions, channels: Channels, control: Control, page: StatusPage
+) -> bool:
+    """Run until the source ends or a signal comes; what keeps a run from starting is tried again.
+
+    Returns
+    -------
+    As `run_robot`.
+
+    """
+    told = ""
+    while not control.stopped:
+        control.changed = False
+        try:
+            recognised = run_robot(options, channels, control, lambda: page.wait_for(""))
+        except (OsgError, OSError) as error:
+            reason = describe_error(error)
+            page.wait_for(reason)
+            if reason != told:
+                people.print(f"waiting: {reason}", markup=False, highlight=False, soft_wrap=True)
+            told = reason
+            control.wait(RETRY_SECONDS)
+            continue
+        if not control.changed:
+            return recognised
+        told = ""
+    return True
+
+
+def run_robot(
+    options: RobotOptions,
+    channels: Channels,
+    control: Control,
+    begin: Callable[[], None] = lambda: None,
+) -> bool:
+    """Open everything, and pass the events to the channels until the source ends.
+
+    Parameters
+    ----------
+    options, channels, control
+        What to run, where to report, and who stops it.
+    begin
+        Called when all is open.
+
+    Returns
+    -------
+    False for a recording in which nothing was recognised.
+
+    """
+    with ExitStack() as opened:
+        watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
+        listener = options.open_listener(watcher.first)
+        frames = opened.enter_context(closing(open_source(options.source)))
+        finder = create_estimator(options.estimator, hands=options.hands)
+        opened.enter_context(closing(finder))
+        handlers: list[Handler] = []
+        observer: Observer | None = None
+        if options.ros2 is not None:
+            from app.cli.robots.ros2_topics import open_ros2_topics
+
+            topics = opened.enter_context(open_ros2_topics(options.ros2))
+            handlers.append(lambda event: topics.publish_event(event, listener.language))
+            observer = topics.publish_frame
+        if options.publish:
+            publisher = opened.enter_context(closing(open_publisher(options.publish)))
+            handlers.append(publisher.publish)
+        # The bridge still reports while it closes, so it is closed before the handlers are left.
+        opened.enter_context(channels.joined_by(handlers))
+        if options.mavlink and (table := options.find_vehicle_table()):
+            from app.cli.robots.vehicle import open_bridge
+
+            bridge = open_bridge(
+                options.mavlink,
+                table,
+                listener,
+                frames,
+                channels.report_vehicle,
+                without_salutes=options.without_salutes,
+            )
+            channels.vehicle = opened.enter_context(closing(bridge)).publish
+        runtime = Runtime(
+            frames,
+            finder,
+            listener,
+            water=options.water,
+            changes=watcher.next_change,
+            observer=observer,
+        )
+        control.begin(runtime, watcher)
+        begin()
+        signals = handle_signals(control.stop, control.reload)
+        with nullcontext() if options.upload else signals:
+            recognised = emit_all(runtime, channels)
+    return bool(recognised) or frames.live
+
+
+def emit_all(events: Iterable[Event], channels: Channels) -> int:
+    """Pass every event to the channels; return the number of recognised takes.
+
+    It ends early when the reader of stdout has closed the pipe.
+    """
+    recognised = 0
+    with suppress(BrokenPipeError):
+        for event in events:
+            recognised += isinstance(event, TakeRecognized)
+            channels.emit(event)
+    return recognised
+
+
+def profile_until_stopped(options: RobotOptions) -> None:
+    """Print the costs of the stages when the source ends or a signal stops it."""
+    from app.cli.robots.stages import show_stages
+
+    with ExitStack() as opened:
+        watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
+        listener = options.open_listener(watcher.first)
+        source = opened.enter_context(closing(open_source(options.source)))
+        whole = create_estimator(options.estimator, hands=options.hands)
+        opened.enter_context(closing(whole))
+        body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))
+        stops: list[bool] = []
+        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
+        show_stages(source, body, whole, listener, water=options.water, is_over=lambda: bool(stops))
+
+
+@contextmanager
+def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
+    """Stop after the current frame on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
+    actions = {signal.SIGINT: stop, signal.SIGTERM: stop}
+    if hasattr(signal, "SIGHUP"):  # not on Windows
+        actions[signal.SIGHUP] = reload
+
+    before = {number: signal.getsignal(number) for number in actions}
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        kind = signal.Signals(number)
+        if actions[kind] is stop:
+            signal.signal(kind, before[kind])
+        actions[kind]()
+
+    for number in actions:
+        signal.signal(number, handle)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
