@@ -226,9 +226,10 @@ class PageHandler(BaseHTTPRequestHandler):
             self._refuse(503, "another file is being uploaded; try again in a moment")
         else:
             try:
-                self._take(files, cast("FileKind", kind))
+                answer = self._take(files, cast("FileKind", kind))
             finally:
-                self.uploading.release()
+                self.uploading.release()  # before the answer, after which the next upload may come
+            self._answer_json(*answer)
 
     def _find_upload_fault(self, most_bytes: int) -> tuple[int, str] | None:
         """Return status and detail of a request that is no upload of this page's own."""
@@ -243,29 +244,25 @@ class PageHandler(BaseHTTPRequestHandler):
             return 413, f"a file has at most {most_bytes / 1e6:g} million bytes"
         return None
 
-    def _take(self, files: RobotFiles, kind: FileKind) -> None:
+    def _take(self, files: RobotFiles, kind: FileKind) -> tuple[int, dict[str, Any]]:
+        """Read an upload; return status and content of the answer."""
         size = int(self.headers["Content-Length"])
         content = self.rfile.read(size)
         if len(content) < size:
-            self._refuse(400, "the file broke off; send it again")
-            return
+            return 400, {"detail": "the file broke off; send it again"}
         token = self.headers["Confirm"]
         try:
-            proposal = (
-                files.propose(kind, content)
-                if token is None
-                else files.replace(kind, content, token)
-            )
-        except OsgError as error:
-            self._refuse(422, str(error))
-        except OSError as error:
-            self._refuse(507, f"the file cannot be written: {error.strerror or error}")
-        else:
-            if proposal is None:
-                self._answer_json(200, {"replaced": True})
+            if token is None:
+                status, proposal = 200, files.propose(kind, content)
+            elif (changed := files.replace(kind, content, token)) is None:
+                return 200, {"replaced": True}
             else:
-                changed = {"changes": proposal.changes, "token": proposal.token}
-                self._answer_json(200 if token is None else 409, changed)
+                status, proposal = 409, changed
+        except OsgError as error:
+            return 422, {"detail": str(error)}
+        except OSError as error:
+            return 507, {"detail": f"the file cannot be written: {error.strerror or error}"}
+        return status, {"changes": proposal.changes, "token": proposal.token}
 
     def _is_for_us(self) -> bool:
         """Refuse a request for another host; see `is_own_host`."""

@@ -6,10 +6,12 @@ import json
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+from urllib.request import Request, urlopen
 
 import jsonschema
 import pytest
@@ -18,6 +20,7 @@ from typer.main import get_command
 from app.cli.application import command_line
 from app.cli.robots.ros_arguments import split_ros_arguments
 from app.robot.event_messages import read_schema
+from app.robot.publishing.status_page import UPLOAD_TYPE
 from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
@@ -25,10 +28,18 @@ from tests.documented import documented
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
+from tests.robot.rtp_camera import free_port
 from tests.test_layers import modules_of, requirements_of
 
 DOCUMENTED = [split_ros_arguments(command)[0] for command in documented()]
 ON_A_CLIP = documented("robot", page="robots/without-ros.md")[0]
+
+EMERGENCY_TABLE = """
+format = "osg-studio/vehicle-table"
+version = 1
+[emergency]
+circle = "surface"
+"""
 
 WITHOUT_THE_WEB_APP = f"""
 import sys
@@ -39,13 +50,15 @@ main(sys.argv[1:])
 
 
 @contextmanager
-def running(*arguments: str | Path) -> Iterator[subprocess.Popen[str]]:
+def running(
+    *arguments: str | Path, stdout: Any = subprocess.PIPE, stderr: Any = subprocess.PIPE
+) -> Iterator[subprocess.Popen[str]]:
     """Run the command in a process in which the web app's packages cannot be imported."""
     process = subprocess.Popen(
         [sys.executable, "-c", WITHOUT_THE_WEB_APP, *map(str, arguments)],
         cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        stdout=stdout,
+        stderr=stderr,
         text=True,
     )
     with process:
@@ -154,6 +167,144 @@ def test_who_reads_no_more_ends_the_robot_without_complaint(
     assert process.returncode == 0, error
     assert "Error" not in error
     assert "Traceback" not in error
+
+
+def until_words(process: subprocess.Popen[str], words: str) -> str:
+    """Read lines of stderr up to the first one with these words."""
+    assert process.stderr is not None
+    for line in process.stderr:
+        if words in line:
+            return line
+    raise AssertionError(f"nothing with {words!r} was printed")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("full", ["stdout", "stderr"])
+def test_a_full_disk_ends_a_log_and_not_the_robot(
+    language: Path, installed_models: None, full: str
+) -> None:
+    arguments = ("robot", "--language", language, "--page", "0", "--source")
+    with (
+        MjpegServer() as server,
+        open("/dev/full", "w") as disk,  # noqa: PTH123
+        running(*arguments, server.address, **{full: disk}) as process,
+    ):
+        said = "is not written any more: No space left on device; recognition goes on"
+        if full == "stdout":
+            assert until_words(process, said).startswith("stdout")
+            process.send_signal(signal.SIGHUP)
+            until_words(process, "listening for")
+        else:
+            assert until(process, "output_failed")["output"] == "stderr"
+            process.send_signal(signal.SIGHUP)
+            until(process, "language_changed")
+        process.send_signal(signal.SIGTERM)
+        process.communicate()
+    assert process.returncode == 4
+
+
+@pytest.mark.slow
+def test_a_reader_that_leaves_does_not_end_a_robot_that_commands_a_vehicle(
+    language: Path, installed_models: None, tmp_path: Path
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    from tests.robot.mavlink.vehicle import sailing
+
+    table = tmp_path / "vehicle.toml"
+    table.write_text(EMERGENCY_TABLE)
+    with (
+        MjpegServer() as server,
+        sailing() as vehicle,
+        running(
+            *("robot", "--language", language, "--source", server.address, "--vehicle", table),
+            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}"),
+        ) as process,
+    ):
+        until(process, "recognition_ready")
+        assert process.stdout is not None
+        process.stdout.close()
+        process.send_signal(signal.SIGHUP)
+        assert "Broken pipe" in until_words(process, "stdout is not written any more")
+        process.send_signal(signal.SIGHUP)
+        until_words(process, "listening for")
+        process.send_signal(signal.SIGTERM)
+        assert process.stderr is not None
+        process.stderr.read()
+    assert process.returncode == 4
+    assert "stdout cannot be written" in vehicle.texts
+
+
+@pytest.mark.slow
+def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
+    installed_models: None, sample_clips: Path, thin_clip: Callable[[str], Path], tmp_path: Path
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    table = tmp_path / "vehicle.toml"
+    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
+    language = sample_clips.parent / "osg-table-2.json"
+    with running(
+        *("robot", "--language", language, "--source", thin_clip("line-test-1")),
+        *("--mavlink", "udpout:127.0.0.1:9", "--vehicle", table),
+    ) as process:
+        until(process, "take_recognized")
+        process.send_signal(signal.SIGTERM)
+        process.communicate(timeout=30)  # it was 60 seconds and more
+
+
+@pytest.mark.slow
+def test_a_robot_without_files_waits_for_them_on_its_page(
+    installed_models: None, tmp_path: Path
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    from tests.robot.mavlink.vehicle import sailing
+
+    port = free_port()
+    language, table = tmp_path / "language.json", tmp_path / "vehicle.toml"
+    with (
+        MjpegServer() as server,
+        sailing() as vehicle,
+        running(
+            *("robot", "--language", language, "--source", server.address),
+            *("--page", f"127.0.0.1:{port}", "--upload"),
+            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
+        ) as process,
+    ):
+        assert "language.json" in until_words(process, "waiting: ")
+        status = json.loads(fetch(port, "/status.json"))
+        assert "language.json" in status["waits_for"]
+        assert json.loads(fetch(port, "/healthz")) == {"works": True}
+        upload(port, "language", language_of("circle").to_json().encode())
+        until(process, "recognition_ready")
+        assert vehicle.texts == []
+        upload(port, "vehicle", EMERGENCY_TABLE.encode())
+        until(process, "source_ended")
+        until(process, "recognition_ready")
+        assert json.loads(fetch(port, "/status.json"))["files"] == {"missing": []}
+        while "ready for gestures" not in vehicle.texts:
+            time.sleep(0.05)
+        upload(port, "language", language_of("circle", "line", revision=2).to_json().encode())
+        assert until(process, "language_changed")["revision"] == 2
+        process.send_signal(signal.SIGTERM)
+        _, error = process.communicate()
+    assert process.returncode == 0, error
+
+
+def fetch(port: int, path: str) -> bytes:
+    with urlopen(f"http://127.0.0.1:{port}{path}") as answer:
+        return bytes(answer.read())
+
+
+def upload(port: int, kind: str, content: bytes) -> None:
+    """Upload a file, and confirm its changes."""
+    address = f"http://127.0.0.1:{port}"
+    headers = {"Origin": address, "Content-Type": UPLOAD_TYPE}
+    token = None
+    for _ in range(2):
+        request = Request(f"{address}/files/{kind}", content, headers)
+        with urlopen(request) as answer:
+            token = json.loads(answer.read()).get("token")
+        headers = {**headers, "Confirm": str(token)}
+    assert token is None
 
 
 @pytest.mark.slow

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase
+from app.recognition.triggers.trigger import Trigger, TriggerKind
 from tests.command_line import OsgStudio
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of
@@ -51,6 +55,54 @@ def test_what_does_not_fit_is_one_line(
     assert ended.error.startswith("osg-studio: ")
     assert what in ended.error
     assert ended.error.count("\n") == 1
+
+
+@pytest.mark.usefixtures("installed_models")
+@pytest.mark.parametrize("trigger", ["none", "salute"])
+def test_without_salutes_no_gesture_alone_moves_a_vehicle(
+    osg_studio: OsgStudio, tmp_path: Path, command: list[str], trigger: TriggerKind
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    made = replace(language_of("circle", "line"), trigger=Trigger(trigger))
+    made.save(tmp_path / "pool.json")
+    (tmp_path / "vehicle.toml").write_text(TABLE.format(label="circle"))
+    options = ["--mavlink", "udpout:127.0.0.1:14550", "--vehicle", tmp_path / "vehicle.toml"]
+    switch = ["--without-salutes"] if trigger == "salute" else []
+    ended = osg_studio(*command, *switch, *options)
+    assert (ended.code, ended.out) == (2, "")
+    assert "a movement would confirm itself, and the language 'pool' has no phrases" in ended.error
+    photo = Phrase("photo", (OneOf(("line",)),), {}, "take a photo")
+    replace(made, grammar=Grammar((photo,))).save(tmp_path / "pool.json")
+    assert "circle would act alone" in osg_studio(*command, *switch, *options).error
+    (tmp_path / "vehicle.toml").write_text(
+        TABLE.partition("[gestures]")[0] + '[phrases]\nphoto = { do = "camera" }\n'
+    )
+    ended = osg_studio(*command, *switch, *options)
+    assert ended.code == 1  # nothing was recognised in a clip that shows nobody
+
+
+@pytest.mark.usefixtures("installed_models")
+def test_a_key_that_is_missing_or_that_mavlink2rest_cannot_use_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path, command: list[str]
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    table = tmp_path / "vehicle.toml"
+    table.write_text(TABLE.format(label="circle") + '[vehicle]\nkey_file = "vehicle.key"\n')
+    ended = osg_studio(*command, "--mavlink", "udpout:127.0.0.1:14550", "--vehicle", table)
+    assert (ended.code, ended.error.count("\n")) == (2, 1)
+    assert "vehicle.key" in ended.error
+    (tmp_path / "vehicle.key").write_text("a passphrase\n")
+    ended = osg_studio(*command, "--mavlink", "http://127.0.0.1:6040", "--vehicle", table)
+    assert (ended.code, ended.error.count("\n")) == (2, 1)
+    assert "mavlink2rest signs no messages" in ended.error
+
+
+def test_the_page_takes_files_only_where_there_is_one(
+    osg_studio: OsgStudio, command: list[str]
+) -> None:
+    ended = osg_studio(*command, "--upload")
+    assert ended.code == 2
+    assert "--upload needs --page" in " ".join(ended.error.split())
 
 
 @pytest.mark.usefixtures("installed_models")

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import http.client
 import json
+import socket
+import threading
 import time
-from collections.abc import Iterator
-from contextlib import closing
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, suppress
 from typing import Any
 from urllib.error import HTTPError
 from urllib.request import urlopen
@@ -15,7 +18,8 @@ import pytest
 from app.cli.robots.events import describe_event
 from app.cli.robots.robot import open_page
 from app.recognition.errors import PublishError
-from app.robot import Heartbeat, SourceLost, SourceOpened, SourceRestored
+from app.robot import FrameRateChanged, Heartbeat, SourceLost, SourceOpened, SourceRestored
+from app.robot.publishing import page_server
 from app.robot.publishing.status_page import MOST_EVENTS, SILENT_SECONDS, StatusPage
 from app.robot.runtime import build_language_changed
 from tests.robot.languages import spoken
@@ -67,6 +71,79 @@ def test_a_live_robot_that_falls_silent_does_not_work(
     assert fetch(page, "/healthz") == (503, b'{"works": false}')
     page.publish(Heartbeat(40.0, 100, 0, False))
     assert fetch(page, "/healthz")[0] == 200
+
+
+def test_a_frame_rate_that_is_too_low_is_shown_until_it_is_enough(page: StatusPage) -> None:
+    page.publish(FrameRateChanged(6.0, 2.0, False))
+    assert status(page)["slow"] == "too slow for gestures: 2.0 frames a second"
+    page.publish(FrameRateChanged(12.0, 5.0, True))
+    assert status(page)["slow"] == ""
+
+
+def test_a_robot_that_waits_says_for_what_and_is_well(page: StatusPage) -> None:
+    page.publish(SourceOpened(0.0, "camera 0", True, (640, 480), None))
+    page.wait_for("language.json is missing")
+    assert status(page)["waits_for"] == "language.json is missing"
+    page._heard -= 2 * SILENT_SECONDS
+    assert fetch(page, "/healthz")[0] == 200
+
+
+@pytest.mark.parametrize(
+    ("host", "answer"),
+    [
+        ("127.0.0.1:9850", 200),
+        ("192.168.2.2:9850", 200),
+        ("[fe80::1]:9850", 200),
+        ("localhost", 200),
+        ("blueos.local", 200),
+        ("BlueOS.local:80", 200),
+        ("robot:9850", 200),
+        ("evil.example", 403),
+        ("192.168.2.2.evil.example:9850", 403),
+        ("local.evil.example", 403),
+        ("evil.example.", 403),
+        ("[", 403),
+        ("", 403),
+    ],
+)
+@pytest.mark.parametrize("path", ["/", "/status.json"])
+def test_a_page_of_another_name_cannot_read_it(
+    page: StatusPage, host: str, answer: int, path: str
+) -> None:
+    connection = http.client.HTTPConnection("127.0.0.1", page.port, timeout=20)
+    with closing(connection):
+        connection.putrequest("GET", path, skip_host=True)
+        connection.putheader("Host", host)
+        connection.endheaders()
+        assert connection.getresponse().status == answer
+
+
+def test_requests_that_are_never_finished_hold_few_threads_and_end(
+    page: StatusPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = threading.active_count()
+    with ExitStack() as opened:
+        stalled = [
+            opened.enter_context(socket.create_connection(("127.0.0.1", page.port)))
+            for _ in range(300)
+        ]
+        for each in stalled:
+            with suppress(OSError):
+                each.sendall(b"GET / HTTP/1.1\r\nX: ")
+        assert fetch(page, "/healthz")[0] == 200
+        wait_until(lambda: threading.active_count() <= before + page_server.MOST_CONNECTIONS)
+        monkeypatch.setattr(page_server, "MOST_SECONDS", 0.0)
+        wait_until(lambda: threading.active_count() <= before)
+    monkeypatch.undo()
+    assert fetch(page, "/healthz")[0] == 200
+
+
+def wait_until(happens: Callable[[], bool]) -> None:
+    """Wait until something happens; an error after a long time."""
+    by = time.monotonic() + 20
+    while not happens():
+        assert time.monotonic() < by
+        time.sleep(0.01)
 
 
 def test_old_events_are_forgotten(page: StatusPage) -> None:
