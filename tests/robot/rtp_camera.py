@@ -25,11 +25,16 @@ class RtpCamera:
         Of the pictures.
     form
         ``rtp``, or ``mpegts`` for a transport stream without RTP.
+    host
+        Address of this machine that it sends from.
 
     """
 
-    def __init__(self, port: int, brightness: int = 100, form: str = "rtp") -> None:
+    def __init__(
+        self, port: int, brightness: int = 100, form: str = "rtp", host: str = "127.0.0.1"
+    ) -> None:
         self._port, self._brightness, self._form = port, brightness, form
+        self._host = host
         self._off = threading.Event()
         self._thread = threading.Thread(target=self._send)
 
@@ -46,7 +51,9 @@ class RtpCamera:
         image = np.full((height, width, 3), self._brightness, np.uint8)
         scheme = "rtp" if self._form == "rtp" else "udp"
         with av.open(
-            f"{scheme}://127.0.0.1:{self._port}?pkt_size=1316", "w", format=self._form
+            f"{scheme}://127.0.0.1:{self._port}?pkt_size=1316&localaddr={self._host}",
+            "w",
+            format=self._form,
         ) as container:
             options = {"tune": "zerolatency", "x264-params": "repeat-headers=1:keyint=5"}
             stream = container.add_stream("libx264", rate=RATE, options=options)

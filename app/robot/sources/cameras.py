@@ -15,6 +15,7 @@ from av.container import InputContainer
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
 from app.robot.sources.rtp import (
+    Datagrams,
     describe_address,
     is_datagram_address,
     is_description_file,
@@ -152,18 +153,23 @@ def is_address(text: str) -> bool:
 
 
 def _open(address: str, name: str) -> InputContainer:
-    described = _describe(address)
+    datagrams = _describe(address)
+    described = None if datagrams is None else datagrams.description
+    options = {
+        "protocol_whitelist": PROTOCOLS if described is None else DATAGRAM_PROTOCOLS,
+        "fflags": "nobuffer",
+        "rtsp_transport": "tcp",  # over UDP a lost packet smears the picture for seconds
+    }
+    if datagrams is not None:
+        options |= {"localaddr": datagrams.local} if datagrams.local else {}
+        options |= {"sources": datagrams.sender} if datagrams.sender else {}
     try:
         return av.open(
             address if described is None else io.BytesIO(described.encode()),
             "r",
             format=None if described is None else "sdp",
             timeout=(OPEN_SECONDS, SILENT_SECONDS),
-            container_options={
-                "protocol_whitelist": PROTOCOLS if described is None else DATAGRAM_PROTOCOLS,
-                "fflags": "nobuffer",
-                "rtsp_transport": "tcp",  # over UDP a lost packet smears the picture for seconds
-            },
+            container_options=options,
             options={"max_pixels": str(MOST_PIXELS)},
             metadata_errors="replace",
         )
@@ -174,8 +180,8 @@ def _open(address: str, name: str) -> InputContainer:
         ) from error
 
 
-def _describe(address: str) -> str | None:
-    """Return the session description of RTP over UDP; None for any other stream."""
+def _describe(address: str) -> Datagrams | None:
+    """Describe a stream over UDP; None for any other stream."""
     if is_description_file(address):
         return read_description(address, OPEN_SECONDS)
     return describe_address(address, OPEN_SECONDS) if is_datagram_address(address) else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import socket
 import threading
+import time
 from contextlib import closing
 from itertools import islice
 from pathlib import Path
@@ -11,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from app.recognition.errors import SourceError
-from app.robot import Frame, SourceLost
-from app.robot.sources import cameras
+from app.robot import Frame, Source, SourceLost
+from app.robot.sources import cameras, rtp
 from app.robot.sources.registry import open_source
 from app.robot.sources.rtp import DESCRIPTION
 from tests.robot.mjpeg_server import FRAME_SIZE
@@ -55,13 +56,66 @@ def test_a_transport_stream_is_watched_too(port: int) -> None:
         assert source.frame_size == FRAME_SIZE
 
 
+@pytest.mark.parametrize("form", ["rtp", "mpegts"])
+@pytest.mark.parametrize("named", ["127.0.0.1", "0.0.0.0"])
+def test_the_first_sender_alone_is_watched_on_the_address_that_is_named(
+    port: int, form: str, named: str
+) -> None:
+    with (
+        RtpCamera(port, brightness=100, form=form),
+        closing(open_source(f"udp://{named}:{port}")) as source,
+        RtpCamera(port, brightness=240, form=form, host="127.0.0.5"),
+    ):
+        address = "".join(f"{int(part):02X}" for part in reversed(named.split(".")))
+        sockets = Path("/proc/net/udp").read_text()
+        assert f"{address}:{port:04X} " in sockets
+        given = (each for each in source if isinstance(each, Frame))
+        brightness = {round(frame.image.mean() / 10) for frame in islice(given, 30)}
+    assert brightness == {10}
+
+
+def test_a_sender_that_is_named_is_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rtp, "_sort_host", lambda host: (None, "", host))
+    monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.5)
+    with (
+        RtpCamera(port, host="127.0.0.5"),
+        pytest.raises(SourceError, match=rf"nothing arrived on UDP port {port} from 127.0.0.6"),
+    ):
+        open_source(f"udp://127.0.0.6:{port}")
+    monkeypatch.setattr(cameras, "OPEN_SECONDS", 10.0)
+    with (
+        RtpCamera(port, host="127.0.0.5"),
+        closing(open_source(f"udp://127.0.0.5:{port}")) as source,
+    ):
+        assert source.frame_size == FRAME_SIZE
+
+
+def test_one_packet_of_a_stranger_does_not_decide_what_the_stream_is(port: int) -> None:
+    opened: list[Source] = []
+    thread = threading.Thread(target=lambda: opened.append(open_source(f"udp://0.0.0.0:{port}")))
+    thread.start()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as stranger:
+        stranger.bind(("127.0.0.9", 0))
+        motion_jpeg = bytes([0x80, 26, *bytes(30)])
+        while f":{port:04X} " not in Path("/proc/net/udp").read_text():
+            time.sleep(0.01)
+        for packet in (motion_jpeg, b"x"):
+            stranger.sendto(packet, ("127.0.0.1", port))
+    with RtpCamera(port):
+        thread.join()
+        with closing(opened[0]) as source:
+            assert source.frame_size == FRAME_SIZE
+
+
 @pytest.mark.parametrize("form", ["udp://0.0.0.0:{}", "rtp://192.168.2.2:{}", "sdp"])
 def test_a_port_on_which_nothing_arrives_is_told_in_time(
     form: str, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cameras, "OPEN_SECONDS", 0.1)
     address = describe(port, tmp_path) if form == "sdp" else form.format(port)
-    with pytest.raises(SourceError, match=rf"nothing arrived on UDP port {port} for 0.1 s; is the"):
+    with pytest.raises(
+        SourceError, match=rf"nothing arrived on UDP port {port}( from 192.168.2.2)? for 0.1 s"
+    ):
         open_source(address)
 
 
