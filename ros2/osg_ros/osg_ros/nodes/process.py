@@ -7,7 +7,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Final
+from typing import Any, Final
 
 import rclpy
 from rclpy.executors import MultiThreadedExecutor
@@ -24,6 +24,19 @@ FAILED = 3
 
 LONGEST_WAIT: Final = 0.5
 """Longest delay until a signal is handled while no messages arrive, in seconds."""
+
+
+class NodeExecutor(MultiThreadedExecutor):  # type: ignore[misc]  # rclpy brings no types
+    """Executor that ends the callbacks in progress before it destroys what they use.
+
+    rclpy's own destroys it first, and every such callback then prints an exception. Nobody may spin
+    it any more.
+    """
+
+    def shutdown(self, timeout_sec: float | None = None, **options: Any) -> bool:
+        """Wait for the callbacks, then shut down."""
+        self._executor.shutdown(wait=True)
+        return bool(super().shutdown(timeout_sec, **options))
 
 
 def start_node(node: ManagedNode) -> bool:
@@ -44,7 +57,7 @@ def start_node(node: ManagedNode) -> bool:
 def run_nodes(nodes: Sequence[ManagedNode]) -> Iterator[MultiThreadedExecutor]:
     """Run nodes in an executor; at the end shut them down and destroy them."""
     # One thread per node, and one for services, which must not wait for pictures.
-    executor = MultiThreadedExecutor(num_threads=len(nodes) + 1)
+    executor = NodeExecutor(num_threads=len(nodes) + 1)
     for node in nodes:
         executor.add_node(node)
     try:

@@ -15,7 +15,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import ActiveLanguage, Event, Frame, SourceOpened
 from osg_ros.nodes.managed_node import ManagedNode
-from osg_ros.nodes.process import run_nodes, start_node
+from osg_ros.nodes.process import LONGEST_WAIT, run_nodes, start_node
 from osg_ros.topics.gesture_topics import GestureTopics
 from osg_ros.topics.stamps import NANOSECONDS, Stopwatch
 
@@ -94,7 +94,18 @@ def run_robot_node(arguments: Sequence[str]) -> Iterator[RobotNode]:
         with run_nodes([node]) as executor:
             if not start_node(node):
                 raise OsgError("the ROS 2 node did not start; see its log")
-            threading.Thread(target=executor.spin, name="ros", daemon=True).start()
-            yield node
+            ending = threading.Event()
+
+            def spin() -> None:
+                while not ending.is_set():
+                    executor.spin_once(timeout_sec=LONGEST_WAIT)
+
+            thread = threading.Thread(target=spin, name="ros", daemon=True)
+            thread.start()
+            try:
+                yield node
+            finally:
+                ending.set()
+                thread.join()
     finally:
         rclpy.try_shutdown()

@@ -9,8 +9,10 @@ from app.robot import (
     ActiveLanguage,
     Event,
     Frame,
+    FrameRateChanged,
     LanguageChanged,
     LanguageRefused,
+    OutputFailed,
     PhraseHeard,
     SourceLost,
     SourceWarned,
@@ -78,7 +80,9 @@ class GestureTopics:
                 self.recognitions.publish_state(event, clock, frame_id)
             case LanguageChanged():
                 self.recognitions.publish_language(language)
-            case LanguageRefused() | SourceLost() | SourceWarned():
+            case LanguageRefused() | SourceLost() | SourceWarned() | OutputFailed():
                 self._node.report_problem(event.reason)
+            case FrameRateChanged(sufficient=False):
+                self._node.report_problem(event.words)
             case _:
                 pass
