@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,12 +52,17 @@ def lineage(stages: dict[str, Stage], name: str) -> list[Stage]:
     return [stage, *(lineage(stages, stage.base) if stage.base in stages else ())]
 
 
-def read_labels(stage: Stage) -> dict[str, str]:
-    """Return the labels of a stage."""
+def read_labels(stage: Stage, arguments: Mapping[str, str]) -> dict[str, str]:
+    """Return the labels of a stage that is built with these arguments."""
     labels = {}
     for line in stage.values("LABEL"):
         key, _, value = line.partition("=")
-        labels[key] = value[1:-1]
+        text = value[1:-1]
+        if value[0] == '"':  # Docker replaces nothing between single quotes
+            text = text.replace('\\"', '"')
+            for name, given in arguments.items():
+                text = text.replace(f"${{{name}}}", given)
+        labels[key] = text
     return labels
 
 

@@ -7,7 +7,7 @@ import re
 from typing import Any, Literal
 
 import pytest
-from pydantic import BaseModel, ConfigDict, TypeAdapter
+from pydantic import BaseModel, ConfigDict, HttpUrl, TypeAdapter
 from typer.main import get_command
 
 from app import __version__
@@ -101,6 +101,14 @@ class Company(BaseModel):
     email: str | None = None
 
 
+class Links(BaseModel):
+    """As the store of BlueOS reads it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    website: HttpUrl
+
+
 class Extension(BaseModel):
     """The labels of an extension, by the models of BlueOS' store."""
 
@@ -109,16 +117,19 @@ class Extension(BaseModel):
     version: str
     type: Literal["device-integration", "example", "theme", "other", "tool"]
     requirements: str
-    readme: str
+    readme: HttpUrl
     permissions: dict[str, Any]
     authors: list[Author]
     company: Company
     tags: list[str]
-    links: dict[str, str]
+    links: Links
 
 
 def test_the_labels_are_those_of_a_blueos_extension() -> None:
-    labels = read_labels(STAGES["blueos"])
+    declared = " ".join(STAGES["blueos"].values("ARG"))
+    pages = {"README": "https://pages.example/README.md", "WEBSITE": "https://pages.example/"}
+    assert all(f'{name}=""' in declared for name in pages)
+    labels = read_labels(STAGES["blueos"], pages)
     parsed = {
         key: json.loads(value) if value[:1] in ("{", "[") else value
         for key, value in labels.items()
@@ -130,7 +141,10 @@ def test_the_labels_are_those_of_a_blueos_extension() -> None:
     host = extension.permissions["HostConfig"]
     assert host["ReadonlyRootfs"] is True
     assert "Privileged" not in host
-    assert [bind.partition(":")[2] for bind in host["Binds"]] == ["/data"]
+    volume, _, place = host["Binds"][0].partition(":")
+    assert (host["Binds"][1:], place) == ([], "/data")
+    assert "/" not in volume  # a folder of the vehicle would belong to root, and this is nobody
+    assert "--upload" in read_command([STAGES["blueos"]])
     ports = extension.permissions["ExposedPorts"]
     assert [f"0.0.0.0:{port.removesuffix('/tcp')}" for port in ports] == [
         word for word in read_command([STAGES["blueos"]]) if word.startswith("0.0.0.0:")

@@ -10,11 +10,15 @@ from pathlib import Path
 
 from app.bags import bag_and_topic
 from app.clip_sources import VIDEO, ReadOptions, source_of
+from app.recognition.errors import SourceError
 from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
 from app.robot.sources.live import LiveSource
 from app.robot.sources.recorded import RecordedSource
 from app.robot.sources.rtp import is_description_file
 from app.robot.sources.source import Source
+
+PICTURES = re.compile(r"\.(png|jpe?g|bmp|tiff?|webp)$", re.IGNORECASE)
+"""Ending of a picture's name."""
 
 
 @dataclass(frozen=True)
@@ -53,11 +57,26 @@ def open_stream(address: str) -> Source:
 def open_clip(text: str) -> Source:
     """Open a video file, or a dive recording as ``BAG`` or ``BAG@/TOPIC``."""
     path, topic = bag_and_topic(text)
+    if is_picture_sequence(path):
+        raise SourceError(
+            f"{text} is a sequence of pictures, which have no times; make a clip of it, such as "
+            "ffmpeg -framerate 10 -i %04d.png clip.mp4, and give that"
+        )
     if path.exists():
         clip = source_of(path, topic).open_frames(path, ReadOptions(topic=topic))
     else:
         clip = VIDEO.open_frames(Path(text), ReadOptions())
     return RecordedSource(text, clip.frames, clip.close)
+
+
+def is_picture_sequence(path: Path) -> bool:
+    """Return whether a path is a pattern such as ``f%04d.png``, or a folder of pictures."""
+    if PICTURES.search(path.name):
+        return "%" in path.name and not path.exists()
+    if not path.is_dir():
+        return False
+    first = next(path.iterdir(), None)
+    return first is not None and PICTURES.search(first.name) is not None
 
 
 KINDS: tuple[SourceKind, ...] = (

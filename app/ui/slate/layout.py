@@ -108,7 +108,8 @@ def _head(language: Language) -> Iterator[Part]:
 
 def _trigger(trigger: Trigger, left: float, top: float, width: float) -> Iterator[Part]:
     """Draw the trigger that a diver holds before and after a gesture, with its name."""
-    name, rule = "Vulcan salute", "Hold it for half a second before and after every gesture."
+    name = "Vulcan salute"
+    rule = "Hold it half a second before and after every gesture: two for each one."
     if trigger.kind == "none":
         name, rule = "Without a trigger", "Rest for a second before and after every gesture."
     if trigger.kind == "gesture":

@@ -334,6 +334,8 @@ def test_the_cost_of_each_stage_is_one_object_and_a_table(
     [
         (["--language", "absent.json"], "absent.json"),
         (["--language", "{language}", "--source", "absent.mp4"], "absent.mp4"),
+        (["--language", "{language}", "--source", "{folder}"], "is a sequence of pictures"),
+        (["--language", "{language}", "--source", "{folder}/f%04d.png"], "make a clip of it"),
         (["--language", "{language}", "--source", "63"], "camera 63"),
         (["--language", "{language}", "--source", "rtsp://a:b@127.0.0.1:1/"], "127.0.0.1:1"),
         (["--language", "{language}", "--profile", "no"], "no profile 'no'"),
@@ -351,7 +353,10 @@ def test_bad_input_is_one_line_and_exit_code_two(
     what: str,
 ) -> None:
     clip = write_clip(tmp_path / "dive.mp4", frames=2)
-    names = {"language": language, "clip": clip}
+    folder = tmp_path / "frames"
+    folder.mkdir()
+    (folder / "f0001.png").write_bytes(b"\x89PNG")
+    names = {"language": language, "clip": clip, "folder": folder}
     ended = osg_studio("robot", *[each.format(**names) for each in arguments])
     assert (ended.code, ended.out) == (2, "")
     assert ended.error.startswith("osg-studio: ")
