@@ -2,7 +2,7 @@
 
 Text for people goes to stderr, data to stdout. Exit codes: 0 done, 1 nothing was recognised or the
 check found an error, 2 bad use or bad input, with one line that names cause and next step, 3 the
-program failed, with a traceback.
+program failed, with a traceback, 4 a robot went on without a log that it could not write.
 """
 
 from __future__ import annotations

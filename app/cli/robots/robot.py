@@ -156,8 +156,13 @@ def robot(
 
 def open_files(options: RobotOptions, control: Control) -> RobotFiles:
     """Return the files that the page takes by upload."""
-    from app.robot.publishing.robot_files import RobotFiles
-
+    try:
+        from app.robot.publishing.robot_files import RobotFiles
+    except ModuleNotFoundError as error:
+        raise PublishError(
+            f"--upload needs {error.name}, which is not installed; install it with: "
+            'pip install "osg-studio[mavlink]"'
+        ) from error
     return RobotFiles(options.language, options.vehicle, options.profile, control.take_file)
 
 

@@ -216,8 +216,9 @@ class MavlinkBridge:
         )
         decision = self._dialogue.decide_phrase(heard, self._source_time())
         grammar = self._language().recognizer.language.grammar
-        if grammar is not None and grammar.cancel is not None and heard.label == grammar.cancel:
-            decision = replace(decision, cancels=True)
+        # The same gesture may be an emergency of the table, which has been obeyed already.
+        if grammar is not None and heard.label is not None and heard.label == grammar.cancel:
+            decision = replace(decision, cancels=heard.label not in self._table.emergency)
         meant = [] if decision.command is None else json.loads(decision.command)
         self._act(decision, self._table.resolve_mission(meant))
 

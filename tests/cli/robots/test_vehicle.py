@@ -66,7 +66,8 @@ def test_without_salutes_no_gesture_alone_moves_a_vehicle(
     made = replace(language_of("circle", "line"), trigger=Trigger(trigger))
     made.save(tmp_path / "pool.json")
     (tmp_path / "vehicle.toml").write_text(TABLE.format(label="circle"))
-    options = ["--mavlink", "udpout:127.0.0.1:14550", "--vehicle", tmp_path / "vehicle.toml"]
+    table = str(tmp_path / "vehicle.toml")
+    options = ["--mavlink", "udpout:127.0.0.1:14550", "--vehicle", table]
     switch = ["--without-salutes"] if trigger == "salute" else []
     ended = osg_studio(*command, *switch, *options)
     assert (ended.code, ended.out) == (2, "")

@@ -454,3 +454,34 @@ def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> N
                 opened.publish(event)
     assert vehicle.obeyed == (["ALT_HOLD", "depth 2"] if metres == 2 else [])
     assert ("done: depth 2 m" if metres == 2 else "no depth: 50, of 0 to 30 m") in lines
+
+
+@pytest.mark.parametrize("is_emergency", [False, True])
+def test_the_cancel_of_the_phrases_drops_an_order_unless_it_is_an_emergency(
+    is_emergency: bool,
+) -> None:
+    go = Phrase("go", (OneOf(("circle",)),), {}, "go")
+    made = replace(language_of("circle", "line"), grammar=Grammar((go,), cancel="line"))
+    language = ActiveLanguage.from_json(made.to_json())
+    shown = recording_of("circle", "circle", "line")
+    events = run_listener(PhraseListener(Listener(language)), shown)
+    table = {key: TABLE[key] for key in ("format", "version", "vehicle")}
+    table |= {"phrases": {"go": {"do": "hold"}}}
+    table |= {"emergency": {"line": "surface"}} if is_emergency else {}
+    lines: list[str] = []
+    with sailing() as vehicle:
+        link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
+        parsed = VehicleTable.model_validate(table)
+        with closing(MavlinkBridge(parsed, link, lambda: language, lines.append)) as opened:
+            wait_until(lambda: opened._peer.sender is not None)
+            vehicle.loss = 1.0
+            for event in (build_language_changed(0.0, language), *events):
+                opened.publish(event)
+            vehicle.loss = 0.0
+    assert "confirmed: hold" in lines
+    if is_emergency:
+        assert [line for line in lines if "cancelled" in line] == []
+        assert vehicle.obeyed == ["SURFACE"]
+    else:
+        assert "cancelled: hold" in lines
+        assert vehicle.obeyed == []

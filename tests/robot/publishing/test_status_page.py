@@ -18,7 +18,14 @@ import pytest
 from app.cli.robots.events import describe_event
 from app.cli.robots.robot import open_page
 from app.recognition.errors import PublishError
-from app.robot import FrameRateChanged, Heartbeat, SourceLost, SourceOpened, SourceRestored
+from app.robot import (
+    FrameRateChanged,
+    Heartbeat,
+    SourceLost,
+    SourceOpened,
+    SourceRestored,
+    VehicleReported,
+)
 from app.robot.publishing import page_server
 from app.robot.publishing.status_page import MOST_EVENTS, SILENT_SECONDS, StatusPage
 from app.robot.runtime import build_language_changed
@@ -78,6 +85,11 @@ def test_a_frame_rate_that_is_too_low_is_shown_until_it_is_enough(page: StatusPa
     assert status(page)["slow"] == "too slow for gestures: 2.0 frames a second"
     page.publish(FrameRateChanged(12.0, 5.0, True))
     assert status(page)["slow"] == ""
+
+
+def test_what_the_vehicle_does_is_among_the_events(page: StatusPage) -> None:
+    page.publish(VehicleReported(6.0, "done: surface"))
+    assert [event["text"] for event in status(page)["events"]] == ["vehicle: done: surface"]
 
 
 def test_a_robot_that_waits_says_for_what_and_is_well(page: StatusPage) -> None:
