@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import importlib
+import json
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
-from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times, mask_unseen
+from app.keypoint_files.keypoint_table import (
+    MALFORMED,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    mask_unseen,
+)
 from app.keypoint_files.prominence import prominence_over
-from app.recognition.errors import KeypointFileError
+from app.keypoint_files.self_contained import require_self_contained
+from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.estimation.person_tracker import PersonTracker, find_boxes
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
+
+MOST_PEOPLE: Final = 10
+"""Most people in every frame of a project with the most frames: each takes two kilobytes."""
 
 
 def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
@@ -29,7 +40,15 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
         When `sleap-io` is not installed, or the file cannot be read.
 
     """
-    labels = _labels(path)
+    labels = _labels(path, limits)
+    try:
+        return _table(labels, path, options, limits)
+    except MALFORMED as error:  # the library checks little of what it reads
+        raise _unreadable(path, error) from error
+
+
+def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Return the keypoints of the first video."""
     names = tuple(str(name) for name in labels.skeleton.node_names)
     labelled = sorted(
         labels.find(labels.videos[0]) if labels.videos else labels.labeled_frames,
@@ -59,27 +78,52 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
     )
 
 
-def _labels(path: Path) -> Any:
+def _labels(path: Path, limits: VideoLimits) -> Any:
+    """Return the labels that SLEAP's library reads from a file, after a check of the file."""
     try:
-        library = importlib.import_module("sleap_io")
+        library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
     except ImportError as error:
         raise KeypointFileError(
             f"{path} needs the library sleap-io ({error}); run "
             f"`pip install 'osg-studio[keypoints]'`"
         ) from error
     try:
+        require_self_contained(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about videos that are missing but not needed
+            with h5py.File(path) as file:
+                _require_frames(file, limits)
+                stated = json.loads(file.attrs.get("video_backend_metadata", "{}"))
             if path.suffix.lower() == ".slp":
                 return library.load_slp(str(path), open_videos=False)
-            return library.load_analysis_h5(str(path))
+            # Else the library opens the file or address that it finds as the video's name.
+            video = library.Video("", backend_metadata=dict(stated), open_backend=False)
+            return library.load_analysis_h5(str(path), video=video)
+    except OsgError:
+        raise
     except Exception as error:  # the library's errors share no base but Exception
-        reason = " ".join(str(error).split())
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: Exception) -> KeypointFileError:
+    reason = " ".join(str(error).split())
+    return KeypointFileError(
+        f"{path} cannot be read as SLEAP's ({type(error).__name__}: {reason}); give a .slp file"
+        f" or SLEAP's analysis export. DeepLabCut's .h5 is refused, for it holds code: convert"
+        f" it with deeplabcut.analyze_videos_converth5_to_csv"
+    )
+
+
+def _require_frames(file: Any, limits: VideoLimits) -> None:
+    """Refuse too many frames and people by the shapes of their tables, before these are read."""
+    if "tracks" in file:
+        limits.require_frames(max(file["tracks"].shape, default=0))
+    rows = max(len(file[name]) for name in ("frames", "instances", "node_names") if name in file)
+    if rows > MOST_PEOPLE * limits.frames:
         raise KeypointFileError(
-            f"{path} cannot be read as SLEAP's ({type(error).__name__}: {reason}); give a .slp file"
-            f" or SLEAP's analysis export. DeepLabCut's .h5 is refused, for it holds code: convert"
-            f" it with deeplabcut.analyze_videos_converth5_to_csv"
-        ) from error
+            f"the file has tables of {rows} rows, more than {MOST_PEOPLE} people in every frame; "
+            "export the video with the gestures alone"
+        )
 
 
 def _points(instance: Any) -> FloatArray:
