@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import stat
 import tempfile
 from collections.abc import Iterator
@@ -13,6 +11,7 @@ from zipfile import ZipFile, ZipInfo
 
 from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
 from app.recognition.errors import BagError
+from app.system.stand_in import stand_in
 from app.system.zip_archive import (
     UnpackedTooLarge,
     listed_files,
@@ -56,7 +55,12 @@ def stage(path: Path) -> Iterator[Path]:
             yield _unpack(path, folder)
         else:
             place = folder / f"recording{ENDINGS[kind]}"
-            _stand_in(path.resolve(), place)
+            try:
+                stand_in(path, place)
+            except OSError as error:
+                raise BagError(
+                    f"{path.name} can be neither linked nor copied to {folder}; free space"
+                ) from error
             yield place
 
 
@@ -75,17 +79,6 @@ def _known_kind(path: Path) -> BagKind:
             f"{path.name} --dst FOLDER` (pip install rosbags) and use the folder"
         )
     return kind
-
-
-def _stand_in(path: Path, place: Path) -> None:
-    """Make `place` a stand-in for the file at `path`, without a copy if the system allows it."""
-    for way in (os.symlink, os.link, shutil.copyfile):
-        try:
-            way(path, place)
-        except OSError:
-            continue
-        return
-    raise BagError(f"{path.name} can be neither linked nor copied to {place.parent}; free space")
 
 
 def _unpack(path: Path, folder: Path) -> Path:

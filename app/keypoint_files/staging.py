@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +13,7 @@ from app.keypoint_files.file_kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.video_limits import VideoLimits
+from app.system.stand_in import stand_in
 from app.system.zip_archive import (
     UnpackedTooLarge,
     names_in,
@@ -57,10 +56,7 @@ def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iter
             yield folder
             return
         place = folder / f"keypoints{ending}"
-        try:
-            os.link(path, place)
-        except OSError:  # another disk, or one without links
-            shutil.copyfile(path, place)
+        stand_in(path, place)
         yield place
 
 

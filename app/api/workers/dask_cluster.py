@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from uuid import uuid4
 
 from app.api.workers.executor import ExecutorLost, Lines, TaskFiles
+from app.api.workers.rights import rights_to
 from app.api.workers.task_folders import Contents, OwnFolders
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class DaskCluster:
             workspace = await asyncio.to_thread(self._own.describe, files)
         client, task = await self._connected(), f"osg-{uuid4().hex}"
         queue = self._lines[task] = asyncio.Queue()
-        given = (list(arguments), task, self._topic, workspace)
+        given = ([*rights_to(files), *arguments], task, self._topic, workspace)
         future = client.submit(run_worker, *given, key=task, pure=False)
         try:
             lines = _TaskLines(client, future, queue, self._own)

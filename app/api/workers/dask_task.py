@@ -12,7 +12,9 @@ from pathlib import Path
 from distributed import get_worker
 
 from app.api.workers.executor import COMMAND, PACKAGE_PARENT
+from app.api.workers.rights import environment_of_workers, rights_to_models
 from app.api.workers.task_folders import Contents, Workspace, Written
+from app.recognition.models.storage import models_dir
 from app.store.errors import StoreUnavailable
 
 STARTED, LINE, FILE, ENDED, LOST = "started", "line", "file", "ended", "lost"
@@ -63,10 +65,11 @@ def _tell(topic: str, task: str, kind: str, content: str | tuple[str, bytes]) ->
 def _lines(arguments: Sequence[str], task: str, tell: Callable[[str, str], None]) -> Iterator[str]:
     """Yield the lines of a worker process."""
     process = subprocess.Popen(
-        [sys.executable, *COMMAND, *arguments],
+        [sys.executable, *COMMAND, *rights_to_models(models_dir()), *arguments],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         cwd=PACKAGE_PARENT,
+        env=environment_of_workers(),
     )
     _processes[task] = process
     try:

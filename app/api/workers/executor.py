@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
-COMMAND: Final = ("-m", "app.api.workers.worker")
+COMMAND: Final = ("-m", "app.api.workers")
 """Arguments of Python that start a worker process."""
 
 PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]

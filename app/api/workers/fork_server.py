@@ -15,6 +15,7 @@ import socket
 import sys
 
 from app.api.workers import worker
+from app.api.workers.rights import confine_worker
 
 
 def serve(requests: socket.socket) -> socket.socket:
@@ -53,9 +54,12 @@ def become_worker(connection: socket.socket) -> list[str]:
     """
     os.setsid()
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-    connection.sendall(b"%d\n" % os.getpid())
-    with connection.makefile("rb") as lines:
-        line = lines.readline()
+    try:
+        connection.sendall(b"%d\n" % os.getpid())
+        with connection.makefile("rb") as lines:
+            line = lines.readline()
+    except ConnectionError:  # The job was cancelled meanwhile.
+        line = b""
     if not line:
         sys.exit()
     command = json.loads(line)
@@ -77,7 +81,9 @@ def main() -> None:
     gc.freeze()
     with socket.socket(fileno=os.dup(sys.stdin.fileno())) as requests:
         connection = serve(requests)
-    worker.main(become_worker(connection))
+    arguments = become_worker(connection)
+    confine_worker(arguments)
+    worker.main(arguments)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 from typing import Final, Self
 
 from app.api.workers.executor import PACKAGE_PARENT
+from app.api.workers.rights import environment_of_workers
 
 FORK_SERVER: Final = ("-m", "app.api.workers.fork_server")
 """Arguments of Python that start a fork server."""
@@ -66,7 +67,7 @@ class ForkedWorker:
                 connection.close()
         if process is None:
             return None
-        command = {"arguments": list(arguments), "environment": dict(os.environ)}
+        command = {"arguments": list(arguments), "environment": environment_of_workers()}
         connection.write(json.dumps(command).encode() + b"\n")
         return cls(process, lines, connection)
 
@@ -141,6 +142,7 @@ class _ForkServer:
                 stdin=its.fileno(),
                 stdout=subprocess.DEVNULL,
                 cwd=PACKAGE_PARENT,
+                env=environment_of_workers(),
                 # Ctrl-C in the terminal is for the server, which then ends its workers in order.
                 start_new_session=True,
             )

@@ -12,6 +12,8 @@ from typing import Self
 
 from app.api.workers.executor import COMMAND, PACKAGE_PARENT, Lines, TaskFiles
 from app.api.workers.forked_worker import ForkedWorker, can_fork
+from app.api.workers.rights import environment_of_workers, rights_to, rights_to_models
+from app.recognition.models.storage import models_dir
 
 
 class LocalProcesses:
@@ -21,6 +23,7 @@ class LocalProcesses:
     async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
         """Run a process; see `Executor`."""
         worker: ForkedWorker | _StartedWorker | None = None
+        arguments = [*rights_to_models(models_dir()), *rights_to(files), *arguments]
         if can_fork():
             worker = await ForkedWorker.begin(arguments)
         if worker is None:
@@ -51,6 +54,7 @@ class _StartedWorker:
             stdin=PIPE,
             stdout=PIPE,
             cwd=PACKAGE_PARENT,
+            env=environment_of_workers(),
             # Ctrl-C in the terminal is for the server, which then ends its workers in order.
             start_new_session=True,
         )

@@ -1,4 +1,4 @@
-"""Worker process: ``python -m app.api.workers.worker COMMAND ...``, see `_read`.
+"""Worker process: ``python -m app.api.workers COMMAND ...``, see `_read`.
 
 It opens one clip or language file, writes one JSON object per line to stdout (see `messages`), and
 ends as soon as its stdin is closed, which happens when the server dies.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import ctypes
 import os
 import sys
 import tempfile
@@ -47,6 +48,9 @@ from app.recognition.recording.video import probe as probe_video
 
 PROGRESS_SECONDS = 0.1
 """Shortest time in seconds between two reports: as fast as an eye follows a progress bar."""
+
+_SET_NAME = 15
+"""Option of prctl(2) that names a process."""
 
 Report = Callable[[Message], None]
 
@@ -222,8 +226,8 @@ def end_with_server() -> None:
 
 def show_command(command: str) -> None:
     """Give this process the name ``osg COMMAND`` in lists of processes, where that is possible."""
-    with contextlib.suppress(OSError):
-        Path("/proc/self/comm").write_text(f"osg {command}")
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_SET_NAME, f"osg {command}".encode())
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -263,6 +267,8 @@ def _read(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="osg-studio worker")
     for name in ("memory-bytes", "cpu-seconds", "file-bytes"):
         parser.add_argument(f"--{name}", type=int, default=0)
+    for name in ("reads", "writes"):
+        parser.add_argument(f"--{name}", action="append", help="see `app.api.workers.rights`")
     parser.add_argument("--scratch", help="folder for what is unpacked")
     parser.add_argument(
         "--options", type=ReadOptions.model_validate_json, default=ReadOptions(), help="as JSON"

@@ -14,6 +14,7 @@ from app.api.observation.metrics import Metrics
 from app.api.workers.clip_files import ClipFiles
 from app.api.workers.executor import Executor, ExecutorLost, Lines, TaskFiles
 from app.api.workers.local_processes import LocalProcesses
+from app.api.workers.rights import SCRATCH
 from app.api.workers.test_takes import RecognizedTake, TestRunRequest, answer_file
 from app.api.workers.worker_messages import Failed, Finished, Message, Probed, Progressed, parse
 from app.clip_sources import VIDEO, ClipSource, ReadOptions, Refusal
@@ -153,13 +154,15 @@ class Workers:
         """Write a clip and its recognitions as MCAP; `request`: a `BagExportRequest` as JSON."""
         parts = files.video, files.recording
         with _scratch_folder(bag.parent) as folder, self._hold(parts):
-            wanted = folder / "request.json"
+            wanted, written = folder / "request.json", folder / bag.name
             await asyncio.to_thread(wanted.write_bytes, request)
-            command = ["session", str(wanted), str(bag), *files.arguments]
-            used = TaskFiles((wanted, *parts), (bag,))
+            command = ["session", str(wanted), str(written), *files.arguments]
+            used = TaskFiles((wanted, *parts), (written,))
             messages = self._run(command, folder, self._settings.worker_silence_seconds, used)
             async with self._short, aclosing(_steps(messages)) as steps:
                 async for step in steps:
+                    if isinstance(step, Finished):
+                        written.replace(bag)
                     yield step
 
     async def import_language(self, file: Path, name: str) -> str | Failed:
@@ -262,7 +265,7 @@ class Workers:
         executor = executor or self._executor
         while True:
             with _scratch_folder(folder) as scratch:
-                own = [f"--scratch={scratch}", f"--options={given}"]
+                own = [f"{SCRATCH}{scratch}", f"--options={given}"]
                 try:
                     async with executor.start([*arguments, *own, *command], files) as lines:
                         async with aclosing(_messages(lines, silence_seconds)) as messages:

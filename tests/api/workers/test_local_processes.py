@@ -25,11 +25,13 @@ pytestmark = [pytest.mark.slow, linux]
 
 PROBE_TWICE = """
 import asyncio, sys
+from pathlib import Path
 from app.api.workers.executor import TaskFiles
 from app.api.workers.local_processes import LocalProcesses
 
 async def probe():
-    async with LocalProcesses().start(["probe", "video", sys.argv[1]], TaskFiles((), ())) as lines:
+    files = TaskFiles((Path(sys.argv[1]),), ())
+    async with LocalProcesses().start(["probe", "video", sys.argv[1]], files) as lines:
         while line := await lines.readline():
             print(line.decode())
 
@@ -51,24 +53,24 @@ def clip(tmp_path: Path) -> Path:
     return write_clip(tmp_path / "clip.mp4")
 
 
-async def answers(*arguments: str) -> list[dict[str, Any]]:
+async def answers(arguments: list[str], files: TaskFiles) -> list[dict[str, Any]]:
     """Run a worker to its end, and return its messages."""
     found = []
-    async with LocalProcesses().start(arguments, TaskFiles((), ())) as lines:
+    async with LocalProcesses().start(arguments, files) as lines:
         while line := await lines.readline():
             found.append(json.loads(line))
     return found
 
 
 async def probe(clip: Path) -> str:
-    (answer,) = await answers("probe", "video", str(clip))
+    (answer,) = await answers(["probe", "video", str(clip)], TaskFiles((clip,), ()))
     return str(answer["kind"])
 
 
-def record(clip: Path) -> list[str]:
-    """Return the arguments of a worker that records a clip into files beside it."""
-    files = [clip, *(clip.with_suffix(each) for each in (".npz", ".poster.jpg", ".strip.jpg"))]
-    return ["record", "video", str(clip), *map(str, files)]
+def record(clip: Path) -> tuple[list[str], TaskFiles]:
+    """Return arguments and files of a worker that records a clip into files beside it."""
+    made = tuple(clip.with_suffix(each) for each in (".npz", ".poster.jpg", ".strip.jpg"))
+    return ["record", "video", str(clip), *map(str, (clip, *made))], TaskFiles((clip,), made)
 
 
 @pytest.mark.usefixtures("way")
@@ -81,7 +83,7 @@ def test_a_worker_is_ended_with_its_context(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "long.mp4", frames=2000)
 
     async def leave_early() -> int:
-        async with LocalProcesses().start(record(clip), TaskFiles((), ())) as lines:
+        async with LocalProcesses().start(*record(clip)) as lines:
             await lines.readline()
             (worker,) = workers_of(os.getpid())
             os.kill(worker, signal.SIGSTOP)
