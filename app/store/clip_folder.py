@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import logging
+import re
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from threading import Lock
+from typing import Final
 from weakref import WeakValueDictionary
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish
-from app.store.errors import StoreUnavailable
+from app.store.errors import NotFound, StoreUnavailable
 from app.store.models import new_id
 from app.store.objects import ObjectStore
 from app.store.objects.clip_copies import ClipCopies
+
+CLIP_ID: Final = re.compile(r"[0-9a-f]{32}")
+"""An id that `app.store.models.new_id` has made; only such an id becomes a path."""
 
 logger = logging.getLogger(__name__)
 
@@ -44,7 +49,16 @@ class ClipFolder:
         path.mkdir(parents=True, exist_ok=True)
 
     def home(self, clip_id: str) -> Path:
-        """Return the folder of a clip's files, which need not exist."""
+        """Return the folder of a clip's files, which need not exist.
+
+        Raises
+        ------
+        NotFound
+            When the id is none of ours, and might lead out of the folder.
+
+        """
+        if not CLIP_ID.fullmatch(clip_id):
+            raise NotFound(f"there is no clip {clip_id[:80]!r}")
         return self.path / clip_id
 
     def find(self, clip_id: str, name: str) -> Path:
@@ -82,19 +96,26 @@ class ClipFolder:
 
     def note(self, clip_id: str) -> None:
         """Record that a clip's files are to be removed, in case the removal is interrupted."""
-        self.home(clip_id).mkdir(exist_ok=True)
+        if CLIP_ID.fullmatch(clip_id):
+            self.home(clip_id).mkdir(exist_ok=True)
 
     def remove(self, clip_ids: Iterable[str]) -> int:
         """Remove all files of clips; return the number of clips.
 
+        A name that leads out of the folder is left alone. Other names than ids are of folders that
+        a crash has left here, and not in the object store.
         When the object store does not answer, the folders of the remaining clips stay, so that
         `ClipStore.sweep` removes their files later.
         """
         removed = 0
         try:
             for clip_id in clip_ids:
-                self._objects.remove(clip_id)
-                shutil.rmtree(self.home(clip_id), ignore_errors=True)
+                if CLIP_ID.fullmatch(clip_id):
+                    self._objects.remove(clip_id)
+                elif (self.path / clip_id).parent != self.path or clip_id in ("", "..", "."):
+                    logger.error("nothing is removed for %r, which is no clip", clip_id[:80])
+                    continue
+                shutil.rmtree(self.path / clip_id, ignore_errors=True)
                 removed += 1
         except StoreUnavailable as error:
             logger.warning("files of clips are removed at a later start: %s", error)

@@ -101,8 +101,8 @@ class Database:
         with self.reading() as session:
             return session.exec(select(ChangeCount.changes)).one()
 
-    def migrate(self) -> None:
-        """Check the database and migrate its tables to this version.
+    def migrate(self, revision: str = "head") -> None:
+        """Check the database and migrate its tables to this version, or to that of a revision.
 
         Raises
         ------
@@ -116,7 +116,7 @@ class Database:
             config.set_main_option("script_location", MIGRATIONS.as_posix().replace("%", "%%"))
             with self.engine.execution_options(writing=True).begin() as connection:
                 config.attributes["connection"] = connection
-                command.upgrade(config, "head")
+                command.upgrade(config, revision)
         except CommandError as error:
             raise StoreUnavailable(
                 f"the database {self._name} was made by a newer version of this program "

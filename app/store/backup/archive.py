@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import json
+import os
 import re
 import shutil
 import sqlite3
@@ -24,6 +25,7 @@ from sqlalchemy.exc import ProgrammingError
 
 from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.store.backup.checked_copy import copy_checked
 from app.store.backup.rows import copy_rows, snapshot
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
@@ -37,6 +39,7 @@ MANIFEST = "manifest.json"
 
 _CLIP_FILE = re.compile(r"clips/[0-9a-f]{32}/[a-z]{1,16}(\.[a-z]{1,5})?")
 _PIECE = 1024 * 1024
+_BINARY = getattr(os, "O_BINARY", 0)  # Windows would change line breaks.
 
 
 def write_backup(
@@ -54,7 +57,8 @@ def write_backup(
     data_dir
         Data folder of the library.
     target
-        The file to write; an existing file is replaced once the new one is complete.
+        The file to write, readable by its owner alone; an existing file is replaced once the new
+        one is complete.
     clips
         Folder of the clips' files, by default the one in `data_dir`.
     objects
@@ -82,7 +86,10 @@ def write_backup(
             _copy_database(data_dir, url, copy)
             kept = _files_by_clip(copy)
             # Videos and recordings are compressed already.
-            with zipfile.ZipFile(partial, "w", zipfile.ZIP_STORED) as archive:
+            with (
+                _open_secret(partial) as file,
+                zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive,
+            ):
                 digests = {DATABASE: _add(archive, DATABASE, copy)}
                 for clip_id, names in kept.items():
                     for name in names:
@@ -112,9 +119,10 @@ def restore_backup(
 ) -> int:
     """Restore a backup into a data folder that holds no database, or into an empty PostgreSQL.
 
-    Every file is verified before the database is written, so that an interrupted restore leaves an
-    empty library and can be repeated. `clips`, `objects` and `url` are as in `write_backup`; files
-    of the same name in the object store are replaced.
+    Every file and every row is verified before the database is written, as if a stranger had sent
+    the backup; an interrupted restore leaves an empty library and can be repeated. `clips`,
+    `objects` and `url` are as in `write_backup`; files of the same name in the object store are
+    replaced.
 
     Returns
     -------
@@ -123,7 +131,8 @@ def restore_backup(
     Raises
     ------
     OsgError
-        When the file is no backup, is damaged, or the database exists and is not empty.
+        When the file is no backup, is damaged, holds what no backup does, or the database exists
+        and is not empty.
     StoreUnavailable
         When the object store or the database does not answer.
 
@@ -140,13 +149,7 @@ def restore_backup(
         tempfile.TemporaryDirectory(prefix=".restoring-", dir=data_dir) as scratch,
     ):
         folder = Path(scratch)
-        for name, digest in digests.items():
-            place = folder / name
-            place.parent.mkdir(parents=True, exist_ok=True)
-            with archive.open(name) as packed, place.open("wb") as file:
-                if _copy(packed, file) != digest:
-                    raise OsgError(f"{name} in {source.name} is damaged; use another backup")
-        _check_database(folder / DATABASE)
+        checked = _unpack_checked(archive, digests, folder, source.name)
 
         def place_clips() -> None:
             for name in digests:
@@ -160,10 +163,36 @@ def restore_backup(
         if url is None:
             place_clips()
             sync_directory(data_dir)
-            publish(folder / DATABASE, data_dir / DATABASE)
+            publish(checked, data_dir / DATABASE)
         else:
-            _restore_rows(folder / DATABASE, url, place_clips)
+            _restore_rows(checked, url, place_clips)
     return len({name.split("/")[1] for name in digests if name.startswith("clips/")})
+
+
+def _open_secret(path: Path) -> IO[bytes]:
+    """Create a file that nobody else may read: a backup holds everything."""
+    path.unlink(missing_ok=True)
+    return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | _BINARY, 0o600), "w+b")
+
+
+def _unpack_checked(
+    archive: zipfile.ZipFile, digests: dict[str, str], folder: Path, called: str
+) -> Path:
+    """Unpack and verify all files; return a new database with the rows of the received one."""
+    for name, digest in digests.items():
+        place = folder / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with archive.open(name) as packed, place.open("wb") as file:
+            if _copy(packed, file) != digest:
+                raise OsgError(f"{name} in {called} is damaged; use another backup")
+    checked = folder / "checked.db"
+    known = copy_checked(folder / DATABASE, checked)
+    if unknown := {name.split("/")[1] for name in digests if name != DATABASE} - known:
+        raise OsgError(
+            f"{called} holds files of a clip {min(unknown)} that its database does not have; use "
+            "another backup"
+        )
+    return checked
 
 
 class _ClipFiles:
@@ -308,6 +337,7 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
     """Open a backup; yield it with the SHA-256 of each of its files."""
     try:
         with zipfile.ZipFile(source) as archive:
+            _require_stored(archive, source)
             manifest: Any = json.loads(archive.read(MANIFEST))
             if manifest.get("format") != FORMAT or manifest.get("version") != VERSION:
                 raise OsgError(f"{source.name} is a backup of another version of this program")
@@ -319,10 +349,20 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
             yield archive, digests
     except FileNotFoundError as error:
         raise OsgError(f"cannot read {source}: {error.strerror}") from error
-    except (zipfile.BadZipFile, KeyError, ValueError, AttributeError) as error:
+    except OsgError:
+        raise
+    except (zipfile.BadZipFile, KeyError, ValueError, AttributeError, RuntimeError) as error:
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
     except OSError as error:
         # A damaged archive directory points before the beginning of the file.
         if error.errno != errno.EINVAL:
             raise
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
+
+
+def _require_stored(archive: zipfile.ZipFile, source: Path) -> None:
+    """Refuse an archive that would unpack to more than its own size: ours are not compressed."""
+    entries = archive.infolist()
+    packed = any(entry.compress_type != zipfile.ZIP_STORED for entry in entries)
+    if packed or sum(entry.file_size for entry in entries) > source.stat().st_size:
+        raise OsgError(f"{source.name} is compressed, which no backup is; use another backup")
