@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import stat
+import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
@@ -31,6 +32,9 @@ MOST_BYTES = 4 * 512 * 1024 * 1024
 already, and noise keeps raw ones from shrinking below a third; smaller archives are no
 recordings."""
 
+PIECE = 1024 * 1024
+"""Bytes unpacked at once."""
+
 ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 """File endings by which rosbags recognises the two storages."""
 
@@ -47,6 +51,7 @@ def stage(path: Path) -> Iterator[Path]:
     """
     kind = _known_kind(path)
     if kind == "folder":
+        _require_plain([each.name for each in path.iterdir()], path.name)
         yield path
         return
     with tempfile.TemporaryDirectory(prefix="bag-") as made:
@@ -89,6 +94,7 @@ def _unpack(path: Path, folder: Path) -> Path:
             unpack(archive, entries, folder, most_bytes=MOST_BYTES)
         except UnpackedTooLarge as error:
             raise _too_large(path.name, MOST_BYTES) from error
+    _require_small(folder, path.name)
     if (folder / METADATA).is_file():
         return folder
     files = sorted(folder.iterdir())
@@ -117,6 +123,7 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
                 "pack the recording's folder again, without links"
             )
     files = [entry for entry in visible_files(archive) if _belongs(plain_name(entry))]
+    _require_plain(map(plain_name, files), name)
     wanted = {plain_name(entry): entry for entry in files}
     if not wanted.keys() - {METADATA}:
         raise BagError(
@@ -128,6 +135,32 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
     if (total := sum(entry.file_size for entry in files)) > MOST_BYTES:
         raise _too_large(name, total)
     return wanted
+
+
+def _require_plain(files: Iterable[str], name: str) -> None:
+    """Refuse names that SQLite, which is given an address, reads as another place."""
+    if odd := [each for each in files if _belongs(each) and set(each) & set("%?#")]:
+        raise BagError(
+            f"{name} has a file with %, ? or # in its name ({odd[0][:80]!r}); rename it, there and "
+            f"in {METADATA}"
+        )
+
+
+def _require_small(folder: Path, name: str) -> None:
+    """Refuse files that the reader would unpack a second time to more than is allowed."""
+    # As the reader does, which brings the second one.
+    if sys.version_info >= (3, 14):
+        from compression import zstd
+    else:
+        from backports import zstd
+    left = MOST_BYTES
+    for path in folder.iterdir():
+        # What is not packed by zstd raises this at once.
+        with suppress(zstd.ZstdError, EOFError), zstd.open(path, "rb") as file:
+            while piece := file.read(PIECE):
+                left -= len(piece)
+                if left < 0:
+                    raise _too_large(name, MOST_BYTES)
 
 
 def _belongs(name: str) -> bool:

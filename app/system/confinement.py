@@ -138,7 +138,7 @@ def _needed() -> list[tuple[Path, int]]:
     whole = {package.parent} if (package.parent / "pyproject.toml").exists() else set()
     modules = {Path(path).resolve() for path in sys.path if path} - whole
     libraries = filter(None, os.environ.get("LD_LIBRARY_PATH", "").split(":"))
-    read = [*beside, sys.prefix, sys.base_prefix, *modules, *libraries, *_SYSTEM]
+    read: list[str | Path] = [*beside, sys.prefix, sys.base_prefix, *modules, *libraries, *_SYSTEM]
     graphics = [*Path("/dev").glob("nvidia*"), Path("/dev/dri"), Path("/dev/kfd")]
     return [
         *((Path(path), READ) for path in read),

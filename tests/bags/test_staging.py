@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
+import shutil
 import stat
 import tempfile
 import zipfile
 from pathlib import Path
 
 import pytest
+from backports import zstd
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from app.bags import staging
+from app.bags.bag import open_bag
 from app.bags.staging import is_bag_archive, stage
 from app.recognition.errors import BagError
-from tests.bags.bag_files import zip_of
+from tests.bags.bag_files import START, Storage, file_of, message, write_bag, zip_of
 
 
 @pytest.fixture(autouse=True)
@@ -121,3 +126,82 @@ def test_other_archives_are_told_apart_without_unpacking(tmp_path: Path) -> None
     assert not is_bag_archive(tmp_path / "broken.zip")
     (tmp_path / "dive.mcap").write_bytes(b"\x89MCAP0\r\n")
     assert not is_bag_archive(tmp_path / "dive.mcap")
+
+
+def test_a_file_that_unpacks_twice_is_counted_at_its_last_size(
+    tmp_path: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(staging, "MOST_BYTES", 2_000_000)
+    for size, allowed in ((1_900_000, True), (3_000_000, False)):
+        content = {"metadata.yaml": b"m", "dive.mcap.zstd": zstd.compress(bytes(size))}
+        path = zip_of(tmp_path / "dive.zip", content)
+        if allowed:
+            with stage(path):
+                pass
+            continue
+        with pytest.raises(BagError, match="beyond the limit of"), stage(path):
+            pass
+    assert list(scratch.iterdir()) == []
+
+
+def test_a_name_that_sqlite_reads_as_another_place_opens_nothing(tmp_path: Path) -> None:
+    # The recording of somebody else, beside the folder into which ours is unpacked.
+    image = message("std_msgs/msg/String", "secret")
+    other = write_bag(tmp_path / "other", [("/secret", image, START)], "sqlite3")
+    own = write_bag(tmp_path / "own", [("/own", image, START)], "sqlite3")
+    (own / "own.db3").rename(own / "own")
+    shutil.copy(other / "other.db3", tmp_path / "scratch" / "other.db3")
+    name = "%2e%2e%2fother.db3"
+    metadata = (own / "metadata.yaml").read_text().replace("own.db3", f"'{name}'")
+    entries = {name: (own / "own").read_bytes(), "metadata.yaml": metadata.encode()}
+    path = zip_of(tmp_path / "dive.zip", entries)
+    with pytest.raises(BagError, match="in its name"), open_bag(path) as bag:
+        pytest.fail(f"opened a recording of {[topic.name for topic in bag.topics]}")
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_metadata_that_names_files_elsewhere_opens_nothing(
+    tmp_path: Path, storage: Storage
+) -> None:
+    image = message("std_msgs/msg/String", "secret")
+    other = write_bag(tmp_path / "other", [("/secret", image, START)], storage)
+    own = write_bag(tmp_path / "own", [("/own", image, START)], storage)
+    metadata = (own / "metadata.yaml").read_text()
+    for place in (f"../../other/{file_of(other).name}", str(file_of(other))):
+        changed = metadata.replace(file_of(own).name, place)
+        entries = {
+            file_of(own).name: file_of(own).read_bytes(),
+            "metadata.yaml": changed.encode(),
+        }
+        path = zip_of(tmp_path / "dive.zip", entries)
+        with pytest.raises((BagError, OSError), match="missing"), open_bag(path):
+            pass
+
+
+def test_metadata_runs_no_code(tmp_path: Path) -> None:
+    marker = tmp_path / "marker"
+    own = write_bag(tmp_path / "own", [("/own", message("std_msgs/msg/String", "x"), START)])
+    code = f"!!python/object/apply:os.mkdir ['{marker}']\n"
+    entries = {file_of(own).name: file_of(own).read_bytes(), "metadata.yaml": code.encode()}
+    path = zip_of(tmp_path / "dive.zip", entries)
+    with pytest.raises(BagError), open_bag(path):
+        pass
+    assert not marker.exists()
+
+
+def test_a_message_definition_runs_no_code(tmp_path: Path) -> None:
+    marker = tmp_path / "marker"
+    attack = f"__import__('pathlib').Path('{marker}').touch()"
+    for text in (
+        f"string A='{attack}'\nstring data",
+        f'string A=""+{attack}+""\nstring data',
+        f"string data {attack}",
+        f"string data\n{attack}",
+        f"uint8[{attack}] data",
+        f"string data; {attack}",
+    ):
+        with contextlib.suppress(Exception):
+            store = get_typestore(Stores.EMPTY)
+            store.register(get_types_from_msg(text, "std_msgs/msg/String"))
+            store.deserialize_cdr(b"\0\1\0\0\4\0\0\0abc\0", "std_msgs/msg/String")
+    assert not marker.exists()

@@ -136,6 +136,7 @@ class _TaskLines:
     ) -> None:
         self._client, self._future, self._queue, self._own = client, future, queue, own
         self._silence = 0.0
+        self._machine: str | None = None
         self._held: str | None = None
         self._ended = False
 
@@ -152,12 +153,12 @@ class _TaskLines:
             if kind in (STARTED, ENDED):
                 return
 
-    async def readline(self) -> bytes:
+    async def readline(self, silence_seconds: float | None = None) -> bytes:
         """Return the next line; see `Lines`."""
         from app.api.workers.dask_task import ENDED, FILE, LINE, LOST
 
         while not self._ended:
-            kind, content = await self._next()
+            kind, content = await self._next(silence_seconds)
             if kind == LINE and self._own is None:
                 return str(content).encode()
             if kind == LINE:
@@ -193,15 +194,21 @@ class _TaskLines:
         for path, content in files:
             await asyncio.to_thread(self._own.put, path, content)
 
-    async def _next(self) -> Told:
-        from app.api.workers.dask_task import ENDED
+    async def _next(self, silence_seconds: float | None = None) -> Told:
+        from app.api.workers.dask_task import ENDED, STARTED
 
         while True:
             with contextlib.suppress(TimeoutError):
-                told = await asyncio.wait_for(self._queue.get(), LOOK_SECONDS)
+                kind, content = await asyncio.wait_for(self._queue.get(), LOOK_SECONDS)
                 self._silence = 0.0
-                return told
+                if kind == STARTED:
+                    self._machine = content
+                return kind, content
             self._silence += LOOK_SECONDS
+            if await self._waits_for_a_place():
+                self._silence = 0.0
+            elif silence_seconds is not None and self._silence > silence_seconds:
+                raise TimeoutError
             if self._client.status != "running" or self._future.status in ("cancelled", "lost"):
                 raise ExecutorLost("the Dask scheduler is gone")
             if self._future.status == "error":
@@ -211,3 +218,12 @@ class _TaskLines:
                 return ENDED, ""
             if self._future.status == "finished" and self._silence > LAST_LINES_SECONDS:
                 raise ExecutorLost("the last lines of a task were not heard")
+
+    async def _waits_for_a_place(self) -> bool:
+        """Return whether the task runs nowhere: it has not begun, or its machine is gone."""
+        if self._machine is not None and self._client.status == "running":
+            with contextlib.suppress(OSError, TimeoutError):
+                places = self._client.ncores(workers=[self._machine])
+                if not (await asyncio.wait_for(places, CONNECT_SECONDS)).get(self._machine):
+                    self._machine = None
+        return self._machine is None and self._future.status == "pending"

@@ -73,7 +73,7 @@ def _lines(arguments: Sequence[str], task: str, tell: Callable[[str, str], None]
     )
     _processes[task] = process
     try:
-        tell(STARTED, "")
+        tell(STARTED, get_worker().address)
         assert process.stdout is not None
         for line in process.stdout:
             yield line.decode()

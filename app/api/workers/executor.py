@@ -25,11 +25,14 @@ class ExecutorLost(Exception):
 class Lines(Protocol):
     """Protocol of the lines that a process writes."""
 
-    async def readline(self) -> bytes:
+    async def readline(self, silence_seconds: float | None = None) -> bytes:
         """Return the next line; empty at the end of the process.
 
         Raises
         ------
+        TimeoutError
+            When the process has run for that time without a line; the time that it waits for a
+            place does not count.
         ExecutorLost
             When the connection to the process is lost.
 

@@ -71,10 +71,10 @@ class ForkedWorker:
         connection.write(json.dumps(command).encode() + b"\n")
         return cls(process, lines, connection)
 
-    async def readline(self) -> bytes:
-        """Return the next line; empty at the end of the process."""
+    async def readline(self, silence_seconds: float | None = None) -> bytes:
+        """Return the next line; see `Lines`."""
         try:
-            return await self._lines.readline()
+            return await asyncio.wait_for(self._lines.readline(), silence_seconds)
         except ConnectionResetError:  # The process ended before it had read its command.
             return b""
 

@@ -42,7 +42,7 @@ class _StartedWorker:
 
     def __init__(self, process: asyncio.subprocess.Process, lines: asyncio.StreamReader) -> None:
         self._process = process
-        self.readline = lines.readline
+        self._lines = lines
 
     @classmethod
     async def begin(cls, arguments: Sequence[str]) -> Self:
@@ -60,6 +60,10 @@ class _StartedWorker:
         )
         assert process.stdout is not None
         return cls(process, process.stdout)
+
+    async def readline(self, silence_seconds: float | None = None) -> bytes:
+        """Return the next line; see `Lines`."""
+        return await asyncio.wait_for(self._lines.readline(), silence_seconds)
 
     async def end(self) -> None:
         """End the process, and wait until it has ended."""

@@ -283,11 +283,13 @@ class Workers:
 
 async def _messages(lines: Lines, silence_seconds: float) -> AsyncGenerator[Message, None]:
     """Yield the messages of a process to its end; raise TimeoutError after a long silence."""
-    while line := await asyncio.wait_for(lines.readline(), silence_seconds):
+    while True:
         try:
+            if not (line := await lines.readline(silence_seconds)):
+                return
             message = parse(line)
         except ValueError:
-            return  # A line torn by a crash.
+            return  # A line torn by a crash, or longer than any of ours.
         yield message
 
 

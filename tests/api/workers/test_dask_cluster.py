@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
+from distributed import Client, wait
 
 from app.api.services.running_studio import Studio
 from app.recognition import Recording
@@ -26,6 +28,8 @@ pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("installed_models
 
 JOBS = "/api/v1/jobs"
 FRAMES = 60
+SILENCE = 30.0
+"""Seconds without progress: enough for the models to be loaded on a busy machine."""
 
 
 @pytest.fixture(scope="module")
@@ -41,6 +45,7 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
         samples_dir=tmp_path / "none",
         executor=f"dask://{cluster.address}",
         workers=2,
+        worker_silence_seconds=SILENCE,
     )
 
 
@@ -96,6 +101,31 @@ def test_a_job_whose_machine_vanishes_is_done_by_another_one_once(
     recording = server.studio.clips.recording(answer.clip_id)
     assert len(Recording.load(recording).poses) == FRAMES
     assert not list(recording.parent.glob(".*"))
+
+
+def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
+    client: httpx.Client, server: Running, cluster: Cluster, tmp_path: Path
+) -> None:
+    job = upload(client, write_clip(tmp_path / "clip.mp4", frames=FRAMES)).json()["job_id"]
+    until(lambda: workers_at_work(cluster))
+    (child, machine) = next(iter(workers_at_work(cluster).items()))
+    os.kill(child, signal.SIGSTOP)
+    cluster.add_worker()
+    with Client(cluster.address, set_as_default=False) as dask:
+        until(lambda: len(dask.nthreads()) > 1)
+        processes = dask.run(os.getpid)
+        others = [address for address, process in processes.items() if process != machine]
+        # Every other place is taken for longer than a process may be silent.
+        taken = [
+            dask.submit(time.sleep, SILENCE + 15, workers=[each], pure=False) for each in others
+        ]
+        until(lambda: sum(map(len, dask.processing().values())) > len(others))
+        for process in (machine, child):
+            os.kill(process, signal.SIGKILL)
+        wait(taken)
+    until(lambda: status(client, job) in ("done", "failed"))
+    answer = server.studio.jobs.get(job)
+    assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
 
 
 def test_a_job_whose_scheduler_vanishes_is_submitted_again(
