@@ -13,6 +13,7 @@ from av.video.codeccontext import VideoCodecContext
 from av.video.stream import VideoStream
 from typing_extensions import Self
 
+from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.video import VideoFrame
 
@@ -32,6 +33,20 @@ KEY_FRAMES = "50"
 usual 25 frames a second."""
 
 
+MOST_SIDE = 16_384
+"""Longest side of a picture in pixels: x264 ends the process at a longer one."""
+
+
+def require_encodable(width: int, height: int) -> None:
+    """Raise VideoError when no video of this size can be written."""
+    for side, name in ((width, "width"), (height, "height")):
+        if side > MOST_SIDE:
+            raise VideoError(
+                f"pictures are {width} x {height} pixels, and a {name} of more than {MOST_SIDE} "
+                "cannot be written as H.264; give a smaller frame size, or export a smaller picture"
+            )
+
+
 class VideoFile:
     """Writes frames of one even size; a context that ends without an error leaves a complete file.
 
@@ -42,9 +57,15 @@ class VideoFile:
     width, height
         Pixels, both even.
 
+    Raises
+    ------
+    VideoError
+        When a side is too long.
+
     """
 
     def __init__(self, path: Path, width: int, height: int) -> None:
+        require_encodable(width, height)
         # The index comes first, so that a browser plays the file during its download.
         options = {"movflags": "faststart"}
         self._container = av.open(str(path), "w", format="mp4", options=options)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import get_args
 
 from app.bags import show_recording
+from app.bags.video_writer import require_encodable
 from app.clip_sources.source import (
     MADE_VIDEO,
     ClipFacts,
@@ -99,6 +100,7 @@ class KeypointFileSource:
         poses = _read(path, options).recording.poses
         # The skeleton is drawn in pictures of this size.
         VideoLimits().require_pixels(*poses.frame_size)
+        require_encodable(*poses.frame_size)
         return ClipFacts(*poses.frame_size, poses.duration, len(poses))
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:

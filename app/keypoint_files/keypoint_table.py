@@ -20,6 +20,9 @@ MOST_NEGATIVE = 0.25
 """Largest share of coordinates left of or above the picture: at most an arm or the legs of a body
 in it are outside. Half of MediaPipe's world landmarks (metres from the hips) are negative."""
 
+LEAST_SIDE = 16
+"""Shortest side of a picture in pixels: thumbnails are larger, and nobody is seen in less."""
+
 FALLBACK_RATE = 30.0
 """Frames per second of most cameras."""
 
@@ -55,7 +58,7 @@ class KeypointOptions:
     Raises
     ------
     KeypointFileError
-        When a rate or a size is not positive and finite.
+        When a rate is not positive and finite, or a side is shorter than `LEAST_SIDE`.
 
     """
 
@@ -74,10 +77,13 @@ class KeypointOptions:
             raise KeypointFileError(
                 f"the frame rate is {self.frame_rate:g}; give the video's frames per second, as 30"
             )
-        if self.frame_size is not None and min(self.frame_size) < 1:
-            raise KeypointFileError(
-                f"the frame size is {self.frame_size}; give width and height of the video in pixels"
-            )
+        for side, name in zip(self.frame_size or (), ("width", "height"), strict=False):
+            if side < LEAST_SIDE:
+                width, height = self.frame_size or (0, 0)
+                raise KeypointFileError(
+                    f"the frame size is {width}x{height}, and a {name} of {side} shows no person; "
+                    "give width and height of the video in pixels"
+                )
 
 
 @dataclass(frozen=True, eq=False)

@@ -189,7 +189,10 @@ def test_a_keypoint_of_another_name_is_mapped_by_the_user(
         ((), "--frame-rate 30"),
         (("--frame-rate", "0"), "the frame rate is 0"),
         (("--frame-rate", "30", "--frame-size", "huge"), "give WIDTHxHEIGHT"),
-        (("--frame-rate", "30", "--frame-size", "0x480"), "the frame size is (0, 480)"),
+        (
+            ("--frame-rate", "30", "--frame-size", "0x480"),
+            "the frame size is 0x480, and a width of 0",
+        ),
         (("--frame-rate", "30", "--landmark", "claw"), "not NAME=LANDMARK"),
         (("--frame-rate", "30", "--landmark", "fin=nose"), "no keypoint 'fin'"),
     ],

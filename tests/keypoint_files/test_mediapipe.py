@@ -216,6 +216,8 @@ def test_a_rate_or_size_that_cannot_be_is_refused(rate: float) -> None:
         KeypointOptions(frame_rate=rate)
     with pytest.raises(KeypointFileError, match="frame size is"):
         KeypointOptions(frame_size=(0, 10))
+    with pytest.raises(KeypointFileError, match="is 1x65535, and a width of 1 shows no person"):
+        KeypointOptions(frame_size=(1, 65535))
 
 
 def test_a_real_file_of_mediapipe_is_read(shared_data: Path) -> None:

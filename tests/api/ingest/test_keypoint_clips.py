@@ -131,3 +131,16 @@ def test_what_is_no_text_or_has_another_name_is_no_keypoint_file(
         problem = assert_problem(upload(client, path, name), 415, "unsupported_media_type")
         assert "OpenPose's folder as zip" in str(problem["detail"])
     assert_nothing_kept(client, settings)
+
+
+@pytest.mark.parametrize(
+    ("size", "reason"), [("1x65535", "a width of 1"), ("640x20000", "a height of more than 16384")]
+)
+def test_a_frame_size_that_cannot_be_drawn_is_refused_at_once(
+    client: httpx.Client, tmp_path: Path, size: str, reason: str
+) -> None:
+    arms = recording(circle, frames=FRAMES, landmarks=tuple(BODY))
+    path = packed(write_openpose(tmp_path / "json", arms, BODY_25))
+    answer = upload(client, path, path.name, frame_rate="30", frame_size=size)
+    assert answer.status_code == 422
+    assert reason in answer.json()["detail"]
