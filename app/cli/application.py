@@ -73,6 +73,7 @@ from app.recognition.spotting import Spotter
 from app.recognition.text.look_alikes import compose
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
 from app.recognition.triggers.trigger import SALUTE
+from app.system.confinement import hide_memory
 
 NOTHING_RECOGNISED = 1
 BAD_INPUT = 2
@@ -152,6 +153,8 @@ def serve(
         settings = Settings(**{name: value for name, value in given.items() if value is not None})
     except ValidationError as error:
         raise OsgError(error.errors()[0]["msg"].removeprefix("Value error, ")) from error
+    # A reader of received files must not find the token in this process's memory.
+    hide_memory()
     run(settings, open_browser=not no_browser)
 
 

@@ -111,3 +111,14 @@ def test_without_linux_nothing_changes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "darwin")
     assert not confine([])
     assert list(Path("/").iterdir())
+
+
+@linux
+def test_the_memory_of_a_process_is_hidden_from_others_of_its_user() -> None:
+    shown = (
+        "import ctypes; from app.system.confinement import hide_memory; "
+        "dumpable = lambda: ctypes.CDLL(None).prctl(3, 0, 0, 0, 0); "
+        "before = dumpable(); hide_memory(); print(before, dumpable())"
+    )
+    ran = subprocess.run([sys.executable, "-c", shown], capture_output=True, text=True, check=True)
+    assert ran.stdout == "1 0\n"

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from distributed import Client, wait
+from distributed import Client
 
 from app.api.services.running_studio import Studio
 from app.recognition import Recording
@@ -122,7 +122,7 @@ def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
         until(lambda: sum(map(len, dask.processing().values())) > len(others))
         for process in (machine, child):
             os.kill(process, signal.SIGKILL)
-        wait(taken)
+        dask.gather(taken)
     until(lambda: status(client, job) in ("done", "failed"))
     answer = server.studio.jobs.get(job)
     assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
