@@ -94,8 +94,13 @@ class _Check:
 
     def _hard_links(self, group: Any) -> list[bytes]:
         names: list[bytes] = []
-        # The library asks until it is given an answer, and lets no error through.
-        group.links.iterate(lambda name: names.append(name) or len(names) > MOST_ENTRIES or None)
+
+        def take(name: bytes) -> bool | None:
+            names.append(name)
+            # The library goes on until it is given an answer; an error would not come through.
+            return len(names) > MOST_ENTRIES or None
+
+        group.links.iterate(take)
         self._count_entries(len(names))
         for name in names:
             if group.links.get_info(name).type != self._h5py.h5l.TYPE_HARD:
