@@ -190,3 +190,40 @@ PLAYLISTS: dict[str, Callable[[Path], str]] = {
     ),
 }
 """Texts that make FFmpeg open another file or address, which they name."""
+
+
+def of_another_file(path: Path, other: Path) -> Path:
+    """Write a QuickTime file whose frames are in another one, which its data reference names."""
+    path.write_bytes(_refer(other.read_bytes(), other))
+    return path
+
+
+def _refer(content: bytes, other: Path) -> bytes:
+    changed, at = b"", 0
+    while at < len(content):
+        size, kind = struct.unpack(">I4s", content[at : at + 8])
+        inner = content[at + 8 : at + size]
+        if kind == b"dref":
+            inner = struct.pack(">II", 0, 1) + _box(b"alis", bytes(4) + _alias(other))
+        elif kind in (b"moov", b"trak", b"mdia", b"minf", b"dinf"):
+            inner = _refer(inner, other)
+        elif kind == b"mdat":
+            inner = bytes(len(inner))
+        changed += _box(kind, inner)
+        at += size
+    return changed
+
+
+def _alias(other: Path) -> bytes:
+    """Return a Macintosh alias record with the file's absolute path."""
+    path, name = str(other).encode(), other.name.encode()
+    record = bytes(10) + b"\1" + b"v".ljust(27, b"\0") + bytes(12)
+    record += bytes([len(name)]) + name.ljust(63, b"\0") + bytes(16)
+    record += struct.pack(">hh", 1, 1) + bytes(16)
+    for kind in (2, 18):
+        record += struct.pack(">hH", kind, len(path)) + path + bytes(len(path) % 2)
+    return record + struct.pack(">hH", -1, 0)
+
+
+def _box(kind: bytes, content: bytes) -> bytes:
+    return struct.pack(">I4s", len(content) + 8, kind) + content

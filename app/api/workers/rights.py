@@ -60,21 +60,27 @@ def environment_of_workers(environment: Mapping[str, str] = os.environ) -> dict[
 def rights_to(files: TaskFiles) -> list[str]:
     """Return the arguments that let a worker read and write these files."""
     folders = {path if path.is_dir() else path.parent for path in files.outputs}
+    # Only the command line reads folders: their owner may have linked what is on another disk.
+    linked = [target for path in files.inputs if path.is_dir() for target in _linked(path)]
     return [
-        *(f"{READS}{path}" for path in _few(files.inputs)),
+        *(f"{READS}{path}" for path in _few([*files.inputs, *linked])),
         *(f"{WRITES}{path}" for path in sorted(folders)),
     ]
 
 
 def rights_to_models(folder: Path) -> list[str]:
     """Return the arguments that let a worker read the models in a folder."""
-    linked = [path.resolve() for path in folder.glob("*") if path.is_symlink()]
-    return [f"{READS}{path}" for path in (folder, *linked)]
+    return [f"{READS}{path}" for path in (folder, *_linked(folder))]
 
 
 def confine_worker(arguments: Sequence[str]) -> None:
     """Confine this process, which has one thread, to the files that its arguments name."""
     confine(list(_grants(arguments)))
+
+
+def _linked(folder: Path) -> list[Path]:
+    """Return where the links in a folder lead."""
+    return [path.resolve() for path in folder.glob("*") if path.is_symlink()]
 
 
 def _few(paths: Collection[Path]) -> Collection[Path]:

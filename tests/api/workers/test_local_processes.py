@@ -39,6 +39,13 @@ for _ in range(2):
     asyncio.run(probe())
 """
 
+CANCEL_AT_ONCE = """
+from app.api.workers.forked_worker import _fork_server
+
+for _ in range(20):
+    _fork_server.connect().close()
+"""
+
 
 @pytest.fixture(params=["forked", "started"])
 def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
@@ -131,4 +138,11 @@ def test_processes_end_without_a_word(clip: Path) -> None:
     command = [sys.executable, "-X", "dev", "-c", PROBE_TWICE, str(clip)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.count("probed") == 2
+    assert done.stderr == ""
+
+
+def test_jobs_that_are_cancelled_before_they_begin_end_without_a_word() -> None:
+    command = [sys.executable, "-c", CANCEL_AT_ONCE]
+    # Until every process that could write has ended.
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stderr == ""

@@ -7,6 +7,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import av
 import numpy as np
 import pytest
 
@@ -29,6 +30,7 @@ from tests.recognition.damaged_clips import (
     flipped,
     huge_motion_jpeg,
     joined,
+    of_another_file,
     sound_only,
     write_clip,
 )
@@ -173,6 +175,16 @@ def test_a_playlist_opens_no_other_file(tmp_path: Path, kind: str, suffix: str) 
     path = tmp_path / f"clip.{suffix}"
     path.write_text(PLAYLISTS[kind](other))
     with pytest.raises(VideoError):
+        probe(path)
+
+
+def test_a_data_reference_opens_no_other_file(tmp_path: Path) -> None:
+    path = of_another_file(tmp_path / "clip.mov", write_clip(tmp_path / "other.mov"))
+    # The frames are there for a program that follows such references.
+    followed = {"enable_drefs": "1", "use_absolute_path": "1"}
+    with av.open(str(path), options=followed) as container:
+        assert len(list(container.decode(video=0))) == 12
+    with pytest.raises(VideoError, match="no frame"):
         probe(path)
 
 
