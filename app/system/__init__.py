@@ -1,1 +1,1 @@
-"""System: reads archives of files, and reports to the service manager."""
+"""System: reads archives of files, confines processes, reports to the service manager."""
