@@ -110,7 +110,6 @@ def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
     until(lambda: workers_at_work(cluster))
     (child, machine) = next(iter(workers_at_work(cluster).items()))
     os.kill(child, signal.SIGSTOP)
-    cluster.add_worker()
     with Client(cluster.address, set_as_default=False) as dask:
         until(lambda: len(dask.nthreads()) > 1)
         processes = dask.run(os.getpid)
@@ -124,6 +123,7 @@ def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
             os.kill(process, signal.SIGKILL)
         dask.gather(taken)
     until(lambda: status(client, job) in ("done", "failed"))
+    cluster.add_worker()  # in place of the killed one
     answer = server.studio.jobs.get(job)
     assert (answer.error, answer.status, answer.attempts) == (None, "done", 1)
 
