@@ -1,11 +1,14 @@
-"""The page about reliability: every row of its table of bad input has a test of its own."""
+"""What is promised of reliability and security: each promise names a test that is there."""
 
 import re
 from pathlib import Path
 
+import pytest
+
 from tests.conftest import ROOT
 
 PAGE = ROOT / "docs" / "reliability.md"
+SECURITY = ROOT / "SECURITY.md"
 
 
 def marked() -> dict[str, list[str]]:
@@ -25,7 +28,7 @@ def marked() -> dict[str, list[str]]:
 
 def test_every_row_of_bad_input_has_a_test_and_every_mark_a_row() -> None:
     rows = re.findall(r"^\| (H\d\d) \|", PAGE.read_text(encoding="utf-8"), re.MULTILINE)
-    assert rows == [f"H{number:02d}" for number in range(1, 28)]
+    assert rows == [f"H{number:02d}" for number in range(1, 37)]
     assert sorted(marked()) == rows
 
 
@@ -38,7 +41,15 @@ def test_every_mark_stands_before_a_test() -> None:
     assert sum(map(len, marked().values())) == used
 
 
-def test_every_test_named_on_the_page_is_there() -> None:
-    named = re.findall(r"`(tests/[\w/]+(?:\.py)?)`", PAGE.read_text(encoding="utf-8"))
+@pytest.mark.parametrize("page", [PAGE, SECURITY], ids=lambda page: page.name)
+def test_every_test_named_on_a_page_is_there(page: Path) -> None:
+    named = re.findall(r"`(tests/[\w/]+(?:\.py)?)`", page.read_text(encoding="utf-8"))
     assert len(named) > 10
     assert [name for name in named if not (ROOT / name).exists()] == []
+
+
+def test_every_promise_of_security_names_a_test() -> None:
+    _, promises = SECURITY.read_text(encoding="utf-8").split("| --- | --- | --- |\n")
+    rows = promises.split("\n\n")[0].splitlines()
+    assert len(rows) > 10
+    assert [row for row in rows if "`tests/" not in row.split("|")[3]] == []

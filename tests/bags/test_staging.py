@@ -159,6 +159,7 @@ def test_a_name_that_sqlite_reads_as_another_place_opens_nothing(tmp_path: Path)
         pytest.fail(f"opened a recording of {[topic.name for topic in bag.topics]}")
 
 
+@pytest.mark.withstands(row="H28")
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_metadata_that_names_files_elsewhere_opens_nothing(
     tmp_path: Path, storage: Storage
@@ -178,6 +179,7 @@ def test_metadata_that_names_files_elsewhere_opens_nothing(
             pass
 
 
+@pytest.mark.withstands(row="H28")
 def test_metadata_runs_no_code(tmp_path: Path) -> None:
     marker = tmp_path / "marker"
     own = write_bag(tmp_path / "own", [("/own", message("std_msgs/msg/String", "x"), START)])

@@ -153,6 +153,7 @@ ATTACKS: list[Callable[[Any, Path], None]] = [
 ]
 
 
+@pytest.mark.withstands(row="H28")
 @pytest.mark.parametrize("attack", ATTACKS)
 def test_a_file_that_refers_to_others_or_announces_more_than_it_holds_is_refused(
     analysis: Path, secret: Path, attack: Callable[[Any, Path], None]

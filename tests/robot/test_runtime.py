@@ -112,6 +112,7 @@ def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator
     assert ended.frames > 0
 
 
+@pytest.mark.withstands(row="H36")
 @pytest.mark.parametrize(("rate", "told"), [(2, [(2.0, False)]), (5, [])])
 def test_a_source_with_too_few_frames_a_second_is_told(
     estimator: PoseEstimator, tmp_path: Path, rate: int, told: list[tuple[float, bool]]

@@ -90,6 +90,7 @@ STATEMENTS = [
 ]
 
 
+@pytest.mark.withstands(row="H32")
 @pytest.mark.parametrize("statement", STATEMENTS)
 def test_what_this_program_never_writes_is_refused_in_one_line(
     kept: Path, tmp_path: Path, statement: str

@@ -19,6 +19,7 @@ def test_the_files_of_what_is_no_clip_have_no_place(clips: ClipStore, clip_id: s
         clips._files.home(clip_id)
 
 
+@pytest.mark.withstands(row="H32")
 @pytest.mark.parametrize("clip_id", ["../victim", "../../victim", "..", "{victim}"])
 def test_the_removal_of_a_clip_never_leaves_the_folder(
     sqlite: Database, tmp_path: Path, clip_id: str

@@ -114,6 +114,7 @@ class LosesAnswers(Database):
         raise StoreUnavailable("the connection was lost; nothing is known of the last change")
 
 
+@pytest.mark.withstands(row="H31")
 def test_a_clip_whose_commit_was_not_answered_keeps_its_file(
     database: Database, tmp_path: Path
 ) -> None:

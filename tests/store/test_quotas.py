@@ -75,6 +75,7 @@ def test_an_upload_becomes_its_clip(
     assert quotas.usage("") == Usage(1, 5)
 
 
+@pytest.mark.withstands(row="H33")
 def test_deleted_clips_count_until_they_are_purged(clips: ClipStore, quotas: QuotaStore) -> None:
     quota = Quota("Jo", clips=2)
     first, second = (add_owned(clips, quota) for _ in range(2))
@@ -94,6 +95,7 @@ def test_deleted_clips_count_until_they_are_purged(clips: ClipStore, quotas: Quo
     assert not full.value.deleted_suffice
 
 
+@pytest.mark.withstands(row="H33")
 def test_each_revision_counts_with_its_document(
     languages: LanguageStore, quotas: QuotaStore
 ) -> None:

@@ -68,6 +68,7 @@ def empty_the_list(file: Path) -> None:
     file.write_text(json.dumps(document | {"tokens": []}))
 
 
+@pytest.mark.withstands(row="H29")
 @pytest.mark.parametrize(
     "lose", [remove, unmount, replace_folder_by_file, link_to_nothing, empty_the_list]
 )
@@ -117,6 +118,7 @@ def grow(file: Path) -> None:
         grown.truncate(MOST_BYTES + 1)
 
 
+@pytest.mark.withstands(row="H29")
 @pytest.mark.parametrize(
     "lose",
     [
@@ -148,6 +150,7 @@ def test_a_list_without_permission_is_an_error(tokens: TokenFile, file: Path) ->
         tokens.read()
 
 
+@pytest.mark.withstands(row="H29")
 def test_an_older_list_brings_no_withdrawn_token_back(
     tokens: TokenFile, file: Path, seen: Path
 ) -> None:

@@ -94,6 +94,7 @@ def replace_the_token(tokens: TokenFile, _settings: Settings) -> None:
     tokens.add("Ada", Role.READ)
 
 
+@pytest.mark.withstands(row="H30")
 @pytest.mark.parametrize(
     "end",
     [
@@ -140,6 +141,7 @@ def test_the_streams_of_others_go_on(guarded: Running, tokens: TokenFile) -> Non
             assert made.json()["id"] in next(line for line in lines if line.startswith("data:"))
 
 
+@pytest.mark.withstands(row="H30")
 def test_a_log_out_ends_the_session_with_its_streams_and_copies_of_its_cookie(
     guarded: Running, tokens: TokenFile
 ) -> None:
@@ -199,6 +201,7 @@ def follow(guarded: Running) -> Iterator[Callable[[str, str], Connection]]:
         each.close()
 
 
+@pytest.mark.withstands(row="H30")
 @pytest.mark.parametrize("path", [f"{API}/workspaces/{{}}/playback", "/viser/{}"])
 def test_websockets_of_a_workspace_end_with_the_token(
     guarded: Running, tokens: TokenFile, follow: Callable[[str, str], Connection], path: str
@@ -243,6 +246,7 @@ def test_a_download_is_cut_off_with_the_token(
             deque(pieces, maxlen=0)
 
 
+@pytest.mark.withstands(row="H30")
 @pytest.mark.parametrize("role", [None, Role.READ])
 def test_an_upload_is_refused_in_mid_body_with_the_token_or_the_role(
     guarded: Running, tokens: TokenFile, settings: Settings, role: Role | None

@@ -51,6 +51,7 @@ def test_several_servers_share_one_postgresql(tmp_path: Path, postgres: Cluster)
             check_store(one)
 
 
+@pytest.mark.withstands(row="H33")
 def test_deleted_clips_leave_the_disk_while_the_server_runs(
     settings: Settings, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -129,7 +129,7 @@ def test_a_kill_right_after_the_answer_loses_nothing(tmp_path: Path, uploads: in
             assert client.get(f"{CLIPS}/{clip_id}/video").content == clip.read_bytes()
 
 
-@pytest.mark.withstands(row="H21")
+@pytest.mark.withstands(row="H31")
 def test_a_kill_between_file_and_row_loses_no_acknowledged_part(tmp_path: Path) -> None:
     content = write_clip(tmp_path / "clip.mp4").read_bytes()
     data, last = tmp_path / "data", len(content) - 50

@@ -49,6 +49,7 @@ def secrets(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     forked_worker._fork_server.end()
 
 
+@pytest.mark.withstands(row="H28")
 @linux
 @pytest.mark.usefixtures("secrets")
 @pytest.mark.parametrize("way", ["forked", "started"])
@@ -111,6 +112,7 @@ def test_rights_are_taken_before_libraries_begin_threads() -> None:
     assert ran.stdout == "False\n"
 
 
+@pytest.mark.withstands(row="H28")
 def test_a_keypoint_file_that_refers_to_another_file_is_refused_with_422(
     client: httpx.Client, tmp_path: Path
 ) -> None:

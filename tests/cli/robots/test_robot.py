@@ -178,6 +178,7 @@ def until_words(process: subprocess.Popen[str], words: str) -> str:
     raise AssertionError(f"nothing with {words!r} was printed")
 
 
+@pytest.mark.withstands(row="H36")
 @pytest.mark.slow
 @pytest.mark.parametrize("full", ["stdout", "stderr"])
 def test_a_full_disk_ends_a_log_and_not_the_robot(
@@ -234,6 +235,7 @@ def test_a_reader_that_leaves_does_not_end_a_robot_that_commands_a_vehicle(
     assert "stdout cannot be written" in vehicle.texts
 
 
+@pytest.mark.withstands(row="H36")
 @pytest.mark.slow
 def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
     installed_models: None, sample_clips: Path, thin_clip: Callable[[str], Path], tmp_path: Path

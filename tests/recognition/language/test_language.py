@@ -74,6 +74,7 @@ def test_a_label_cannot_occur_twice() -> None:
     assert refusal.value.pointer == "/gestures/2/label"
 
 
+@pytest.mark.withstands(row="H34")
 def test_a_new_label_must_not_look_like_another_one(
     caplog: pytest.LogCaptureFixture, tmp_path: Path
 ) -> None:

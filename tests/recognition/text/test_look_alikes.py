@@ -17,6 +17,7 @@ from app.recognition.text.look_alikes import (
 TEXTS = st.text(st.characters(categories=["L", "M", "N", "P", "S"]))
 
 
+@pytest.mark.withstands(row="H34")
 @pytest.mark.parametrize(
     ("one", "other"),
     [

@@ -244,6 +244,7 @@ def test_an_ordinary_command_never_replaces_an_emergency() -> None:
     assert diver.vehicle.obeyed == ["SURFACE", "STABILIZE"]
 
 
+@pytest.mark.withstands(row="H36")
 def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> None:
     with diving(is_slow=True) as diver:
         diver.confirm("deep")
@@ -284,6 +285,7 @@ def test_a_pilot_who_sets_the_old_mode_again_and_again_is_not_fought() -> None:
     assert diver.vehicle.texts.count("NOT DONE, the pilot changed the mode: surface") == 1
 
 
+@pytest.mark.withstands(row="H35")
 @pytest.mark.parametrize("label", ["help", "stop"])
 def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
     with diving(is_slow=True) as diver:
@@ -302,6 +304,7 @@ def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
         assert diver.vehicle.asked == asked
 
 
+@pytest.mark.withstands(row="H35")
 def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
     with diving(armed=False) as diver:
         wait_until(lambda: diver.bridge._peer.sender is not None)

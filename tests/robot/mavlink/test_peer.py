@@ -117,6 +117,7 @@ def listening_diver(changes: dict[str, Any] | None = None) -> Iterator[tuple[Div
         yield diver, port
 
 
+@pytest.mark.withstands(row="H35")
 @pytest.mark.parametrize(("kind", "autopilot", "name"), OTHER_KINDS, ids=lambda value: str(value))
 @pytest.mark.parametrize("link", ["udpin", "tcpin"])
 def test_a_vehicle_of_another_kind_gets_no_command_and_one_line(
@@ -174,6 +175,7 @@ def test_no_command_goes_out_before_a_heartbeat() -> None:
     assert int(ignored.split()[0]) > 10
 
 
+@pytest.mark.withstands(row="H35")
 @pytest.mark.parametrize(
     "message",
     [b"x", b"\xfd\xff\x00\x00", packed(beat(), 255, 190), packed(beat(), 1, OUR_COMPONENT)],
@@ -244,6 +246,7 @@ def test_who_listens_stays_with_the_first_vehicle_and_tells_of_the_second_on_its
         assert first.commands != []
 
 
+@pytest.mark.withstands(row="H35")
 def test_a_forged_acknowledgement_of_another_address_proves_nothing() -> None:
     with diving(changes=QUICK) as diver, closing(Socket(sender_port(diver))) as forger:
         servo = mavlink.MAV_CMD_DO_SET_SERVO

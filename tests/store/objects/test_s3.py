@@ -136,6 +136,7 @@ store.add(clip, partial, "diver")
 """
 
 
+@pytest.mark.withstands(row="H31")
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="has no SIGKILL")
 def test_what_a_kill_between_upload_and_database_left_goes_at_the_next_start(

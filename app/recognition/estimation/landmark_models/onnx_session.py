@@ -6,6 +6,7 @@ not fork, as the studio's does for its workers.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal, TypeAlias, get_args
@@ -133,10 +134,16 @@ def check_provider(provider: str) -> None:
 
 def available_providers() -> tuple[Provider, ...]:
     """Return the providers that this installation of ONNX Runtime was built with."""
+    built_in = set(_load_runtime().get_available_providers())
+    return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
+
+
+def _load_runtime() -> Any:
+    """Import ONNX Runtime without the reports of its use to its maker."""
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
     import onnxruntime  # type: ignore[import-untyped]
 
-    built_in = set(onnxruntime.get_available_providers())
-    return tuple(name for name, chain in _RUNTIME_NAMES.items() if chain[0] in built_in)
+    return onnxruntime
 
 
 def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -> Any:
@@ -157,8 +164,7 @@ def open_session(path: Path, threads: int, provider: Provider, *, remedy: str) -
         When the provider does not start.
 
     """
-    import onnxruntime
-
+    onnxruntime = _load_runtime()
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
     options.inter_op_num_threads = 1

@@ -162,6 +162,7 @@ def test_another_token_signs_in_in_place_of_the_former_one(
             assert browser.get(f"{API}/session").json()["name"] == name
 
 
+@pytest.mark.withstands(row="H29")
 @pytest.mark.parametrize("path", [LANGUAGES, "/openapi.json", "/metrics", "/", "/static/x"])
 def test_when_the_last_token_is_withdrawn_nobody_is_let_in(settings: Settings, path: str) -> None:
     tokens = TokenFile(settings.tokens)
@@ -178,6 +179,7 @@ def test_when_the_last_token_is_withdrawn_nobody_is_let_in(settings: Settings, p
             assert client.get(LANGUAGES).status_code == 200
 
 
+@pytest.mark.withstands(row="H29")
 def test_a_list_that_is_lost_between_two_starts_lets_nobody_in(settings: Settings) -> None:
     TokenFile(settings.tokens).add("Di", Role.ADMIN)
     with running(settings) as server:

@@ -160,6 +160,7 @@ def test_labels_that_differ_in_joiners_alone_are_the_same(
     assert spelled.json()["labels"] == [apart]
 
 
+@pytest.mark.withstands(row="H34")
 @pytest.mark.parametrize("look_alike", ["d\u043ewn", "\uff44own", "do\u034fwn"])
 def test_a_new_label_that_looks_like_another_one_is_refused(
     client: httpx.Client, language_id: str, circle_clip: str, look_alike: str

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import onnxruntime  # type: ignore[import-untyped]
@@ -67,6 +68,12 @@ def test_a_truncated_file_is_named_in_one_line(tmp_path: Path, share: float) -> 
     with pytest.raises(ModelError, match=r"damaged\.onnx.*models install") as caught:
         load(damaged, HAND_SIGNATURE)
     assert "\n" not in str(caught.value)
+
+
+def test_the_runtime_reports_nothing_to_its_maker(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ORT_DISABLE_TELEMETRY", raising=False)
+    available_providers()
+    assert os.environ["ORT_DISABLE_TELEMETRY"] == "1"
 
 
 def test_the_processor_is_always_available() -> None:
