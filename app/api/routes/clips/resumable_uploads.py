@@ -42,7 +42,7 @@ OFFSETS: Final = "application/offset+octet-stream"
 _COMMON = {"Tus-Resumable": VERSION, "Cache-Control": "no-store"}
 
 _beginning: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
-_finishing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+_writing: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
 
 
 def require_version(tus_resumable: Annotated[str | None, Header()] = None) -> None:
@@ -156,6 +156,26 @@ async def append_part(
     if content_type != OFFSETS:
         detail = f"a part must be sent as {OFFSETS}, not as {content_type[:80]!r}"
         raise ProblemError(415, "unsupported_media_type", detail)
+    # One at a time: what a second request writes must not get into a file that was inspected.
+    async with _writing.setdefault(upload_id, asyncio.Lock()):
+        return await _append(request, upload_id, studio, upload_offset)
+
+
+@router.delete(
+    "/{upload_id}",
+    status_code=204,
+    dependencies=[Depends(require_version)],
+    responses=problem_responses(404, 412),
+)
+def give_up_upload(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
+    """Forget an upload and what came of it."""
+    _require_owner(request, upload_id, studio.uploads.get(upload_id).owner)
+    _forget(upload_id, studio)
+    return Response(status_code=204, headers=_COMMON)
+
+
+async def _append(request: Request, upload_id: str, studio: Studio, upload_offset: int) -> Response:
+    """Add a part, which begins at `upload_offset`, and make a clip of a file that is complete."""
     try:
         upload = await run_in_threadpool(studio.uploads.get, upload_id)
     except NotFound:
@@ -183,19 +203,6 @@ async def append_part(
     if offset == upload.size:
         headers |= await _accept(request, upload, studio)
     return Response(status_code=204, headers=headers)
-
-
-@router.delete(
-    "/{upload_id}",
-    status_code=204,
-    dependencies=[Depends(require_version)],
-    responses=problem_responses(404, 412),
-)
-def give_up_upload(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
-    """Forget an upload and what came of it."""
-    _require_owner(request, upload_id, studio.uploads.get(upload_id).owner)
-    _forget(upload_id, studio)
-    return Response(status_code=204, headers=_COMMON)
 
 
 def _require_owner(request: Request, upload_id: str, owner: str) -> None:
@@ -282,30 +289,29 @@ def _sync(file: BinaryIO) -> None:
 
 
 async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str, str]:
-    """Make a clip of a complete file; if two requests complete it, the second gets the same clip.
+    """Make a clip of a complete file.
 
     The upload is removed once it is a clip, or is refused for its content. It stays when the store
     is temporarily unavailable.
     """
-    async with _finishing.setdefault(upload.id, asyncio.Lock()):
+    clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
+    if clip is None:
+        try:
+            made = await inspect(
+                upload.path,
+                studio,
+                name=upload.name,
+                size=upload.size,
+                fields=UploadFields.read(upload.fields),
+            )
+        except ProblemError:
+            await run_in_threadpool(_forget, upload.id, studio)
+            raise
+        made.idempotency_key, made.owner = upload.id, upload.owner
+        await store(made, upload.path, studio, request)
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
-        if clip is None:
-            try:
-                made = await inspect(
-                    upload.path,
-                    studio,
-                    name=upload.name,
-                    size=upload.size,
-                    fields=UploadFields.read(upload.fields),
-                )
-            except ProblemError:
-                await run_in_threadpool(_forget, upload.id, studio)
-                raise
-            made.idempotency_key, made.owner = upload.id, upload.owner
-            await store(made, upload.path, studio, request)
-            clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
-        # Also when it was a clip already: a crash may have come between the two.
-        await run_in_threadpool(studio.uploads.remove, upload.id)
+    # Also when it was a clip already: a crash may have come between the two.
+    await run_in_threadpool(studio.uploads.remove, upload.id)
     if clip is None:
         raise NotFound(f"the clip of upload {upload.id} was deleted meanwhile")
     return _finished_headers(clip)

@@ -7,6 +7,7 @@ import os
 import shutil
 import socket
 import sqlite3
+import threading
 from contextlib import ExitStack, closing
 from datetime import timedelta
 from pathlib import Path
@@ -171,6 +172,40 @@ def test_a_locked_database_costs_no_byte_of_a_whole_upload(
             assert again.headers["content-location"] == clip
         assert len(client.get(CLIPS).json()) == 1
         assert list((settings.data_dir / "uploads").iterdir()) == []
+
+
+def test_a_second_request_writes_nothing_into_a_clip_that_was_inspected(
+    server: Running, client: httpx.Client, small_clip: Path
+) -> None:
+    content = small_clip.read_bytes() + FREE_BOX
+    shown = content[:-5] + b"other"  # Both are whole videos.
+    place = begun(client, len(content))
+    answers: list[httpx.Response] = []
+    answered = threading.Event()
+
+    def send_whole() -> None:
+        with client_of(server.address) as own:
+            answers.append(sent(own, place, 0, content))
+        answered.set()
+
+    fields = PART | {
+        "Host": f"127.0.0.1:{server.port}",
+        "Upload-Offset": "0",
+        "Content-Length": str(len(content)),
+    }
+    head = "".join(f"{name}: {value}\r\n" for name, value in fields.items())
+    with socket.create_connection(("127.0.0.1", server.port)) as slow:
+        slow.sendall(f"PATCH {place} HTTP/1.1\r\n{head}\r\n".encode() + shown[:-5])
+        until(lambda: offset_of(client, place) > 0)
+        other = threading.Thread(target=send_whole)
+        other.start()
+        assert not answered.wait(1)
+        slow.sendall(shown[-5:])
+        assert b" 204 " in slow.recv(4096)
+        other.join()
+    assert_problem(answers[0], 404, "not_found")
+    (clip,) = client.get(CLIPS).json()
+    assert client.get(f"{CLIPS}/{clip['id']}/video").content == shown
 
 
 def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> None:
