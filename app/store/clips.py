@@ -119,7 +119,15 @@ class ClipStore:
         """Return a fresh path for a file that is still being received."""
         return self.folder / f"{new_id()}{PARTIAL_SUFFIX}"
 
-    def add(self, clip: Clip, partial: Path, client: str, quota: Quota = NO_QUOTA) -> ClipWithJob:
+    def add(
+        self,
+        clip: Clip,
+        partial: Path,
+        client: str,
+        quota: Quota = NO_QUOTA,
+        *,
+        upload_id: str | None = None,
+    ) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
         The job of a dive recording with several topics fails at once and is retried after
@@ -129,7 +137,7 @@ class ClipStore:
         idempotency key race, the second one returns the first one's clip.
 
         The quota is checked in the same transaction, so that no other server adds a clip in
-        between. What a resumable upload has reserved of it passes to the clip.
+        between. What the resumable upload `upload_id` has reserved of it passes to the clip.
 
         Raises
         ------
@@ -151,9 +159,9 @@ class ClipStore:
             sync_directory(self.folder)
             self._files.keep(clip.id, [clip.source])
             with self._database.writing() as session:
-                quota.require_in(session, clip.size, clips=1, without=clip.idempotency_key)
-                if clip.idempotency_key is not None:
-                    release_in(session, clip.idempotency_key)
+                quota.require_in(session, clip.size, clips=1, without=upload_id)
+                if upload_id is not None:
+                    release_in(session, upload_id)
                 session.add(clip)
                 session.flush()
                 session.add(job)

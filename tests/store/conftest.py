@@ -55,7 +55,12 @@ def languages(database: Database) -> LanguageStore:
 
 
 def add_clip(
-    clips: ClipStore, *, name: str = "dive.mp4", client: str = "diver", key: str | None = None
+    clips: ClipStore,
+    *,
+    name: str = "dive.mp4",
+    client: str = "diver",
+    key: str | None = None,
+    upload_id: str | None = None,
 ) -> ClipWithJob:
     """Store a clip of five bytes."""
     partial = clips.new_partial()
@@ -69,4 +74,4 @@ def add_clip(
         duration=1.5,
         idempotency_key=key,
     )
-    return clips.add(clip, partial, client)
+    return clips.add(clip, partial, client, upload_id=upload_id)

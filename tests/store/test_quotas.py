@@ -71,8 +71,17 @@ def test_an_upload_becomes_its_clip(
 ) -> None:
     begun = uploads.create("dive.mp4", 5, owner="")
     quotas.reserve(begun, NO_QUOTA)
-    add_clip(clips, key=begun.id)
+    add_clip(clips, key=begun.id, upload_id=begun.id)
     assert quotas.usage("") == Usage(1, 5)
+
+
+def test_a_clip_with_the_key_of_an_upload_under_way_releases_none_of_its_quota(
+    clips: ClipStore, uploads: UploadStore, quotas: QuotaStore
+) -> None:
+    begun = uploads.create("dive.mp4", 7, owner="")
+    quotas.reserve(begun, NO_QUOTA)
+    add_clip(clips, key=begun.id)
+    assert quotas.usage("") == Usage(2, 12)
 
 
 @pytest.mark.withstands(row="H33")

@@ -113,11 +113,14 @@ async def inspect(
     raise ProblemError(415, UNSUPPORTED, f"{name} is {supported_kinds()}")
 
 
-async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> ClipAccepted:
+async def store(
+    clip: Clip, partial: Path, studio: Studio, request: Request, *, upload_id: str | None = None
+) -> ClipAccepted:
     """Store an inspected file as `clip`, queue its job, and publish the change.
 
     The clip is its sender's, unless it names an owner: whoever began a resumable upload.
     The job of a dive recording whose topic is not chosen yet is stored as failed, for that reason.
+    What the upload `upload_id` has reserved of the quota passes to the clip.
 
     Raises
     ------
@@ -127,7 +130,8 @@ async def store(clip: Clip, partial: Path, studio: Studio, request: Request) -> 
     """
     quota = quota_of(request)
     clip.owner = clip.owner or quota.owner
-    add = functools.partial(studio.clips.add, clip, partial, client_of(request), quota)
+    client = client_of(request)
+    add = functools.partial(studio.clips.add, clip, partial, client, quota, upload_id=upload_id)
     added = await run_in_threadpool(studio.keep_within, quota, add)
     if not added.clip.needs_topic:
         await studio.extractions.submit(added.job)
