@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 from collections.abc import Callable, Coroutine
+from functools import partial
 from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
@@ -63,14 +64,29 @@ async def compute_while_connected(
         if left.is_set():
             raise ClientDisconnect
 
-    async def work() -> Result:
-        async with places:
-            return await run_in_threadpool(compute, advance)
-
     try:
-        return await while_connected(request, work())
+        return await while_connected(request, compute_in_place(places, partial(compute, advance)))
     finally:
         left.set()
+
+
+async def compute_in_place(places: asyncio.Semaphore, compute: Callable[[], Result]) -> Result:
+    """Compute in a thread, which keeps its place until it ends, even if the caller is cancelled.
+
+    A thread cannot be interrupted. Were its place free at once, any number of threads would compute
+    for clients who have left.
+    """
+    await places.acquire()
+    computing = asyncio.create_task(run_in_threadpool(compute))
+
+    def leave(ended: asyncio.Task[Result]) -> None:
+        places.release()
+        if not ended.cancelled():
+            ended.exception()  # perhaps nobody else asks for it
+
+    computing.add_done_callback(leave)
+    await asyncio.wait([computing])
+    return computing.result()
 
 
 async def _disconnect(request: Request) -> None:

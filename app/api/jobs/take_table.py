@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, Literal
 
-from starlette.concurrency import run_in_threadpool
-
 from app.api.events.broadcast import Event
+from app.api.http.connection import compute_in_place
 from app.api.jobs.job import Progress, Report
 from app.api.jobs.time_left import TimeLeft
 from app.store import Clip
@@ -27,6 +28,8 @@ class TakeTableJob:
         The clips.
     recognize
         Returns the rows of one clip; reports the share of its takes that is done to its callback.
+    places
+        Limits the computations that run at the same time; further ones wait.
 
     """
 
@@ -37,10 +40,12 @@ class TakeTableJob:
         table_id: str,
         clips: Sequence[Clip],
         recognize: Callable[[Clip, Callable[[float], None]], Rows],
+        places: asyncio.Semaphore,
     ) -> None:
         self._table_id = table_id
         self._clips = clips
         self._recognize = recognize
+        self._places = places
 
     @property
     def key(self) -> str:
@@ -72,6 +77,7 @@ class TakeTableJob:
                 report(Progress(stage, frames, sum(sizes), eta))
 
             advance(0.0)
-            rows += await run_in_threadpool(self._recognize, clip, advance)
+            recognize = partial(self._recognize, clip, advance)
+            rows += await compute_in_place(self._places, recognize)
             done += size
         return rows

@@ -4,12 +4,16 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from typing import Any
 from urllib.parse import urlencode
 
 import httpx
 import pytest
+from starlette.requests import Request
 
+from app.api.http import connection
+from app.api.http.connection import while_connected
 from app.api.routes.gestures import previews
 from app.api.routes.languages import pair_differences
 from app.api.services.running_studio import MOST_COMPUTATIONS
@@ -29,11 +33,11 @@ def language(client: httpx.Client) -> str:
 
 
 def begin(server: Running, method: str, path: str, body: bytes = b"") -> socket.socket:
-    connection = socket.create_connection(("127.0.0.1", server.port))
+    opened = socket.create_connection(("127.0.0.1", server.port))
     head = f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{server.port}\r\n"
     head += f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
-    connection.sendall(head.encode() + body)
-    return connection
+    opened.sendall(head.encode() + body)
+    return opened
 
 
 def test_a_preview_ends_when_its_client_leaves(
@@ -63,10 +67,11 @@ def test_a_preview_ends_when_its_client_leaves(
     assert again.status_code == 200
 
 
-def test_a_pair_difference_ends_when_its_client_leaves(
+def test_a_pair_difference_ends_when_its_client_leaves_and_keeps_its_place_until_then(
     server: Running, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    began, go_on, compared = threading.Event(), threading.Event(), []
+    began, left, go_on = threading.Event(), threading.Event(), threading.Event()
+    compared = []
 
     def compare(recognizer: Recognizer, first: int, second: int) -> object:
         compared.append((first, second))
@@ -74,14 +79,22 @@ def test_a_pair_difference_ends_when_its_client_leaves(
         go_on.wait(60)
         return compare_pair(recognizer, first, second)
 
+    async def wait(request: Request, work: Coroutine[Any, Any, Any]) -> Any:
+        try:
+            return await while_connected(request, work)
+        finally:
+            left.set()
+
     monkeypatch.setattr(pair_differences, "compare_pair", compare)
+    monkeypatch.setattr(connection, "while_connected", wait)
     query = urlencode({"one": "circle", "other": "line"})
     with begin(server, "GET", f"{LANGUAGES}/{language}/contrast?{query}"):
         until(began.is_set)
         assert server.studio.computations._value < MOST_COMPUTATIONS
-    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
+    until(left.is_set)
+    assert server.studio.computations._value < MOST_COMPUTATIONS
     go_on.set()
-    time.sleep(0.3)
+    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
     assert compared == [(0, 1)]
 
 

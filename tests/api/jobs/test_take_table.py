@@ -27,7 +27,7 @@ def test_progress_counts_the_frames_of_all_clips() -> None:
         return [{"clip": clip.name}]
 
     clips = [clip_of("a.mp4", 100), clip_of("b.mp4", 300)]
-    rows = asyncio.run(TakeTableJob("mine", clips, recognize).run(told.append))
+    rows = asyncio.run(TakeTableJob("mine", clips, recognize, asyncio.Semaphore()).run(told.append))
     assert rows == [{"clip": "a.mp4"}, {"clip": "b.mp4"}]
     assert [(each.stage, each.done, each.total) for each in told] == [
         ("clip 1 of 2: a.mp4", 0, 400),
@@ -54,16 +54,19 @@ def test_a_cancelled_table_recognises_no_further_take() -> None:
 
     async def scenario() -> None:
         runner = JobRunner(Broadcast())
-        job = TakeTableJob("mine", [clip_of("a.mp4", 9), clip_of("b.mp4", 9)], recognize)
+        clips, places = [clip_of("a.mp4", 9), clip_of("b.mp4", 9)], asyncio.Semaphore()
+        job = TakeTableJob("mine", clips, recognize, places)
         waiting = asyncio.create_task(runner.run(job))
         await asyncio.to_thread(begun.wait, 60)
         cancelling = asyncio.create_task(runner.cancel(job.key))
         await asyncio.sleep(0.05)  # the cancellation comes before the thread continues
+        assert places.locked()  # the next table waits until this one's thread has ended
         cancelled.set()
         assert await cancelling
         with pytest.raises(JobCancelled):
             await waiting
         await asyncio.to_thread(ended.wait, 60)
+        await places.acquire()
 
     asyncio.run(scenario())
     assert takes == [0]

@@ -30,7 +30,8 @@ async def make_take_table(
     How far it is comes as `tables` among the events; closing the request cancels it.
     """
     state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
-    job = TakeTableJob(wanted.id, clips, partial(recognize_clip_takes, studio, state))
+    recognize = partial(recognize_clip_takes, studio, state)
+    job = TakeTableJob(wanted.id, clips, recognize, studio.computations)
     try:
         rows = await while_connected(request, studio.runner.run(job))
     except JobCancelled as error:
