@@ -157,7 +157,9 @@ class TokenFile:
 
         """
         self.read()
-        return self._state is not None or self._remembered() is not None
+        known = self._state is not None or self._remembered() is not None
+        # A link that leads nowhere is a list on a disk that is not mounted.
+        return known or os.path.lexists(self._path)
 
     def add(
         self,

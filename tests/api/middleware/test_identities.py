@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pydantic import SecretStr
 
-from app.api.middleware.identities import check_tokens
+from app.api.middleware.identities import Identities, check_tokens
 from app.settings import Settings
 from app.store import Role, StoreUnavailable, TokenFile
 
@@ -52,6 +52,15 @@ def test_an_empty_or_lost_list_is_said_with_the_way_out(
         assert "\n" not in advice
     own = settings.model_copy(update={"token": SecretStr("correct-horse-battery")})
     assert check_tokens(own) is None
+
+
+def test_a_link_to_a_list_on_a_disk_that_is_not_mounted_opens_nothing(
+    settings: Settings, tmp_path: Path
+) -> None:
+    settings.data_dir.mkdir()
+    settings.tokens.symlink_to(tmp_path / "mnt" / "tokens.json")
+    assert Identities(settings).required
+    assert "nobody is let in" in (check_tokens(settings) or "")
 
 
 def test_a_damaged_list_is_said_too(settings: Settings, tokens: TokenFile) -> None:
