@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import Function
+from sqlalchemy import Function, exists, or_
+from sqlalchemy.orm import aliased
 from sqlmodel import Session, col, delete, func, select
 
 from app.store.database import Database, moment_of
@@ -225,14 +226,20 @@ def usage_of(
     without
         Id of an upload that does not count.
     deleted
-        Whether deleted clips and languages count, which still take place on the disk.
+        Whether deleted clips and languages count, which still take place on the disk. A language in
+        which others made revisions too counts in any case: it is not purged for one of them.
 
     """
     kept = select(func.count(), _sum(Clip.size)).where(Clip.owner == owner)
     documents = select(_sum(LanguageRevision.size)).where(LanguageRevision.owner == owner)
     if not deleted:
         kept = kept.where(col(Clip.deleted).is_(None))
-        documents = documents.join(LanguageRecord).where(col(LanguageRecord.deleted).is_(None))
+        other = aliased(LanguageRevision)
+        shared = exists().where(
+            col(other.language_id) == LanguageRevision.language_id, col(other.owner) != owner
+        )
+        kept_record = or_(col(LanguageRecord.deleted).is_(None), shared)
+        documents = documents.join(LanguageRecord).where(kept_record)
     results = select(_sum(RecognitionRecord.size)).where(RecognitionRecord.owner == owner)
     reserved = select(func.count(), _sum(UploadReservation.size)).where(
         UploadReservation.owner == owner,

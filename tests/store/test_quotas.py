@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
@@ -119,6 +120,10 @@ def test_each_revision_counts_with_its_document(
     languages.edit(made.record.id, lambda _head, _number: draft)  # by somebody else
     languages.delete(made.record.id)
     assert languages.purge_for("Jo", Usage(0, 1)) == Usage(0, 1)  # Not Jo's alone.
+    assert quotas.usage("Jo", deleted=False) == Usage(0, 80)
+    with pytest.raises(QuotaExceeded) as full:
+        languages.create(replace(draft, document="x" * 50), quota=quota)
+    assert not full.value.deleted_suffice  # So no clip is purged in vain.
     own = languages.create(Draft(name="own", labels=[], change="", document="x" * 20), quota=quota)
     languages.delete(own.record.id)
     assert languages.purge_for("Jo", Usage(0, 20)) == Usage(0, 0)
