@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from itertools import zip_longest
 from urllib.parse import urlencode
 
@@ -14,7 +13,7 @@ from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
-from app.api.services.running_studio import Studio
+from app.api.services.running_studio import DocumentCache, Studio
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal
 from app.recognition.language.grammar_entry import grammar_to_entry
@@ -22,9 +21,6 @@ from app.recognition.language.short_code import short_code
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import Draft, LanguageRevision, LanguageState, Quota
-
-CACHED_CHECKSUMS = 64
-"""Number of checksums cached: those of the revisions that pages show."""
 
 
 def save_revision(
@@ -66,7 +62,7 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
             view_gesture(state, gesture, sources[gesture.label]) for gesture in language.gestures
         ],
         grammar=None if language.grammar is None else grammar_to_entry(language.grammar),
-        sha256=(sha256 := _checksum(state.revision.document)),
+        sha256=(sha256 := _checksums.get(state.revision.document)),
         code=short_code(sha256),
         profile=language.profile,
         tuning=tuning_to_entry(language.tuning),
@@ -76,9 +72,7 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
     )
 
 
-@lru_cache(CACHED_CHECKSUMS)
-def _checksum(document: str) -> str:
-    return seal(json.loads(document))
+_checksums = DocumentCache(lambda document: seal(json.loads(document)))
 
 
 def view_summary(state: LanguageState) -> LanguageSummary:

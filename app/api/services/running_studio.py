@@ -219,7 +219,7 @@ def load_recording(path: str) -> Recording:
     return Recording.load(path)
 
 
-class _Cache(Generic[Made]):
+class DocumentCache(Generic[Made]):
     """What was made of documents, the least recently used of which go when they are too long.
 
     The newest stays, however long it is.
@@ -230,7 +230,12 @@ class _Cache(Generic[Made]):
         self._made: OrderedDict[tuple[str, str | None], Made] = OrderedDict()
         self._changing = Lock()
 
+    def __len__(self) -> int:
+        """Return how many documents something is kept of."""
+        return len(self._made)
+
     def get(self, document: str, profile: str | None = None) -> Made:
+        """Return what was made of a document, or make it."""
         key = document, profile
         with self._changing:
             if key in self._made:
@@ -251,8 +256,8 @@ def _make_recognizer(document: str, profile: str | None = None) -> Recognizer:
     return Recognizer(_languages.get(document), profile)
 
 
-_languages = _Cache(Language.from_json)
-_recognizers = _Cache(_make_recognizer)
+_languages = DocumentCache(Language.from_json)
+_recognizers = DocumentCache(_make_recognizer)
 
 
 @asynccontextmanager

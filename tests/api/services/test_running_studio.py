@@ -7,10 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from pathlib import Path
 
+import httpx
 import pytest
 
-from app.api.routes.languages import slates
-from app.api.services import running_studio
+from app.api.routes.languages import phrases, slates
+from app.api.services import language_responses, running_studio
 from app.api.services.language_documents import draft_of
 from app.api.services.running_studio import check_store, clean
 from app.recognition import Language
@@ -126,3 +127,15 @@ def test_cached_languages_are_limited_by_their_documents(
     monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
     long = server.studio.language(states[2])
     assert server.studio.language(states[2]) is long
+
+
+def test_what_is_told_of_languages_keeps_no_more_of_their_documents(
+    client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(running_studio, "MOST_CACHED_CHARACTERS", 1)
+    for name in ("pool", "sea", "lake"):
+        made = client.post("/api/v1/languages", json={"name": name}).json()
+        place = f"/api/v1/languages/{made['id']}"
+        assert client.get(f"{place}/phrases").status_code == 200
+        assert len(client.get(place).json()["sha256"]) == 64
+    assert len(language_responses._checksums) == len(phrases._ambiguities) == 1

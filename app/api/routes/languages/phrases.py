@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from functools import lru_cache
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
@@ -11,15 +10,12 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, DocumentCache, computed
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseParser
-
-CACHED_GRAMMARS = 64
-"""Number of revisions whose ambiguities are cached: a few sentences each."""
 
 MOST_SHOWN = 100
 """Most gestures of one simulation: more than any message may have."""
@@ -97,7 +93,7 @@ def describe_phrases(
     return PhrasesView(
         revision=state.revision.revision,
         ambiguities=[
-            AmbiguityView(**asdict(each)) for each in _ambiguities(state.revision.document)
+            AmbiguityView(**asdict(each)) for each in _ambiguities.get(state.revision.document)
         ],
         examples={each.name: list(grammar.example(each)) for each in grammar.phrases},
         events=[_view(event) for event in events],
@@ -110,7 +106,9 @@ def _view(event: PhraseEvent) -> PhraseEventView:
     return PhraseEventView.model_validate(event.to_dict())
 
 
-@lru_cache(CACHED_GRAMMARS)
-def _ambiguities(document: str) -> tuple[Ambiguity, ...]:
+def _find_ambiguities(document: str) -> tuple[Ambiguity, ...]:
     grammar = Language.from_json(document).grammar
     return () if grammar is None else find_ambiguities(grammar)
+
+
+_ambiguities = DocumentCache(_find_ambiguities)
