@@ -22,7 +22,7 @@ from starlette.requests import HTTPConnection, Request
 
 from app.api.events.broadcast import Broadcast
 from app.api.events.broadcast import Event as BroadcastEvent
-from app.api.http.connection import compute_while_connected
+from app.api.http.connection import compute_in_place, compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.job import progress_of
@@ -74,6 +74,10 @@ MOST_COMPUTATIONS = 2
 """Most explanations, previews, pages and the like computed at the same time: one takes seconds with
 a large language, and threads must be left for all other requests."""
 
+MOST_EDITS = 2
+"""Most edits of languages made at the same time: one of a large language takes seconds, and is made
+again if another one of that language came first."""
+
 ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgresql+psycopg://USER@HOST/NAME"
 """Advice for a second server that is started on the database file of another one."""
 
@@ -118,6 +122,8 @@ class Studio:
         Metrics for Prometheus.
     computations
         Limits the computations in threads at the same time, see `computed`.
+    edits
+        Limits the edits of languages at the same time, see `edited`.
     exports
         Written files that wait to be fetched.
 
@@ -145,6 +151,7 @@ class Studio:
     computations: asyncio.Semaphore = field(
         default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
     )
+    edits: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_EDITS))
     exports: KeptExports = field(default_factory=KeptExports)
 
     async def stop_soon(self) -> None:
@@ -413,4 +420,18 @@ def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Ma
     limited.__signature__ = known.replace(  # type: ignore[attr-defined]
         parameters=[*known.parameters.values(), asked]
     )
+    return limited
+
+
+def edited(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
+    """Decorate a route that edits a language: few run at a time, and waiting takes no thread.
+
+    An edit goes on when its client leaves, so that it is in the audit log. The route's parameters
+    must include ``studio``.
+    """
+
+    @wraps(route)
+    async def limited(*, studio: Studio, **given: Any) -> Made:
+        return await compute_in_place(studio.edits, partial(route, studio=studio, **given))
+
     return limited

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 
-from app.api.routes.languages import phrases, slates
+from app.api.routes.languages import languages, phrases, slates
 from app.api.services import language_responses, running_studio
 from app.api.services.language_documents import draft_of
 from app.api.services.running_studio import check_store, clean
@@ -139,3 +141,29 @@ def test_what_is_told_of_languages_keeps_no_more_of_their_documents(
         assert client.get(f"{place}/phrases").status_code == 200
         assert len(client.get(place).json()["sha256"]) == 64
     assert len(language_responses._checksums) == len(phrases._ambiguities) == 1
+
+
+def test_edits_of_languages_that_wait_take_no_thread(
+    server: Running, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    free, made = threading.Event(), list[str]()
+
+    def describe_slowly(fields: Mapping[str, Any]) -> str:
+        made.append(fields["author"])
+        assert free.wait(PATIENCE_SECONDS)
+        return "slow"
+
+    monkeypatch.setattr(languages, "_describe", describe_slowly)
+    with client_of(server.address) as client, ThreadPoolExecutor(50) as others:
+        language = client.post("/api/v1/languages", json={"name": "pool"}).json()["id"]
+        place = f"/api/v1/languages/{language}"
+        answers = [
+            others.submit(client.patch, place, json={"author": str(number)}) for number in range(50)
+        ]
+        until(lambda: len(made) == running_studio.MOST_EDITS)
+        # More wait than there are threads, and others are answered meanwhile.
+        assert client.get(place).json()["revision"] == 1
+        assert len(made) == running_studio.MOST_EDITS
+        free.set()
+        assert {answer.result().status_code for answer in answers} == {200}
+    assert sorted(made) == sorted(map(str, range(50)))

@@ -26,7 +26,7 @@ from app.api.services.gesture_edits import (
 )
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision, view_demonstrations
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 
@@ -49,6 +49,7 @@ def list_demonstrations(
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
+@edited
 def add_demonstration(
     language_id: str,
     draft: DemonstrationDraft,
@@ -67,6 +68,7 @@ def add_demonstration(
 
 
 @router.delete("/{index}", responses=problem_responses(404, 409, 412))
+@edited
 def remove_demonstration(
     language_id: str,
     index: Index,

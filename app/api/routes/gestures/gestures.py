@@ -28,7 +28,7 @@ from app.api.services.gesture_edits import (
 )
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision
-from app.api.services.running_studio import CurrentStudio
+from app.api.services.running_studio import CurrentStudio, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
 
@@ -36,6 +36,7 @@ router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"]
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
+@edited
 def add_gesture(
     language_id: str,
     draft: GestureDraft,
@@ -59,6 +60,7 @@ def add_gesture(
 
 
 @router.post("/batch", status_code=201, responses=problem_responses(404, 409, 412))
+@edited
 def add_gestures(
     language_id: str,
     draft: GesturesDraft,
@@ -80,6 +82,7 @@ def add_gestures(
 
 @router.patch("", responses=problem_responses(404, 409, 412))
 @router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
+@edited
 def change_gesture(
     language_id: str,
     label: str,
@@ -107,6 +110,7 @@ def change_gesture(
 
 @router.delete("", responses=problem_responses(404, 409, 412))
 @router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
+@edited
 def remove_gesture(
     language_id: str,
     label: str,

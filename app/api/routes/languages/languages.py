@@ -27,7 +27,7 @@ from app.api.services.language_responses import (
     save_revision,
     view_summary,
 )
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.recognition import Language
 from app.recognition.language.grammar_entry import entry_to_grammar
 from app.recognition.language.tuning_entry import entry_to_tuning
@@ -66,6 +66,7 @@ def get_language(
 
 
 @router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
+@edited
 def change_language(
     language_id: str,
     change: LanguageChange,
@@ -107,6 +108,7 @@ def _describe(fields: Mapping[str, Any]) -> str:
 
 
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
+@edited
 def duplicate_language(
     language_id: str,
     studio: CurrentStudio,

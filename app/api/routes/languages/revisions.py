@@ -20,7 +20,7 @@ from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision, view_gesture
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, computed, edited
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
@@ -34,6 +34,7 @@ def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView
 
 
 @router.post("/revert", responses=problem_responses(404, 412))
+@edited
 def revert_language(
     language_id: str,
     to: LanguageRevert,

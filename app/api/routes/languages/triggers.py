@@ -13,7 +13,7 @@ from app.api.http.schemas.triggers import HeldPose, TriggerDraft
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError
 from app.recognition.triggers.arm_pose import ArmPose
@@ -23,6 +23,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 
 @router.put("/{language_id}/trigger", responses=problem_responses(404, 409, 412))
+@edited
 def change_trigger(
     language_id: str,
     draft: TriggerDraft,
