@@ -424,10 +424,10 @@ def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Ma
 
 
 def edited(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route that edits a language: few run at a time, and waiting takes no thread.
+    """Decorate a route that computes a change: few run at a time, and waiting takes no thread.
 
-    An edit goes on when its client leaves, so that it is in the audit log. The route's parameters
-    must include ``studio``.
+    It goes on when its client leaves, so that the change is in the audit log. Its parameters must
+    include ``studio``.
     """
 
     @wraps(route)

@@ -12,7 +12,7 @@ from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
-from app.api.services.running_studio import CurrentStudio, Studio, computed
+from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import load_situation, recognize_range
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.explanation.explanation import explain
@@ -75,7 +75,7 @@ def list_records(language_id: str, studio: CurrentStudio) -> list[PracticeRecord
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
-@computed
+@edited
 def show_gesture(
     language_id: str, draft: PracticeDraft, studio: CurrentStudio, quota: SenderQuota
 ) -> PracticeAnswerView:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import threading
+from typing import Any
+
 import httpx
 import pytest
 
+from app.api.routes.languages import practice
 from app.api.services.running_studio import Studio
+from app.api.services.stored_recognitions import recognize_range
+from tests.api.http.test_connection import begin
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
-from tests.api.running import assert_problem
+from tests.api.running import PATIENCE_SECONDS, Running, assert_problem, until
 
 
 @pytest.fixture
@@ -43,6 +50,30 @@ def test_a_diver_is_told_what_to_change_and_has_a_record(
     client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"}).raise_for_status()
     (older,) = client.get(place).json()
     assert (older["takes"], older["older"]) == (0, 1)
+
+
+def test_a_take_whose_client_leaves_is_in_the_audit_log(
+    server: Running,
+    client: httpx.Client,
+    studio: Studio,
+    place: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    circle = add_recorded_clip(studio, recording_of("circle"), "circle.mp4")
+    began, go_on = threading.Event(), threading.Event()
+
+    def recognize_slowly(*given: Any, **named: Any) -> Any:
+        began.set()
+        assert go_on.wait(PATIENCE_SECONDS)
+        return recognize_range(*given, **named)
+
+    monkeypatch.setattr(practice, "recognize_range", recognize_slowly)
+    body = json.dumps({"diver": "Ana", "expected": "circle", "clip_id": circle}).encode()
+    with begin(server, "POST", place, body):
+        until(began.is_set)
+    go_on.set()
+    until(lambda: client.get(place).json())
+    until(lambda: client.get("/api/v1/audit").json()[0]["path"] == place)
 
 
 def test_what_is_no_evidence_is_refused(
