@@ -158,7 +158,10 @@ async def append_part(
         raise ProblemError(415, "unsupported_media_type", detail)
     # One at a time: what a second request writes must not get into a file that was inspected.
     async with _writing.setdefault(upload_id, asyncio.Lock()):
-        return await _append(request, upload_id, studio, upload_offset)
+        try:
+            return await _append(request, upload_id, studio, upload_offset)
+        except FileNotFoundError as error:
+            raise NotFound(f"upload {upload_id} was given up meanwhile; begin it anew") from error
 
 
 @router.delete(

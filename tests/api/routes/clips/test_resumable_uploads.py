@@ -8,7 +8,8 @@ import shutil
 import socket
 import sqlite3
 import threading
-from contextlib import ExitStack, closing
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
 from datetime import timedelta
 from pathlib import Path
 
@@ -174,6 +175,35 @@ def test_a_locked_database_costs_no_byte_of_a_whole_upload(
         assert list((settings.data_dir / "uploads").iterdir()) == []
 
 
+@contextmanager
+def beginning(
+    server: Running, client: httpx.Client, place: str, content: bytes
+) -> Iterator[socket.socket]:
+    """Send all but the last five bytes of a part with a whole file."""
+    fields = PART | {
+        "Host": f"127.0.0.1:{server.port}",
+        "Upload-Offset": "0",
+        "Content-Length": str(len(content)),
+    }
+    head = "".join(f"{name}: {value}\r\n" for name, value in fields.items())
+    with socket.create_connection(("127.0.0.1", server.port)) as slow:
+        slow.sendall(f"PATCH {place} HTTP/1.1\r\n{head}\r\n".encode() + content[:-5])
+        until(lambda: offset_of(client, place) > 0)
+        yield slow
+
+
+def test_an_upload_that_is_given_up_while_its_last_part_comes_is_404(
+    server: Running, client: httpx.Client, small_clip: Path
+) -> None:
+    content = small_clip.read_bytes() + FREE_BOX
+    place = begun(client, len(content))
+    with beginning(server, client, place, content) as slow:
+        assert client.delete(place, headers=TUS).status_code == 204
+        slow.sendall(content[-5:])
+        assert b" 404 " in slow.recv(4096)
+    assert client.get(CLIPS).json() == []
+
+
 def test_a_second_request_writes_nothing_into_a_clip_that_was_inspected(
     server: Running, client: httpx.Client, small_clip: Path
 ) -> None:
@@ -188,15 +218,7 @@ def test_a_second_request_writes_nothing_into_a_clip_that_was_inspected(
             answers.append(sent(own, place, 0, content))
         answered.set()
 
-    fields = PART | {
-        "Host": f"127.0.0.1:{server.port}",
-        "Upload-Offset": "0",
-        "Content-Length": str(len(content)),
-    }
-    head = "".join(f"{name}: {value}\r\n" for name, value in fields.items())
-    with socket.create_connection(("127.0.0.1", server.port)) as slow:
-        slow.sendall(f"PATCH {place} HTTP/1.1\r\n{head}\r\n".encode() + shown[:-5])
-        until(lambda: offset_of(client, place) > 0)
+    with beginning(server, client, place, shown) as slow:
         other = threading.Thread(target=send_whole)
         other.start()
         assert not answered.wait(1)
