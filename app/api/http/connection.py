@@ -8,8 +8,9 @@ from collections.abc import Callable, Coroutine
 from functools import partial
 from typing import Any, TypeVar
 
-from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect, Request
+
+from app.api.jobs.places import compute_in_place
 
 Result = TypeVar("Result")
 
@@ -68,25 +69,6 @@ async def compute_while_connected(
         return await while_connected(request, compute_in_place(places, partial(compute, advance)))
     finally:
         left.set()
-
-
-async def compute_in_place(places: asyncio.Semaphore, compute: Callable[[], Result]) -> Result:
-    """Compute in a thread, which keeps its place until it ends, even if the caller is cancelled.
-
-    A thread cannot be interrupted. Were its place free at once, any number of threads would compute
-    for clients who have left.
-    """
-    await places.acquire()
-    computing = asyncio.create_task(run_in_threadpool(compute))
-
-    def leave(ended: asyncio.Task[Result]) -> None:
-        places.release()
-        if not ended.cancelled():
-            ended.exception()  # perhaps nobody else asks for it
-
-    computing.add_done_callback(leave)
-    await asyncio.wait([computing])
-    return computing.result()
 
 
 async def _disconnect(request: Request) -> None:

@@ -9,8 +9,8 @@ from functools import partial
 from typing import Any, Literal
 
 from app.api.events.broadcast import Event
-from app.api.http.connection import compute_in_place
 from app.api.jobs.job import Progress, Report
+from app.api.jobs.places import compute_in_place
 from app.api.jobs.time_left import TimeLeft
 from app.store import Clip
 

@@ -22,10 +22,11 @@ from starlette.requests import HTTPConnection, Request
 
 from app.api.events.broadcast import Broadcast
 from app.api.events.broadcast import Event as BroadcastEvent
-from app.api.http.connection import compute_in_place, compute_while_connected
+from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
 from app.api.jobs.job import progress_of
+from app.api.jobs.places import compute_in_place
 from app.api.jobs.runner import JobRunner
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
