@@ -18,7 +18,7 @@ from app.store.models import (
     RecognitionRecord,
     UploadReservation,
 )
-from app.store.uploads import ACTIVE, Upload
+from app.store.uploads import KEPT, Upload
 
 RENEWED = timedelta(minutes=15)
 """Age from which the next part of an upload renews its reservation; not every part does, because
@@ -192,13 +192,13 @@ class QuotaStore:
 
         """
         with self._database.writing(counted=False) as session:
-            over = moment_of(session) - ACTIVE
+            over = moment_of(session) - KEPT
             session.execute(delete(UploadReservation).where(col(UploadReservation.touched) < over))
             quota.require_in(session, upload.size, clips=1)
             session.add(_reservation(upload, session))
 
     def renew(self, upload: Upload) -> None:
-        """Renew the reservation of an upload; without new bytes it expires after `ACTIVE`."""
+        """Renew the reservation of an upload; without new bytes it expires after `KEPT`."""
         with self._database.reading() as session:
             kept = session.get(UploadReservation, upload.id)
             if kept is not None and kept.touched > moment_of(session) - RENEWED:
@@ -244,7 +244,7 @@ def usage_of(
     reserved = select(func.count(), _sum(UploadReservation.size)).where(
         UploadReservation.owner == owner,
         col(UploadReservation.id) != (without or ""),
-        col(UploadReservation.touched) >= moment_of(session) - ACTIVE,
+        col(UploadReservation.touched) >= moment_of(session) - KEPT,
     )
     clips, size = session.exec(kept).one()
     uploads, coming = session.exec(reserved).one()

@@ -20,6 +20,9 @@ ACTIVE = timedelta(hours=1)
 """Time after its newest byte for which an upload counts as active: longer than a dropped connection
 or a restart lasts, but short enough that abandoned uploads do not keep disk space reserved."""
 
+KEPT = timedelta(days=1)
+"""Time after its newest byte for which an upload is kept, and counts towards its owner's quota."""
+
 _ID = re.compile(r"[0-9a-f]{32}")
 
 

@@ -57,7 +57,7 @@ def test_an_upload_without_bytes_lapses_and_counts_again_when_it_goes_on(
     begun = uploads.create("dive.mp4", 7, owner="Jo")
     quotas.reserve(begun, NO_QUOTA)
     with monkeypatch.context() as later:
-        later.setattr("app.store.quotas.ACTIVE", timedelta(seconds=-5))
+        later.setattr("app.store.quotas.KEPT", timedelta(seconds=-5))
         later.setattr("app.store.quotas.RENEWED", timedelta(seconds=-5))
         assert quotas.usage("Jo") == Usage(0, 0)
         # Another one that begins clears it away.

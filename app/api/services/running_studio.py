@@ -60,6 +60,7 @@ from app.store import (
 from app.store.models import now
 from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
+from app.store.uploads import KEPT
 
 MOST_CACHED = 16
 """Number of languages, and of recognisers, cached; each takes a few megabytes."""
@@ -83,8 +84,8 @@ ONE_SERVER = "SQLite serves one server; for several, set OSG_DATABASE_URL=postgr
 """Advice for a second server that is started on the database file of another one."""
 
 ABANDONED = timedelta(days=1)
-"""Age at which a file without a row is removed while servers run, and an upload that got no bytes:
-longer than an upload or an export takes."""
+"""Age at which a file without a row is removed while servers run: longer than an upload or an
+export takes."""
 
 CLEANING_SECONDS = 600.0
 """Seconds between two removals of what was deleted; also what is left for an undo after a start
@@ -123,6 +124,8 @@ class Studio:
         Metrics for Prometheus.
     computations
         Limits the computations in threads at the same time, see `computed`.
+    brief_computations
+        Limits those that never take seconds, see `computed_briefly`.
     edits
         Limits the edits of languages at the same time, see `edited`.
     exports
@@ -150,6 +153,9 @@ class Studio:
     stopping: Event = field(default_factory=Event)
     metrics: Metrics = field(default_factory=Metrics)
     computations: asyncio.Semaphore = field(
+        default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
+    )
+    brief_computations: asyncio.Semaphore = field(
         default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
     )
     edits: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_EDITS))
@@ -390,7 +396,7 @@ def clean(studio: Studio, moment: datetime) -> None:
     """Remove for good what was deleted or abandoned long before `moment`."""
     deleted = moment - timedelta(hours=studio.settings.undo_hours)
     purged = studio.clips.purge(deleted) + studio.languages.purge(deleted)
-    purged += studio.uploads.purge(moment - ABANDONED)
+    purged += studio.uploads.purge(moment - KEPT)
     if (swept := studio.clips.sweep(moment - ABANDONED)) or purged:
         logger.info("removed %d deleted or abandoned objects and %d files", purged, swept)
 
@@ -405,15 +411,25 @@ CurrentStudio = Annotated[Studio, Depends(_studio_of)]
 
 
 def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route that computes for long: few run at a time, and only while the client waits.
+    """Decorate a route that computes for seconds: few run at a time, while their clients wait.
 
     Its parameters must include ``studio``.
     """
+    return _limited(route, lambda studio: studio.computations)
 
+
+def computed_briefly(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
+    """Decorate a route as `computed`, whose turn does not wait for what takes seconds."""
+    return _limited(route, lambda studio: studio.brief_computations)
+
+
+def _limited(
+    route: Callable[..., Made], places: Callable[[Studio], asyncio.Semaphore]
+) -> Callable[..., Coroutine[Any, Any, Made]]:
     @wraps(route)
     async def limited(*, connection: Request, studio: Studio, **given: Any) -> Made:
         return await compute_while_connected(
-            connection, studio.computations, lambda _: route(studio=studio, **given)
+            connection, places(studio), lambda _: route(studio=studio, **given)
         )
 
     known = signature(route)

@@ -22,7 +22,7 @@ from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import view_clip
 from app.api.services.clip_takes import find_takes
-from app.api.services.running_studio import CurrentStudio, Studio, computed
+from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.recognition.poses.sequence import PoseSequence
 from app.store import ClipWithJob, JobStatus
 
@@ -227,7 +227,7 @@ def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileRes
 
 
 @router.get("/{clip_id}/poses", response_model=PosesView, responses=problem_responses(404, 409))
-@computed
+@computed_briefly
 def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the landmarks in every frame."""
     poses = studio.recording(clip_id).poses
@@ -236,7 +236,7 @@ def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
 
 
 @router.get("/{clip_id}/takes", responses=problem_responses(404, 409))
-@computed
+@computed_briefly
 def get_takes(
     clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
 ) -> list[TakeView]:

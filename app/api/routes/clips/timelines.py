@@ -13,7 +13,7 @@ from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import TriggerLanguage
 from app.api.services.clip_takes import trigger_of
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.api.workers.pictures import thumbnails_in
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray
@@ -47,7 +47,7 @@ class TimelineView(BaseModel):
 @router.get(
     "/{clip_id}/timeline", response_model=TimelineView, responses=problem_responses(404, 409)
 )
-@computed
+@computed_briefly
 def get_timeline(
     clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
 ) -> Response:

@@ -23,7 +23,7 @@ from app.api.services.gesture_edits import (
     gesture_in,
     set_switches,
 )
-from app.api.services.running_studio import CurrentStudio, Studio, computed
+from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
@@ -191,7 +191,7 @@ def _outlook(
 
 @router.get("/gestures/demonstration", responses=problem_responses(404))
 @router.get("/gestures/{label:path}/demonstration", responses=problem_responses(404))
-@computed
+@computed_briefly
 def get_demonstration(
     language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
 ) -> PosesView:

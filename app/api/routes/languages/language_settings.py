@@ -7,7 +7,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
 from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
@@ -42,7 +42,7 @@ class SettingsView(BaseModel):
 
 
 @router.get("/{language_id}/settings", responses=problem_responses(404))
-@computed
+@computed_briefly
 def get_settings(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> SettingsView:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.running_studio import CurrentStudio, DocumentCache, computed
+from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
@@ -71,7 +71,7 @@ class PhrasesView(BaseModel):
 
 
 @router.get("/{language_id}/phrases", responses=problem_responses(404))
-@computed
+@computed_briefly
 def describe_phrases(
     language_id: str,
     studio: CurrentStudio,

@@ -20,7 +20,7 @@ from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_diff import compare_gestures, describe_changes
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision, view_gesture
-from app.api.services.running_studio import CurrentStudio, computed, edited
+from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
 
@@ -50,7 +50,7 @@ def revert_language(
 
 
 @router.get("/comparison", responses=problem_responses(404))
-@computed
+@computed_briefly
 def compare_revisions(
     language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
 ) -> RevisionComparison:

@@ -8,7 +8,7 @@ from fastapi import APIRouter, Response
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.ui.slate.layout import lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg
@@ -24,7 +24,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
         200: {"description": "The slate", "content": {"image/svg+xml": {}}},
     },
 )
-@computed
+@computed_briefly
 def get_slate_as_svg(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> Response:
@@ -42,7 +42,7 @@ def get_slate_as_svg(
         200: {"description": "The slate", "content": {"application/pdf": {}}},
     },
 )
-@computed
+@computed_briefly
 def get_slate_as_pdf(
     language_id: str, studio: CurrentStudio, revision: Revision = None
 ) -> Response:

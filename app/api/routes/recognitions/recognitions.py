@@ -11,7 +11,7 @@ from app.api.http.schemas.recognitions import ExplanationView, RecognitionReques
 from app.api.http.schemas.values import Label
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.explanation_notes import write_notes
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import CurrentStudio, computed, computed_briefly
 from app.api.services.stored_recognitions import (
     load_situation,
     recognize_range,
@@ -49,7 +49,7 @@ def recognize(
 
 
 @router.get("", responses=problem_responses())
-@computed
+@computed_briefly
 def list_recognitions(
     studio: CurrentStudio,
     clip_id: Annotated[str | None, Query(max_length=64)] = None,
