@@ -1,7 +1,8 @@
 """Vehicle peer: decides whose messages are the vehicle's, without a network.
 
 The peer is the address from which a heartbeat of the table's system and component came, of a
-submarine with ArduPilot. It stays the peer while it is heard. All else is dropped and counted.
+submarine with ArduPilot. It stays the peer while it is heard. A heartbeat of another kind ends
+that, until one of a submarine comes again. All else is dropped and counted.
 """
 
 from __future__ import annotations
@@ -56,13 +57,16 @@ class VehiclePeer:
         self._heard = now
         self._refused = self._rival = self._contradicted = -math.inf
         self._fault = ""
+        self._faulty: Sender | None = None
         self._clock: tuple[int, float] | None = None
         self._set_back = False
         self._notices: list[str] = []
 
     def find_fault(self, now: float) -> str:
         """Return, in few words, why nothing may be sent to the vehicle; empty for no fault."""
-        return self._fault if now - self._refused <= SILENT_SECONDS else ""
+        if self.sender not in (None, self._faulty) or now - self._refused > SILENT_SECONDS:
+            return ""
+        return self._fault
 
     def is_proven(self, now: float) -> bool:
         """Return whether commands may be sent."""
@@ -94,19 +98,23 @@ class VehiclePeer:
         named = (message.get_srcSystem(), message.get_srcComponent())
         is_its = named == (self._vehicle.system, self._vehicle.component)
         beats = is_its and message.get_type() == "HEARTBEAT"
-        if not self._may_be(sender, now, busy=busy):
+        kind = describe_other_kind(message) if beats else ""
+        # A vehicle of another kind at another address takes the place of nobody.
+        is_stranger = bool(kind) and self.sender not in (None, sender)
+        if is_stranger or not self._may_be(sender, now, busy=busy):
             if beats:
                 self._note_rival(sender, now)
             self.dropped += 1
             return False
-        if beats and (kind := describe_other_kind(message)):
-            self._refuse(NO_ARDUSUB, f"vehicle is no ArduSub but {kind}", now)
-        elif beats and not self.find_fault(now):
+        if kind:
+            self._refuse(NO_ARDUSUB, f"vehicle is no ArduSub but {kind}", sender, now)
+            self.sender = None
+        elif beats and not (sender == self._faulty and self.find_fault(now)):
             if sender != self.sender:
                 self.sender, self._clock = sender, None
             self._heard = now
         if is_its and message.get_type() == "SYSTEM_TIME" and sender == self.sender:
-            self._watch_clock(message.time_boot_ms, now)
+            self._watch_clock(message.time_boot_ms, sender, now)
         admitted = sender == self.sender and self.is_proven(now)
         self.dropped += not admitted
         return admitted
@@ -127,13 +135,13 @@ class VehiclePeer:
             self._notices.append(f"two vehicles with system {number}: {address} is ignored")
         self._rival = now
 
-    def _refuse(self, fault: str, words: str, now: float) -> None:
-        """Withdraw the proof while the fault is seen, and say why once."""
+    def _refuse(self, fault: str, words: str, sender: Sender, now: float) -> None:
+        """Withdraw the proof of an address while the fault is seen there, and say why once."""
         if fault != self.find_fault(now):
             self._notices.append(f"{words}; nothing is sent")
-        self._fault, self._refused = fault, now
+        self._fault, self._faulty, self._refused = fault, sender, now
 
-    def _watch_clock(self, uptime: int, now: float) -> None:
+    def _watch_clock(self, uptime: int, sender: Sender, now: float) -> None:
         """Detect two vehicles behind one address: their clocks jump back and forth.
 
         A vehicle that starts again goes back and never returns; one late packet does both once.
@@ -148,7 +156,7 @@ class VehiclePeer:
             self._set_back = False
             if now - self._contradicted <= SILENT_SECONDS:
                 words = f"two vehicles with system {self._vehicle.system}"
-                self._refuse("two vehicles", words, now)
+                self._refuse("two vehicles", words, sender, now)
             self._contradicted = now
 
 

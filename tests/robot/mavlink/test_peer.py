@@ -307,6 +307,32 @@ def test_the_peer_changes_when_it_is_silent_and_in_an_order_on_its_host_alone() 
     assert found.sender == ("other", 1)
 
 
+def test_a_vehicle_of_another_kind_is_not_commanded_when_its_heartbeats_are_rare() -> None:
+    found = VehiclePeer(Vehicle(), 0.0)
+    assert heard(found, beat(), ("h", 1), 0.0)
+    heard(found, beat(kind=mavlink.MAV_TYPE_SURFACE_BOAT), ("h", 1), 1.0)
+    assert not found.is_proven(1.0)
+    assert not found.is_proven(2 + peer.SILENT_SECONDS)
+    assert heard(found, beat(), ("h", 1), 3 + peer.SILENT_SECONDS)
+    assert found.is_proven(3 + peer.SILENT_SECONDS)
+
+
+@pytest.mark.parametrize("known", [False, True], ids=["first", "after silence"])
+def test_a_vehicle_of_another_kind_at_another_address_does_not_keep_orders_from_an_ardusub(
+    known: bool,
+) -> None:
+    found = VehiclePeer(Vehicle(), 0.0)
+    if known:
+        heard(found, beat(), ("sub", 1), 0.0)
+    began = 2 * peer.SILENT_SECONDS
+    heard(found, beat(kind=mavlink.MAV_TYPE_SURFACE_BOAT), ("boat", 1), began)
+    assert found.find_fault(began) == ("" if known else peer.NO_ARDUSUB)
+    assert heard(found, beat(), ("sub", 1), began + 1)
+    assert not heard(found, beat(kind=mavlink.MAV_TYPE_SURFACE_BOAT), ("boat", 1), began + 2)
+    assert found.sender == ("sub", 1)
+    assert found.is_proven(began + 2)
+
+
 KEY = bytes(range(32))
 
 
