@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import select
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Literal, TextIO
+from typing import Final, Literal, TextIO
 
 from app.cli.robots.events import describe_event
 from app.robot import Event, OutputFailed, VehicleReported
@@ -15,6 +17,14 @@ from app.robot.event_messages import format_line
 
 Handler = Callable[[Event], None]
 """Called with every event."""
+
+STALL_SECONDS: Final = 1.0
+"""Longest wait for a reader of stdout or stderr while a vehicle is commanded: an emergency must not
+wait for a pager that was left open."""
+
+PIECE: Final = 1000
+"""Characters written at once: in UTF-8 they fit into a pipe of which `select` says that it takes
+something, which is 4096 bytes on Linux."""
 
 
 class Channels:
@@ -26,7 +36,8 @@ class Channels:
     Parameters
     ----------
     ends_with_reader
-        Whether a reader of stdout that closes the pipe ends the robot, by `BrokenPipeError`.
+        Whether a reader of stdout that closes the pipe ends the robot, by `BrokenPipeError`, and
+        one that reads nothing makes it wait. Otherwise both are given up.
 
     Attributes
     ----------
@@ -40,8 +51,8 @@ class Channels:
     def __init__(self, *, ends_with_reader: bool) -> None:
         self._ends_with_reader = ends_with_reader
         self._streams: list[Stream] = [
-            Stream("stdout", sys.stdout, format_line),
-            Stream("stderr", sys.stderr, describe_event),
+            Stream("stdout", sys.stdout, format_line, waits=ends_with_reader),
+            Stream("stderr", sys.stderr, describe_event, waits=ends_with_reader),
         ]
         self._handlers: list[Handler] = []
         self.vehicle: Handler | None = None
@@ -120,6 +131,8 @@ class Stream:
         The stream; None if the process was started without it.
     format_event
         Formats an event as a line; empty for events that it leaves out.
+    waits
+        Whether writing waits for a reader that reads nothing, for as long as it takes.
 
     """
 
@@ -128,16 +141,35 @@ class Stream:
         name: Literal["stdout", "stderr"],
         file: TextIO | None,
         format_event: Callable[[Event], str],
+        *,
+        waits: bool,
     ) -> None:
         self.name: Literal["stdout", "stderr"] = name
         self._file = file
         self._format = format_event
+        self._waits = waits or os.name != "posix"  # Windows tells of sockets alone
 
     def write(self, event: Event) -> None:
-        """Write an event; raises `OSError` when that fails."""
-        if self._file is not None and (line := self._format(event)):
-            self._file.write(f"{line}\n")
+        """Write an event; raises `OSError` when that fails, or nobody reads."""
+        if self._file is None or not (line := self._format(event)):
+            return
+        line += "\n"
+        size = len(line) if self._waits else PIECE
+        for start in range(0, len(line), size):
+            if not self._waits:
+                self._wait_for_reader(self._file)
+            self._file.write(line[start : start + size])
             self._file.flush()
+
+    @staticmethod
+    def _wait_for_reader(file: TextIO) -> None:
+        """Wait until a stream takes something; raises `TimeoutError` when it does not."""
+        try:
+            number = file.fileno()
+        except OSError:  # a stream of another program that runs this one has no descriptor
+            return
+        if not select.select([], [number], [], STALL_SECONDS)[1]:
+            raise TimeoutError(errno.ETIMEDOUT, "nobody reads it")
 
     def give_up(self) -> None:
         """Drop what was not written: Python would write it at exit, and fail again."""

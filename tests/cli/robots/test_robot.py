@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from urllib.request import Request, urlopen
@@ -236,6 +237,43 @@ def test_a_reader_that_leaves_does_not_end_a_robot_that_commands_a_vehicle(
 
 
 @pytest.mark.withstands(row="H36")
+@pytest.mark.slow
+@pytest.mark.parametrize("stalled", ["stdout", "stderr"])
+def test_a_reader_that_stalls_keeps_no_emergency_from_a_vehicle(
+    installed_models: None,
+    sample_clips: Path,
+    thin_clip: Callable[[str], Path],
+    tmp_path: Path,
+    stalled: str,
+) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    from tests.robot.mavlink.vehicle import sailing
+
+    table = tmp_path / "vehicle.toml"
+    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
+    language = sample_clips.parent / "osg-table-2.json"
+    unread, end = os.pipe()
+    os.set_blocking(end, False)
+    with suppress(BlockingIOError):
+        while True:
+            os.write(end, b"x" * 4096)
+    os.set_blocking(end, True)
+    with (
+        sailing() as vehicle,
+        running(
+            *("robot", "--language", language, "--source", thin_clip("line-test-1")),
+            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
+            **{stalled: end},
+        ) as process,
+    ):
+        process.communicate()
+    os.close(unread)
+    os.close(end)
+    assert process.returncode == 4
+    assert vehicle.obeyed == ["SURFACE"]
+    assert f"{stalled} cannot be written" in vehicle.texts
+
+
 @pytest.mark.slow
 def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
     installed_models: None, sample_clips: Path, thin_clip: Callable[[str], Path], tmp_path: Path
