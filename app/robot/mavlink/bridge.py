@@ -258,18 +258,25 @@ class MavlinkBridge:
 
     def _talk(self) -> None:
         while self._is_needed():
+            packets: Sequence[Packet] = ()
+            fault = ""
             try:
                 packets = self._link.receive(TICK_SECONDS)
-                with self._lock:
-                    due = self._step(packets)
+            except (OSError, OsgError) as error:
+                fault = str(error)
+                self._closing.wait(TICK_SECONDS)
+            with self._lock:
+                due = self._step(packets)
+            # Though nothing can be heard, what is sent may arrive.
+            try:
                 for message in due:
                     self._link.send(message, self._peer.sender)
-                self._broken = False
             except (OSError, OsgError) as error:
-                self._tell_broken(str(error))
-                self._closing.wait(TICK_SECONDS)
-                with self._lock:
-                    self._step([])
+                fault = str(error)
+            if fault:
+                self._tell_broken(fault)
+            elif due:
+                self._broken = False
         ignored = self._peer.dropped + self._link.dropped
         if ignored:
             self._tell_people(f"{ignored} messages that are not the vehicle's were ignored")
@@ -295,9 +302,9 @@ class MavlinkBridge:
         if decision is not None:
             self._say(decision.reason)
         self._watch_vehicle(now)
-        due = [*self._texts]
-        if self._peer.is_proven(now):
-            due += self._desk.list_due(now)
+        # Orders first: an emergency does not wait for texts, of which each may take its time.
+        due = [*self._desk.list_due(now)] if self._peer.is_proven(now) else []
+        due += self._texts
         self._texts.clear()
         if now - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = now

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import http.client
 import json
+import math
+import struct
 import time as clock
 from collections.abc import Mapping
 from typing import Any, Final
@@ -31,7 +33,8 @@ RENAMED: Final = {"type": "mavtype"}
 class RestLink:
     """HTTP to mavlink2rest; a `VehicleLink`.
 
-    The server's last message of each kind is polled, and is new when its counter has changed.
+    The server's last message of each kind is polled, and is new when its counter has changed. One
+    that cannot be read is counted and left out, so that the others are still heard.
 
     Parameters
     ----------
@@ -50,7 +53,6 @@ class RestLink:
     """
 
     expected: Sender | None = ()
-    dropped = 0
 
     def __init__(self, address: str, system: int, component: int) -> None:
         place = urlsplit(address)
@@ -64,8 +66,11 @@ class RestLink:
         self._system = system
         self._messages = f"{self._path}/vehicles/{system}/components/{component}/messages"
         self._codec = mavlink.MAVLink(None, system, component)
+        self.dropped = 0
         # Messages from before the connection answer no request of ours.
-        self._counters = {name: count for name, (count, _) in self._fetch_all().items()}
+        self._counters: dict[str, int] = {}
+        for name in WANTED:
+            self._fetch(name)
 
     def send(self, message: Message, to: Sender | None) -> None:
         """Send a message; `to` is the server."""
@@ -76,36 +81,36 @@ class RestLink:
     def receive(self, seconds: float) -> list[tuple[Message, Sender]]:
         """Return the new messages."""
         clock.sleep(min(seconds, POLL_SECONDS))
-        news: list[tuple[Message, Sender]] = []
-        for name, (count, message) in self._fetch_all().items():
-            if count != self._counters.get(name):
-                self._counters[name] = count
-                news.append((message, ()))
-        return news
+        news = (self._fetch(name) for name in WANTED)
+        return [(message, ()) for message in news if message is not None]
 
     def close(self) -> None:
         """Close the connection."""
         self._connection.close()
 
-    def _fetch_all(self) -> dict[str, tuple[int, Message]]:
-        return {name: found for name in WANTED if (found := self._fetch(name)) is not None}
-
-    def _fetch(self, name: str) -> tuple[int, Message] | None:
-        """Return the last message of a kind with its counter; None where there was none."""
+    def _fetch(self, name: str) -> Message | None:
+        """Return the last message of a kind if it is new."""
         text = self._request("GET", f"{self._messages}/{name}")
         if text is None:
             return None
         try:
             content = json.loads(text)
-            message = from_json(content["message"])
-            counter = int(content["status"]["time"]["counter"])
+            counter, found = int(content["status"]["time"]["counter"]), content["message"]
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise VehicleError(
                 f"{self._messages} is not answered as mavlink2rest does; check the address"
             ) from error
-        # The ids of the sender are in the path.
-        message.pack(self._codec)
-        return counter, message
+        if counter == self._counters.get(name):
+            return None
+        self._counters[name] = counter
+        try:
+            message = from_json(found)
+            # The ids of the sender are in the path.
+            message.pack(self._codec)
+        except (ValueError, KeyError, TypeError, AttributeError, struct.error):
+            self.dropped += 1
+            return None
+        return message
 
     def _request(self, method: str, path: str, body: str | None = None) -> str | None:
         """Return the text of the answer; None if the server has nothing at that path."""
@@ -147,7 +152,7 @@ def from_json(content: Mapping[str, Any]) -> Message:
 
     Raises
     ------
-    KeyError, TypeError, AttributeError
+    ValueError, KeyError, TypeError, AttributeError
         When the object is no message.
 
     """
@@ -155,6 +160,8 @@ def from_json(content: Mapping[str, Any]) -> Message:
     values = {}
     for name in kind.fieldnames:
         value = content.get(RENAMED.get(name, name), 0)
+        if value is None:  # how JSON of Rust writes NaN and infinity
+            value = math.nan
         if isinstance(value, Mapping):
             value = value["bits"] if "bits" in value else getattr(mavlink, value["type"])
         elif isinstance(value, list):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import threading
 from contextlib import closing
-from http.server import BaseHTTPRequestHandler, HTTPServer
+from http.server import BaseHTTPRequestHandler, HTTPServer, ThreadingHTTPServer
+from typing import Any
 
 import pytest
 
@@ -20,7 +22,7 @@ from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
 from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
-from tests.robot.mavlink.test_bridge import DOES, DONE, TABLE, Diver
+from tests.robot.mavlink.test_bridge import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 SENT = [
@@ -79,6 +81,95 @@ def test_the_robot_goes_on_when_the_server_falls_silent_and_says_so() -> None:
             diver.show("stop")
             assert diver.wait_for("repeat 'stop'")
     assert diver.lines.empty()
+
+
+class Mavlink2rest:
+    """A server whose answers the test chooses: those to GET by the message's name."""
+
+    def __init__(self) -> None:
+        self.answers: dict[str, str] = {}
+        self.posted: list[dict[str, Any]] = []
+        self.fails = False
+        ours = self
+
+        class Handler(BaseHTTPRequestHandler):
+            def do_GET(self) -> None:
+                found = ours.answers.get(self.path.rpartition("/")[2])
+                self.send_response(500 if ours.fails else 404 if found is None else 200)
+                self.end_headers()
+                self.wfile.write((found or "").encode())
+
+            def do_POST(self) -> None:
+                body = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
+                ours.posted.append(body["message"])
+                self.send_response(200)
+                self.end_headers()
+
+            def log_message(self, format: str, *args: object) -> None:
+                """Print nothing."""
+
+        self.server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+        self.thread = threading.Thread(target=self.server.serve_forever, args=(0.01,))
+        self.thread.start()
+        self.address = f"http://127.0.0.1:{self.server.server_port}"
+
+    def say(self, message: Any, counter: int, **changes: Any) -> None:
+        content = {**as_json(message), **changes}
+        answer = {"message": content, "status": {"time": {"counter": counter}}}
+        self.answers[message.get_type()] = json.dumps(answer)
+
+    def count_commands(self) -> int:
+        return sum(each["type"] == "COMMAND_LONG" for each in self.posted)
+
+    def close(self) -> None:
+        self.server.shutdown()
+        self.thread.join()
+        self.server.server_close()
+
+
+HEARTBEAT = mavlink.MAVLink_heartbeat_message(
+    mavlink.MAV_TYPE_SUBMARINE, mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, 129, 0, 4, 3
+)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"alt": None, "airspeed": None},
+        {"heading": -100_000},
+        {"heading": "north"},
+        {"alt": [1]},
+        {"type": 5},
+    ],
+    ids=str,
+)
+def test_a_message_with_bad_values_does_not_end_the_robot_or_keep_an_emergency_back(
+    changes: dict[str, Any],
+) -> None:
+    with closing(Mavlink2rest()) as server:
+        hud = mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, 0, 0)
+        server.say(hud, 1, **changes)
+        diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))
+        with closing(diver.bridge):
+            server.say(HEARTBEAT, 1)
+            wait_until(lambda: diver.bridge._peer.sender is not None)
+            server.say(hud, 2, **changes)
+            diver.show("help")
+            wait_until(lambda: server.count_commands() > 1)
+            diver.show("other")
+
+
+def test_an_emergency_is_sent_though_nothing_can_be_fetched_any_more() -> None:
+    with closing(Mavlink2rest()) as server:
+        diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))
+        with closing(diver.bridge):
+            server.say(HEARTBEAT, 1)
+            wait_until(lambda: diver.bridge._peer.sender is not None)
+            server.fails = True
+            assert diver.wait_for("no connection to the vehicle")
+            diver.show("help")
+            wait_until(lambda: server.count_commands() > 1)
+    assert not [line for line in list(diver.lines.queue) if line.startswith("no connection")]
 
 
 def test_a_server_of_another_kind_is_refused() -> None:
