@@ -6,7 +6,7 @@ request.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -34,8 +34,12 @@ SHOW_SECONDS: Final = 1.5
 then it is not requested again."""
 
 MOST_OVERRIDES: Final = 2
-"""Accepted requests of a mode that did not show it, after which somebody else has set another one;
-the first may be a late answer to an earlier request."""
+"""Accepted requests of a mode that did not show it, after which the order ends: a pilot may set the
+old one. The first answer may be a late one to an earlier request."""
+
+LATE_SECONDS: Final = 10.0
+"""Seconds after a request in which the vehicle may still take that mode, for an order that was
+cancelled or replaced meanwhile: no pilot has set it then."""
 
 OTHER_PILOT: Final = "the pilot changed the mode"
 
@@ -121,6 +125,7 @@ class OrderDesk:
         self._uptime = 0
         self._refused = False
         self._mode: int | None = None
+        self._requested: dict[int, float] = {}
         self._armed: bool | None = None
         self._waits = False
         self._watch = ModeWatch(None)
@@ -165,7 +170,10 @@ class OrderDesk:
             return ()
         if self._watch.keeps_back:
             return ()
-        message = self.order.steps[self._position].build(self._sent)
+        step = self.order.steps[self._position]
+        message = step.build(self._sent)
+        if step.mode is not None:
+            self._requested[step.mode] = now
         self._sent += 1
         self._next = now + self._vehicle.repeat_seconds
         return (message,)
@@ -194,8 +202,8 @@ class OrderDesk:
             return None
         if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
             return outcome
-        if self._watch.other_pilot:
-            return self._end("stopped", OTHER_PILOT)
+        if self._watch.contradiction:
+            return self._end("stopped", self._watch.contradiction)
         if not self._sent:
             return None
         step = self.order.steps[self._position]
@@ -277,7 +285,10 @@ class OrderDesk:
         self._reported = Reported()
         modes = [step.mode for step in self.order.steps[: position + 1] if step.mode is not None]
         is_shown = bool(modes) and self.order.steps[position].mode is None
-        self._watch = ModeWatch(modes[-1] if modes else None, self._mode, is_shown=is_shown)
+        late = [mode for mode, sent in self._requested.items() if now - sent <= LATE_SECONDS]
+        self._watch = ModeWatch(
+            modes[-1] if modes else None, (self._mode, *late), is_shown=is_shown
+        )
 
     def _end(self, kind: OutcomeKind, answer: str = "") -> Outcome:
         assert self.order is not None
@@ -298,30 +309,31 @@ class ModeWatch:
     wanted
         Mode that the order sets or has set; None for any.
     before
-        Mode before the order, if known.
+        Modes that are no pilot's: that before the order, and those of orders before, which the
+        vehicle may take late. None: unknown.
     is_shown
         Whether an earlier step has set the mode.
 
     Attributes
     ----------
-    other_pilot
-        Whether somebody else has changed the mode.
+    contradiction
+        What is known of a mode that contradicts the order, in few words; empty for none.
 
     """
 
     DOUBT_SECONDS: Final = 0.5
 
     def __init__(
-        self, wanted: int | None, before: int | None = None, *, is_shown: bool = False
+        self, wanted: int | None, before: Iterable[int | None] = (), *, is_shown: bool = False
     ) -> None:
         self._wanted = wanted
-        self._old = {before}
+        self._old = {*before}
         self._is_shown = is_shown
         self._heard_any = False
         self._accepted: float | None = None
         self._overrides = 0
         self._doubted: float | None = None
-        self.other_pilot = False
+        self.contradiction = ""
 
     def accept(self, now: float) -> None:
         """Note that the vehicle has accepted the mode."""
@@ -335,7 +347,8 @@ class ModeWatch:
 
     def hear_clock(self) -> None:
         """Note that the vehicle's clock goes on: a contradicting mode is then a pilot's."""
-        self.other_pilot |= self._doubted is not None
+        if self._doubted is not None:
+            self.contradiction = OTHER_PILOT
 
     def hear_mode(self, mode: int, now: float, *, sent: bool) -> None:
         """Process the mode of a heartbeat; `sent`: the mode was requested before."""
@@ -347,17 +360,24 @@ class ModeWatch:
             self._is_shown, self._doubted = True, None
         elif self._is_shown or (self._heard_any and mode not in self._old):
             if self._doubted is not None and now - self._doubted >= self.DOUBT_SECONDS:
-                self.other_pilot = True
+                self.contradiction = OTHER_PILOT
             self._doubted = now if self._doubted is None else self._doubted
         else:
             self._old.add(mode)
-            self._note_override(now)
+            self._note_override(mode, now)
         self._heard_any |= sent
 
-    def _note_override(self, now: float) -> None:
-        """Count an accepted mode that does not show: somebody has set the old one again."""
+    def _note_override(self, mode: int, now: float) -> None:
+        """Count an accepted mode that does not show: a pilot sets the old one, or nothing does."""
         if self._accepted is None or now - self._accepted <= SHOW_SECONDS:
             return
         self._accepted = None
         self._overrides += 1
-        self.other_pilot = self._overrides >= MOST_OVERRIDES
+        if self._overrides >= MOST_OVERRIDES:
+            self.contradiction = f"stays in {name_mode(mode)}"
+
+
+def name_mode(mode: int) -> str:
+    """Return the name of one of ArduSub's modes, or its number."""
+    known = mavlink.enums["SUB_MODE"]
+    return known[mode].name.removeprefix("SUB_MODE_") if mode in known else f"mode {mode}"

@@ -143,3 +143,41 @@ def test_a_newer_order_replaces_the_one_on_its_way() -> None:
     assert desk.list_due(1.0)[0].param2 == SURFACE
     assert desk.check_deadline(60.9) is None
     assert desk.check_deadline(61.1) is not None
+
+
+@pytest.mark.parametrize("is_cancelled", [False, True])
+def test_a_mode_that_comes_late_from_an_order_before_is_no_pilots(is_cancelled: bool) -> None:
+    desk = OrderDesk(VEHICLE)
+    desk.hear(heartbeat(mavlink.SUB_MODE_MANUAL), 0.0)
+    desk.give(order(Hold()), 0.0)
+    desk.list_due(0.0)
+    if is_cancelled:
+        desk.cancel()
+    desk.give(order(Surface(), emergency=True), 0.2)
+    desk.list_due(0.2)  # it is lost
+    heard = [
+        (0.3, heartbeat(mavlink.SUB_MODE_MANUAL)),
+        (0.4, answer()),  # to the order before
+        (1.3, heartbeat(HOLD)),
+        (1.4, from_vehicle(mavlink.MAVLink_system_time_message(0, 60_000))),
+        (2.3, heartbeat(HOLD)),
+    ]
+    assert [desk.hear(message, now) for now, message in heard] == [None] * len(heard)
+    assert [message.param2 for message in desk.list_due(2.4)] == [SURFACE]
+    assert desk.hear(answer(), 2.5) is None
+    ended = desk.hear(heartbeat(SURFACE), 3.3)
+    assert ended is not None
+    assert ended.kind == "done"
+
+
+def test_of_a_mode_that_is_accepted_and_never_shown_it_is_said_what_is_shown() -> None:
+    desk = begun(Hold(), emergency=True)
+    ended = None
+    for tick in range(100):
+        now = tick / 10
+        if desk.list_due(now):
+            assert desk.hear(answer(), now) is None
+        if tick % 10 == 0 and (ended := desk.hear(heartbeat(mavlink.SUB_MODE_MANUAL), now)):
+            break
+    assert ended is not None
+    assert (ended.kind, ended.answer) == ("stopped", "stays in MANUAL")

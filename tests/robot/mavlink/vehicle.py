@@ -92,6 +92,11 @@ class Ardusub:
         self._thread.join()
         self._connection.close()
 
+    @property
+    def uptime(self) -> float:
+        """Seconds since its start."""
+        return clock.monotonic() - self._began
+
     def _boot(self) -> None:
         self.mode: int = mavlink.SUB_MODE_MANUAL
         self.target = -DEPTH
@@ -125,7 +130,7 @@ class Ardusub:
         flags = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
         if self.armed:
             flags |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-        uptime = round((clock.monotonic() - self._began) * 1000)
+        uptime = round(self.uptime * 1000)
         heartbeat = (self.vehicle_type, self.autopilot, flags)
         active = mavlink.MAV_STATE_ACTIVE
         self._send(mavlink.MAVLink_heartbeat_message(*heartbeat, self.mode, active, 3))
