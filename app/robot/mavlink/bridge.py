@@ -294,6 +294,7 @@ class MavlinkBridge:
     def _step(self, packets: Sequence[Packet]) -> list[Message]:
         """Process the received messages and return the messages to send."""
         now = clock.monotonic()
+        self._peer.expect(self._link.expected)
         for message, sender in packets:
             if self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 self._report(self._desk.hear(message, now))

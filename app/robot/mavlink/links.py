@@ -31,6 +31,10 @@ MOST_FAULTS: Final = 8
 CONNECT_SECONDS: Final = 3.0
 """Time to connect over TCP; a vehicle on the same boat answers within milliseconds."""
 
+UNANSWERED_MS: Final = 5000
+"""Milliseconds after which a TCP connection whose other end confirms nothing is given up. The
+system would wait for minutes, also for a vehicle that has long started again."""
+
 RECONNECT_SECONDS: Final = 1.0
 """Seconds between two attempts to reconnect."""
 
@@ -53,14 +57,19 @@ class VehicleLink(Protocol):
     Attributes
     ----------
     expected
-        The only address that may be the vehicle's; None for any.
+        The only address that may be the vehicle's; None for any. It changes with a new connection,
+        whose other end may be another vehicle.
     dropped
         Number of messages that were damaged, or not signed as they should be.
 
     """
 
-    expected: Sender | None
     dropped: int
+
+    @property
+    def expected(self) -> Sender | None:
+        """See the class."""
+        ...
 
     def send(self, message: Message, to: Sender | None) -> None:
         """Send a message to the vehicle's address; raises `OSError` when that fails."""
@@ -197,9 +206,8 @@ class StreamLink:
 
     """
 
-    expected: Sender | None = ()
-
     def __init__(self, host: str, port: int, system: int, key: bytes | None = None) -> None:
+        self.expected: Sender = (0,)
         self._address = (host, port)
         self._system = system
         self._signing = create_signing(key)
@@ -210,8 +218,6 @@ class StreamLink:
 
     def write(self, data: bytes) -> None:
         """Send bytes; pymavlink calls this."""
-        if self._socket is None:
-            self._connect()
         assert self._socket is not None
         try:
             self._socket.sendall(data)
@@ -220,8 +226,11 @@ class StreamLink:
             raise
 
     def send(self, message: Message, to: Sender | None) -> None:
-        """Send a message; `to` is the other end of the connection."""
-        self._codec.send(message)
+        """Send a message; nothing that was meant for the connection before."""
+        if self._socket is None:
+            self._connect()
+        if to in (None, self.expected):
+            self._codec.send(message)
 
     def receive(self, seconds: float) -> list[Packet]:
         """Return the messages that arrived."""
@@ -240,7 +249,7 @@ class StreamLink:
             raise ConnectionError("the vehicle closed the connection")
         messages, dropped = self._reader.read(data)
         self.dropped += dropped
-        return [(message, ()) for message in messages]
+        return [(message, self.expected) for message in messages]
 
     def close(self) -> None:
         """Close the connection."""
@@ -252,6 +261,9 @@ class StreamLink:
             raise ConnectionError("not connected")
         self._tried = clock.monotonic()
         self._socket = socket.create_connection(self._address, CONNECT_SECONDS)
+        if hasattr(socket, "TCP_USER_TIMEOUT"):  # on Linux
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNANSWERED_MS)
+        self.expected = (self.expected[0] + 1,)
         self._codec = mavlink.MAVLink(self, self._system, OUR_COMPONENT)
         self._codec.signing = self._signing
         self._reader = Reader(self._signing)

@@ -62,6 +62,11 @@ class VehiclePeer:
         self._set_back = False
         self._notices: list[str] = []
 
+    def expect(self, sender: Sender | None) -> None:
+        """Set the only address that may be the vehicle's; a new one has to prove itself."""
+        if sender != self._expected:
+            self._expected, self.sender = sender, None
+
     def find_fault(self, now: float) -> str:
         """Return, in few words, why nothing may be sent to the vehicle; empty for no fault."""
         if self.sender not in (None, self._faulty) or now - self._refused > SILENT_SECONDS:

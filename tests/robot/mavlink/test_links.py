@@ -71,11 +71,11 @@ def test_a_stream_that_breaks_is_connected_again(monkeypatch: pytest.MonkeyPatch
         thread = threading.Thread(target=serve)
         thread.start()
         link = StreamLink("127.0.0.1", server.getsockname()[1], 1)
-        link.send(build_heartbeat(), ())
+        link.send(build_heartbeat(), None)
         with pytest.raises(ConnectionError, match="closed the connection"):
             link.receive(10)
         assert link.receive(0) == []
-        link.send(build_heartbeat(), ())
+        link.send(build_heartbeat(), None)
         thread.join(10)
         link.close()
     assert len(heard) == 2

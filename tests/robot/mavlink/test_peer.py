@@ -15,7 +15,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink import peer
+from app.robot.mavlink import bridge, links, peer
 from app.robot.mavlink.actions import OUR_COMPONENT
 from app.robot.mavlink.links import MOST_DATAGRAMS, MOST_FAULTS, DatagramLink, open_link
 from app.robot.mavlink.peer import VehiclePeer
@@ -331,6 +331,33 @@ def test_a_vehicle_of_another_kind_at_another_address_does_not_keep_orders_from_
     assert not heard(found, beat(kind=mavlink.MAV_TYPE_SURFACE_BOAT), ("boat", 1), began + 2)
     assert found.sender == ("sub", 1)
     assert found.is_proven(began + 2)
+
+
+def test_a_new_connection_gets_no_command_before_a_heartbeat(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(links, "RECONNECT_SECONDS", 0.0)
+    monkeypatch.setattr(bridge, "HEARTBEAT_SECONDS", 0.05)
+    codec = mavlink.MAVLink(None)
+
+    def receive(connection: socket.socket) -> list[str]:
+        return [each.get_type() for each in codec.parse_buffer(connection.recv(1000)) or []]
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp:127.0.0.1:{server.getsockname()[1]}"
+        diver = Diver(None, address, VehicleTable.model_validate(TABLE))
+        with closing(diver.bridge):
+            with server.accept()[0] as first:
+                first.sendall(packed(beat()))
+                diver.show("help")
+                while "COMMAND_LONG" not in receive(first):
+                    pass
+            with server.accept()[0] as second:
+                before = [name for _ in range(5) for name in receive(second)]
+                assert set(before) == {"HEARTBEAT"}
+                second.sendall(packed(beat()))
+                while "COMMAND_LONG" not in receive(second):
+                    pass
 
 
 KEY = bytes(range(32))
