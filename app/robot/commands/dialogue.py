@@ -309,8 +309,8 @@ class CommandDialogue:
         least = self.rules.least_confidence
         if is_emergency := gesture.label in self.rules.emergency:
             least = max(least, self.rules.emergency_confidence)
-        # `>=` is False for NaN, so a confidence of NaN is too low.
-        sure = gesture.confidence >= least
+        # False for NaN too: what is no share of 1 is no confidence.
+        sure = least <= gesture.confidence <= 1
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
         if sure and gesture.label in self.rules.cancel:
@@ -480,8 +480,8 @@ class CommandDialogue:
 
     def _complete(self, phrase: RecognizedPhrase, pending: Pending | None) -> Decision:
         """Decide about a complete message, which may confirm `pending`."""
-        # `>=` is False for NaN, so a confidence of NaN is too low.
-        if not phrase.confidence >= self.rules.least_confidence:
+        # True for NaN too: what is no share of 1 is no confidence.
+        if not self.rules.least_confidence <= phrase.confidence <= 1:
             return Decision("not understood; show the message again")
         self.pending = None
         if not self.rules.confirmed or (pending and pending.mission == phrase.mission):

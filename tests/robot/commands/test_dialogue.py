@@ -183,8 +183,9 @@ def test_only_the_same_body_confirms() -> None:
     assert commands_of(first, of_take("circle", 3.0, 4.0)) == [None, "photo"]
 
 
-def test_a_confidence_of_nan_is_too_little() -> None:
-    assert commands_of(shown("line", 1, confidence=math.nan)) == [None]
+@pytest.mark.parametrize("confidence", [math.nan, math.inf, -math.inf, 1.5])
+def test_a_confidence_that_is_no_share_of_1_is_too_little(confidence: float) -> None:
+    assert commands_of(shown("line", 1, confidence=confidence)) == [None]
 
 
 def test_another_language_forgets_what_was_begun_in_the_old_one() -> None:
