@@ -105,22 +105,22 @@ class Reader:
 
     def read(self, data: bytes) -> tuple[list[Message], int]:
         """Parse bytes; return the messages, and the number of those that were dropped."""
-        known, bad = dict(self._signing.stream_timestamps), self._signing.badsig_count
         found: list[Message] = []
         faults = 0
         while faults < self._most_faults:
+            known, bad = dict(self._signing.stream_timestamps), self._signing.badsig_count
             message = self._codec.parse_char(data)
             data = b""
+            if self._signing.badsig_count != bad:
+                # pymavlink notes the time of a message before it verifies the signature: a forged
+                # one would make it reject the vehicle's.
+                self._signing.stream_timestamps = known
             if message is None:
                 break
             if isinstance(message, mavlink.MAVLink_bad_data):
                 faults += 1
             elif not isinstance(message, mavlink.MAVLink_unknown):
                 found.append(message)
-        if self._signing.badsig_count != bad:
-            # pymavlink notes the time of a message before it verifies the signature: a forged one
-            # would make it reject the vehicle's.
-            self._signing.stream_timestamps = known
         return found, faults
 
 

@@ -17,7 +17,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.mavlink import bridge, links, peer
 from app.robot.mavlink.actions import OUR_COMPONENT
-from app.robot.mavlink.links import MOST_DATAGRAMS, MOST_FAULTS, DatagramLink, open_link
+from app.robot.mavlink.links import (
+    MOST_DATAGRAMS,
+    MOST_FAULTS,
+    DatagramLink,
+    Reader,
+    create_signing,
+    open_link,
+)
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
 from tests.robot.mavlink.mavlink2rest import serving
@@ -389,6 +396,19 @@ def test_a_forged_signature_from_the_future_does_not_deafen_the_bridge() -> None
         diver.confirm("stop")
         assert diver.wait_for("done", "NOT DONE") == "done: hold"
     assert vehicle.obeyed == ["ALT_HOLD"]
+
+
+def test_a_signed_message_counts_once_also_beside_a_forged_one() -> None:
+    def signing(key: bytes) -> Any:
+        made = create_signing(key)
+        made.link_id = 7
+        return made
+
+    ours = create_signing(KEY)
+    once = packed(beat(), signing=signing(KEY))
+    forged = packed(beat(), signing=signing(bytes(32)))
+    counts = [len(Reader(ours).read(data)[0]) for data in (once + forged, once + forged, once)]
+    assert counts == [1, 0, 0]
 
 
 @contextmanager
