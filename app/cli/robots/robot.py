@@ -163,7 +163,13 @@ def open_files(options: RobotOptions, control: Control) -> RobotFiles:
             f"--upload needs {error.name}, which is not installed; install it with: "
             'pip install "osg-studio[mavlink]"'
         ) from error
-    return RobotFiles(options.language, options.vehicle, options.profile, control.take_file)
+    return RobotFiles(
+        options.language,
+        options.vehicle,
+        options.profile,
+        control.take_file,
+        control.find_obstacle,
+    )
 
 
 def open_page(address: str, files: RobotFiles | None = None) -> StatusPage:

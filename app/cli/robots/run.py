@@ -34,6 +34,7 @@ from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
 
 if TYPE_CHECKING:
+    from app.robot.mavlink.bridge import MavlinkBridge
     from app.robot.publishing.status_page import StatusPage
 
 RETRY_SECONDS: Final = 10.0
@@ -94,10 +95,13 @@ class Control:
         self.stopped = self.changed = False
         self._runtime: Runtime | None = None
         self._watcher: LanguageWatcher | None = None
+        self._bridge: MavlinkBridge | None = None
 
-    def begin(self, runtime: Runtime, watcher: LanguageWatcher) -> None:
+    def begin(
+        self, runtime: Runtime, watcher: LanguageWatcher, bridge: MavlinkBridge | None
+    ) -> None:
         """Control a run from now on."""
-        self._runtime, self._watcher = runtime, watcher
+        self._runtime, self._watcher, self._bridge = runtime, watcher, bridge
         if self.stopped or self.changed:
             runtime.stop()
 
@@ -112,6 +116,15 @@ class Control:
         if self._watcher is not None:
             self._watcher.reload()
 
+    def find_obstacle(self, kind: str) -> str:
+        """Return why a file must not be replaced now; empty if it may.
+
+        A new vehicle table begins the recognition anew, which would end an emergency.
+        """
+        if kind == "vehicle" and self._bridge is not None and self._bridge.in_emergency:
+            return "an emergency is in progress: send the vehicle table again when it is over"
+        return ""
+
     def take_file(self, kind: str) -> None:
         """Note a replaced file: a running robot reads a new language, and begins a table anew."""
         if self._runtime is None or kind == "vehicle":
@@ -121,7 +134,7 @@ class Control:
 
     def wait(self, seconds: float) -> None:
         """Wait until a file is replaced or the robot ends, at most so long."""
-        self._runtime = self._watcher = None
+        self._runtime = self._watcher = self._bridge = None
         by = clock.monotonic() + seconds
         while not (self.stopped or self.changed) and clock.monotonic() < by:
             clock.sleep(WAIT_STEP)
@@ -195,6 +208,7 @@ def run_robot(
             handlers.append(publisher.publish)
         # The bridge still reports while it closes, so it is closed before the handlers are left.
         opened.enter_context(channels.joined_by(handlers))
+        bridge: MavlinkBridge | None = None
         if options.mavlink and (table := options.find_vehicle_table()):
             from app.cli.robots.vehicle import open_bridge
 
@@ -215,7 +229,7 @@ def run_robot(
             changes=watcher.next_change,
             observer=observer,
         )
-        control.begin(runtime, watcher)
+        control.begin(runtime, watcher, bridge)
         begin()
         signals = handle_signals(control.stop, control.reload)
         with nullcontext() if options.upload else signals:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.recognition.errors import VehicleError
 from app.robot import LandmarkListener, Source
-from app.robot.publishing.publisher import Publisher
 from app.robot.sources.live import LiveSource
+
+if TYPE_CHECKING:
+    from app.robot.mavlink.bridge import MavlinkBridge
 
 
 def open_bridge(
@@ -19,7 +22,7 @@ def open_bridge(
     tell: Callable[[str], None],
     *,
     without_salutes: bool,
-) -> Publisher:
+) -> MavlinkBridge:
     """Open the bridge to a vehicle.
 
     Parameters

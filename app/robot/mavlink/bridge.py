@@ -118,6 +118,12 @@ class MavlinkBridge:
         self._thread = threading.Thread(target=self._work, name="mavlink", daemon=True)
         self._thread.start()
 
+    @property
+    def in_emergency(self) -> bool:
+        """Whether an emergency is in progress."""
+        order = self._desk.order
+        return order is not None and order.emergency
+
     def publish(self, event: Event) -> None:
         """Decide about one event.
 

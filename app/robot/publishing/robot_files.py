@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
-from app.recognition.errors import LanguageError, OsgError
+from app.recognition.errors import LanguageError, OsgError, VehicleError
 from app.recognition.language.short_code import short_code
 from app.robot.active_language import ActiveLanguage
 from app.robot.mavlink.table import VehicleTable, parse_vehicle_table, read_vehicle_table
@@ -58,6 +58,8 @@ class RobotFiles:
         The recogniser's profile; None: each language's own.
     notify
         Called with the kind of each file that was replaced.
+    find_obstacle
+        Called with the kind of a file; returns why it must not be replaced now, empty if it may.
 
     Attributes
     ----------
@@ -74,10 +76,12 @@ class RobotFiles:
         vehicle: Path | None,
         profile: str | None,
         notify: Callable[[FileKind], None],
+        find_obstacle: Callable[[FileKind], str] = lambda kind: "",
     ) -> None:
         self._paths: dict[FileKind, Path | None] = {"language": language, "vehicle": vehicle}
         self._profile = profile
         self._notify = notify
+        self._find_obstacle = find_obstacle
 
     def find_path(self, kind: str) -> Path | None:
         """Return the path of a kind of file; None where there is no such file."""
@@ -118,7 +122,7 @@ class RobotFiles:
         Raises
         ------
         OsgError
-            When it is not valid.
+            When it is not valid, or must not be replaced now.
         OSError
             When it cannot be written; the present file stays.
 
@@ -126,6 +130,8 @@ class RobotFiles:
         proposal = self.propose(kind, content)
         if token != proposal.token:
             return proposal
+        if obstacle := self._find_obstacle(kind):
+            raise VehicleError(obstacle)
         write_atomically(self._get_path(kind), content)
         self._notify(kind)
         return None

@@ -229,3 +229,15 @@ def test_a_disk_that_is_full_keeps_the_old_file(
     assert status == 507
     assert answer["detail"].startswith("the file cannot be written: ")
     assert robot.replaced == []
+
+
+def test_what_must_not_be_replaced_now_stays(robot: Robot) -> None:
+    robot.table.write_text(OLD_TABLE)
+    robot.files._find_obstacle = lambda kind: f"not now: {kind}"
+    _, proposal = robot.send("vehicle", NEW_TABLE)
+    assert robot.send("vehicle", NEW_TABLE, proposal["token"]) == (
+        422,
+        {"detail": "not now: vehicle"},
+    )
+    assert robot.table.read_text() == OLD_TABLE
+    assert robot.replaced == []
