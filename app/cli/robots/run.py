@@ -276,10 +276,11 @@ def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
     before = {number: signal.getsignal(number) for number in actions}
 
     def handle(number: int, frame: FrameType | None) -> None:
-        kind = signal.Signals(number)
-        if actions[kind] is stop:
-            signal.signal(kind, before[kind])
-        actions[kind]()
+        action = actions[signal.Signals(number)]
+        if action is stop:  # the second one may be of the other kind, such as systemd's
+            for kind in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(kind, before[kind])
+        action()
 
     for number in actions:
         signal.signal(number, handle)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import signal
 from typing import Any, cast
 
 import pytest
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
-from app.cli.robots.run import Control
+from app.cli.robots.run import Control, handle_signals
 from tests.robot.mavlink.test_bridge import diving
 
 
@@ -35,3 +36,15 @@ def test_a_vehicle_table_is_not_replaced_during_an_emergency() -> None:
         assert control.find_obstacle("vehicle") == ""
     control.take_file("vehicle")
     assert run.stopped
+
+
+@pytest.mark.parametrize("first", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal_of_any_kind_ends_at_once(first: signal.Signals) -> None:
+    before = [signal.getsignal(kind) for kind in (signal.SIGINT, signal.SIGTERM)]
+    stops: list[bool] = []
+    with handle_signals(lambda: stops.append(True), lambda: None):
+        assert signal.getsignal(first) not in before
+        signal.raise_signal(first)
+        after = [signal.getsignal(kind) for kind in (signal.SIGINT, signal.SIGTERM)]
+    assert stops == [True]
+    assert after == before
