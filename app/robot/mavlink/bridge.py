@@ -344,7 +344,7 @@ class MavlinkBridge:
             "replaced": f"replaced: {words}",
             "refused": f"refused ({outcome.answer}): {words}",
             "unanswered": f"NOT DONE, no answer: {words}",
-            "cancelled": f"cancelled: {words}",
+            "cancelled": f"{', '.join(filter(None, ('cancelled', outcome.answer)))}: {words}",
             "stopped": f"NOT DONE, {outcome.answer}: {words}",
             "waits": f"{outcome.answer}: {words}",
         }[outcome.kind]

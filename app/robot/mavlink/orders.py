@@ -83,8 +83,9 @@ class Outcome:
         The order.
     kind
         ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
-        time. ``replaced``: by a newer order. ``cancelled``: by the diver. ``stopped``: for the
-        reason in `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
+        time. ``replaced``: by a newer order. ``cancelled``: by the diver; `answer` says
+        if it was sent before, so that the vehicle may still do it. ``stopped``: for the reason in
+        `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
     answer
         Result of a refusal, such as ``DENIED``, or the reason.
 
@@ -158,7 +159,8 @@ class OrderDesk:
             return None
         if self.order.emergency:
             return Outcome(self.order, "waits", "EMERGENCY is not cancelled")
-        return self._end("cancelled")
+        was_sent = self._sent > 0 or self._position > 0
+        return self._end("cancelled", "but it was sent" if was_sent else "")
 
     def stop(self, reason: str) -> Outcome | None:
         """Drop the active order, also an emergency, for a reason; return its outcome."""

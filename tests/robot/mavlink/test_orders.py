@@ -181,3 +181,10 @@ def test_of_a_mode_that_is_accepted_and_never_shown_it_is_said_what_is_shown() -
             break
     assert ended is not None
     assert (ended.kind, ended.answer) == ("stopped", "stays in MANUAL")
+
+
+def test_of_a_cancelled_order_it_is_said_whether_the_vehicle_may_have_got_it() -> None:
+    desk = OrderDesk(VEHICLE)
+    desk.give(order(Hold()), 0.0)
+    assert desk.cancel() == Outcome(order(Hold()), "cancelled")
+    assert begun(Hold()).cancel() == Outcome(order(Hold()), "cancelled", "but it was sent")
