@@ -204,8 +204,9 @@ def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> Non
     for kind, limit in limits:
         if limit:
             _, hard = resource.getrlimit(kind)
-            soft = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
-            resource.setrlimit(kind, (soft, hard))
+            most = limit if hard == resource.RLIM_INFINITY else min(limit, hard)
+            # Both, because a process that a file has taken over could raise the first again.
+            resource.setrlimit(kind, (most, most))
     # Crashes are expected here, and core dumps of videos are useless.
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     with contextlib.suppress(OSError):

@@ -40,6 +40,18 @@ def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:
     assert "0123" not in answer["detail"]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="the limits of other systems differ")
+def test_a_worker_cannot_raise_its_own_limits() -> None:
+    code = (
+        "import resource; from app.api.workers.worker import limit_resources; "
+        "limit_resources(8 << 30, 100, 1000); "
+        "print(*(resource.getrlimit(kind) for kind in "
+        "(resource.RLIMIT_AS, resource.RLIMIT_CPU, resource.RLIMIT_FSIZE)))"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == f"({8 << 30}, {8 << 30}) (100, 100) (1000, 1000)"
+
+
 @pytest.mark.usefixtures("installed_models")
 def test_extracting_reports_progress_and_leaves_recording_and_pictures(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=5)
