@@ -1,7 +1,7 @@
 """Confinement: takes from this process, where Linux can, the right to files, programs and networks.
 
-Files are limited by Landlock (Linux 5.13; TCP since 6.7, signals since 6.12), sockets by a filter
-of system calls (seccomp). Both last until the process and all its children have ended.
+Files are limited by Landlock (Linux 5.13; TCP since 6.7, signals since 6.12), sockets and what
+Landlock does not know by a filter of system calls (seccomp). Both last until the process has ended.
 """
 
 from __future__ import annotations
@@ -65,18 +65,57 @@ _SYSTEM: Final = (
 )
 """What libraries read of a system; nothing here is secret."""
 
-_FILTERED: Final = {"x86_64": (0xC000_003E, 41), "aarch64": (0xC000_00B7, 198)}
-"""By machine: audit number of its architecture, and number of the system call ``socket``."""
+_FILTERED: Final = {"x86_64": 0xC000_003E, "aarch64": 0xC000_00B7}
+"""By machine: audit number of its architecture."""
 
-_IO_URING_SETUP: Final = 425
+# fmt: off
+_DENIED: Final = {
+    "x86_64": (
+        41,  # socket
+        57, 58,  # fork, vfork
+        90, 91, 268,  # chmod, fchmod, fchmodat
+        92, 93, 94, 260,  # chown, fchown, lchown, fchownat
+        132, 235, 261, 280,  # utime, utimes, futimesat, utimensat
+        188, 189, 190, 197, 198, 199,  # setxattr, removexattr, and those of links and files
+        29, 64, 68, 240,  # shmget, semget, msgget, mq_open
+    ),
+    "aarch64": (
+        198,  # socket
+        52, 53,  # fchmod, fchmodat
+        54, 55,  # fchownat, fchown
+        88,  # utimensat
+        5, 6, 7, 14, 15, 16,  # setxattr, removexattr, and those of links and files
+        180, 186, 190, 194,  # mq_open, msgget, semget, shmget
+    ),
+}
+"""System calls by machine: sockets, processes, and what Landlock leaves to every process of a user:
+owner, rights, times and attributes of all files, and memory that outlives the process."""
+# fmt: on
+
+_DENIED_ANYWHERE: Final = (
+    425,  # io_uring_setup
+    452,  # fchmodat2
+    463,  # setxattrat
+    466,  # removexattrat
+    469,  # file_setattr
+)
+"""System calls with the same number on both machines."""
+
+_CLONE: Final = {"x86_64": 56, "aarch64": 220}
+_SET_LIMITS: Final = {"x86_64": 302, "aarch64": 261}
+"""Numbers of the system calls ``clone`` and ``prlimit64`` by machine."""
+
+_CLONE_3: Final = 435
+_THREAD: Final = 0x1_0000
 _X32: Final = 0x4000_0000
 
 
 def confine(grants: Iterable[tuple[Path, int]]) -> bool:
     """Confine this thread and its later children to the system's libraries and what is granted.
 
-    Call it while the process has one thread. It may start no program, make no socket, connect to
-    nothing and, with a new kernel, signal no process outside.
+    Call it while the process has one thread. It may start no process, make no socket, connect to
+    nothing, change neither rights of files nor limits of others and, with a new kernel, signal no
+    process outside.
 
     Parameters
     ----------
@@ -85,14 +124,14 @@ def confine(grants: Iterable[tuple[Path, int]]) -> bool:
 
     Returns
     -------
-    Whether the files are confined; on Linux sockets are forbidden in any case.
+    Whether the files are confined; on Linux sockets and processes are forbidden in any case.
 
     """
     if sys.platform != "linux":
         return False
     system = ctypes.CDLL(None, use_errno=True)
     _require(system.prctl(_NO_NEW_PRIVILEGES, 1, 0, 0, 0))
-    _forbid_sockets(system)
+    _forbid_calls(system)
     version = landlock_version()
     if version < 1:
         return False
@@ -158,24 +197,43 @@ def _grant(system: ctypes.CDLL, rules: int, path: Path, rights: int) -> None:
             os.close(place)
 
 
-def _forbid_sockets(system: ctypes.CDLL) -> None:
-    """Let new sockets fail, also those of UDP and of files, which Landlock does not know.
+def _forbid_calls(system: ctypes.CDLL) -> None:
+    """Let system calls fail that Landlock does not limit, such as sockets of UDP and of files.
 
     Without effect on other machines than these two, and where the system refuses filters.
     """
-    if (known := _FILTERED.get(platform.machine())) is None:
+    machine = platform.machine()
+    if (architecture := _FILTERED.get(machine)) is None:
         return
-    architecture, socket_call = known
-    load, equal, at_least, answer = 0x20, 0x15, 0x35, 0x06
-    allow, deny = 0x7FFF_0000, 0x0005_0001  # the second fails with EPERM
+    load, equal, at_least, any_bit, answer = 0x20, 0x15, 0x35, 0x45, 0x06
+    number_at, architecture_at, first_argument_at = 0, 4, 16
+    allow, not_permitted, not_known = 0x7FFF_0000, 0x0005_0001, 0x0005_0026  # EPERM, ENOSYS
+    deny = (answer, 0, 0, not_permitted)
     steps = [
-        (load, 0, 0, 4),
-        (equal, 0, 4, architecture),
-        (load, 0, 0, 0),
-        (at_least, 2, 0, _X32),
-        (equal, 1, 0, socket_call),
-        (equal, 0, 1, _IO_URING_SETUP),
-        (answer, 0, 0, deny),
+        (load, 0, 0, architecture_at),
+        (equal, 1, 0, architecture),
+        deny,
+        (load, 0, 0, number_at),
+        (at_least, 0, 1, _X32),
+        deny,
+    ]
+    for number in (*_DENIED[machine], *_DENIED_ANYWHERE):
+        steps += [(equal, 0, 1, number), deny]
+    steps += [
+        # Its arguments cannot be read here; C libraries then use clone.
+        (equal, 0, 1, _CLONE_3),
+        (answer, 0, 0, not_known),
+        # New threads are allowed, and new processes are not: these would outlive the job.
+        (equal, 0, 4, _CLONE[machine]),
+        (load, 0, 0, first_argument_at),
+        (any_bit, 1, 0, _THREAD),
+        deny,
+        (answer, 0, 0, allow),
+        # The own limits are allowed, and those of other processes are not.
+        (equal, 0, 3, _SET_LIMITS[machine]),
+        (load, 0, 0, first_argument_at),
+        (equal, 1, 0, 0),
+        deny,
         (answer, 0, 0, allow),
     ]
     code = ctypes.create_string_buffer(b"".join(struct.pack("=HBBI", *step) for step in steps))

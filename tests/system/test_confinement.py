@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -88,6 +89,52 @@ def test_what_was_granted_is_allowed(place: Path, expression: str, value: str) -
 @pytest.mark.parametrize("kind", ["AF_INET", "AF_UNIX", "AF_INET, socket.SOCK_DGRAM"])
 def test_no_socket_is_made(place: Path, kind: str) -> None:
     assert attempt(place, f"socket.socket(socket.{kind})") == "PermissionError"
+
+
+filtered = pytest.mark.skipif(
+    sys.platform != "linux" or platform.machine() not in ("x86_64", "aarch64"),
+    reason="the filter of system calls is for Linux on two machines",
+)
+
+
+@filtered
+@pytest.mark.parametrize(
+    "expression",
+    [
+        '(place / "secret").chmod(0o666)',
+        '(place / "clip").chmod(0o666)',
+        'os.fchmod(os.open(place / "clip", os.O_RDONLY), 0o666)',
+        'os.chown(place / "secret", os.getuid(), os.getgid())',
+        'os.utime(place / "secret", (0, 0))',
+        'os.setxattr(place / "secret", b"user.note", b"1")',
+    ],
+)
+def test_rights_owner_and_times_of_files_are_not_changed(place: Path, expression: str) -> None:
+    before = (place / "secret").stat()
+    assert attempt(place, expression) == "PermissionError"
+    assert (place / "secret").stat() == before
+
+
+@filtered
+@pytest.mark.parametrize(
+    "expression",
+    ["os.fork()", 'subprocess.run([sys.executable, "-c", ""])', "os.posix_spawn('/x', ['x'], {})"],
+)
+def test_no_process_is_started_that_would_outlive_the_job(place: Path, expression: str) -> None:
+    assert attempt(place, expression) == "PermissionError"
+
+
+@filtered
+def test_limits_of_other_processes_are_not_changed(place: Path) -> None:
+    limits = '__import__("resource").prlimit({who}, 7, (64, 64))'
+    assert attempt(place, limits.format(who="os.getppid()")) == "PermissionError"
+    assert attempt(place, f"{limits.format(who=0)} is not None") == "True"
+
+
+@filtered
+def test_no_memory_is_kept_that_would_outlive_the_job(place: Path) -> None:
+    kept = '__import__("ctypes").CDLL(None).shmget(0, 4096, 0o600)'
+    assert attempt(place, kept) == "-1"
 
 
 @linux
