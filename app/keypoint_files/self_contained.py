@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import importlib
 import math
+import zlib
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,8 +33,13 @@ MOST_PACKED: Final = 1100
 SMALL: Final = 64 * 1024
 """Bytes of a dataset that may be empty."""
 
-FILTERS: Final = {1: "deflate", 2: "shuffle", 3: "fletcher32", 32000: "LZF"}
-"""Filters that are built into every h5py; others would be loaded as plug-ins."""
+DEFLATE, SHUFFLE, FLETCHER = 1, 2, 3
+
+FILTERS: Final = frozenset({DEFLATE, SHUFFLE, FLETCHER})
+"""Filters that SLEAP uses, built into every HDF5; others would be loaded as plug-ins."""
+
+CHECKSUM: Final = 4
+"""Bytes of Fletcher's checksum, which may be packed with the values."""
 
 
 def require_self_contained(path: Path) -> None:
@@ -138,8 +145,24 @@ class _Check:
         most = stored * (MOST_PACKED if filters else 1)
         if announced > max(most, SMALL) or self._stored > self._file_bytes:
             raise self._refusal(f"{name} announces {announced} bytes and holds {stored}")
+        if DEFLATE in filters:
+            if set(filters[filters.index(DEFLATE) + 1 :]) - {FLETCHER}:
+                raise self._refusal(f"{name} is changed once more after it was packed")
+            each = math.prod(plan.get_chunk()) * kind.get_size()
+            self._require_chunks_of(each + CHECKSUM, dataset, name)
         if self._varies(kind, name):
             self._texts(dataset, shape, count, name)
+
+    def _require_chunks_of(self, most: int, dataset: Any, name: str) -> None:
+        """Refuse chunks that unpack to more: the library would make room for all of it."""
+        places: list[tuple[int, ...]] = []
+        dataset.chunk_iter(lambda chunk: places.append(chunk.chunk_offset))
+        for place in places:
+            _, packed = dataset.read_direct_chunk(place)
+            # What was stored unpacked fails here, and is then as long as it is.
+            with suppress(zlib.error):
+                if len(zlib.decompressobj().decompress(packed, most + 1)) > most:
+                    raise self._refusal(f"a part of {name} unpacks to more than it announces")
 
     def _texts(self, dataset: Any, shape: tuple[int, ...], count: int, name: str) -> None:
         """Count the bytes of texts one by one: thousands may refer to the same megabytes."""

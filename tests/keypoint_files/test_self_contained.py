@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -108,6 +109,23 @@ def much_in_few_bytes(file: Any, secret: Path) -> None:
         file.create_dataset(f"zeros {number}", data=zeros, compression="gzip", chunks=(MANY,))
 
 
+def much_in_a_small_chunk(file: Any, secret: Path) -> None:
+    small = file.create_dataset("small", shape=(100,), dtype="f8", chunks=(100,), compression=4)
+    small.id.write_direct_chunk((0,), zlib.compress(bytes(10_000_000)))
+
+
+def much_in_a_small_chunk_that_is_shuffled(file: Any, secret: Path) -> None:
+    plan = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    plan.set_chunk((100,))
+    plan.set_deflate(4)
+    plan.set_shuffle()
+    space = h5py.h5s.create_simple((100,))
+    small = h5py.h5d.create(file.id, b"shuffled", h5py.h5t.IEEE_F64LE, space, plan)
+    packed = zlib.compress(bytes(10_000_000))
+    packed += bytes(-len(packed) % 8)
+    small.write_direct_chunk((0,), np.frombuffer(packed, dtype="u1").reshape(-1, 8).T.tobytes())
+
+
 MANY = 100_000_000
 
 
@@ -147,6 +165,8 @@ ATTACKS: list[Callable[[Any, Path], None]] = [
     nothing_stored,
     nothing_stored_in_one_piece,
     much_in_few_bytes,
+    much_in_a_small_chunk,
+    much_in_a_small_chunk_that_is_shuffled,
     one_text_many_times,
     a_list_of_texts_as_attribute,
     many_objects,
@@ -172,6 +192,17 @@ def test_the_same_file_without_an_attack_is_read(analysis: Path) -> None:
 def test_circles_of_hard_links_end(analysis: Path) -> None:
     with h5py.File(analysis, "a") as file:
         file["circle/deeper/top"] = file["/"]
+    require_self_contained(analysis)
+
+
+@pytest.mark.parametrize("filters", [{"compression": 9}, {"compression": 9, "shuffle": True}])
+@pytest.mark.parametrize("checksum", [False, True])
+def test_packed_values_of_any_kind_are_read(
+    analysis: Path, filters: dict[str, Any], checksum: bool
+) -> None:
+    with h5py.File(analysis, "a") as file:
+        values = np.random.default_rng(1).random(1000)
+        file.create_dataset("more", data=values, chunks=(300,), fletcher32=checksum, **filters)
     require_self_contained(analysis)
 
 
