@@ -5,10 +5,16 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from pydantic import BaseModel, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
 if TYPE_CHECKING:
     from app.recognition.poses.sequence import FloatArray
+
+Count = Annotated[int, Field(ge=0, lt=2**31)]
+"""A number that every database can keep."""
+
+Line = Annotated[str, AfterValidator(lambda text: text.replace("\0", "\ufffd"))]
+"""A text that every database can keep."""
 
 Pose = tuple[tuple[float, float] | None, ...]
 """A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
@@ -19,16 +25,24 @@ POSE_DIGITS = 4
 """Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
 
 
-class TopicSeen(BaseModel):
+class _Said(BaseModel):
+    """Something that a process says, which a file may have taken over: no infinite numbers."""
+
+    model_config = ConfigDict(allow_inf_nan=False)
+
+
+class TopicSeen(_Said):
     """A topic of a dive recording that a clip can be made of."""
 
-    name: str = Field(description="As in ROS, with its leading slash")
-    type: str = Field(description="Of its messages, such as sensor_msgs/msg/Image")
+    name: Annotated[Line, Field(max_length=255)] = Field(
+        description="As in ROS, with its leading slash"
+    )
+    type: Line = Field(description="Of its messages, such as sensor_msgs/msg/Image")
     use: Literal["pictures", "keypoints"]
-    messages: int
+    messages: Count
     duration: float = Field(description="Seconds from its first message to its last")
-    width: int = Field(description="Pixels of the upright picture")
-    height: int
+    width: Count = Field(description="Pixels of the upright picture")
+    height: Count
 
     @property
     def frames(self) -> int:
@@ -36,18 +50,18 @@ class TopicSeen(BaseModel):
         return self.messages
 
 
-class Probed(BaseModel):
+class Probed(_Said):
     """Facts that a file states about its clip (`app.clip_sources.ClipFacts`)."""
 
     kind: Literal["probed"] = "probed"
-    width: int
-    height: int
+    width: Count
+    height: Count
     duration: float | None
-    frames: int | None
+    frames: Count | None
     topics: tuple[TopicSeen, ...] = ()
 
 
-class Progressed(BaseModel):
+class Progressed(_Said):
     """Progress of the work, and the newest pose.
 
     Attributes
@@ -64,27 +78,27 @@ class Progressed(BaseModel):
     """
 
     kind: Literal["progressed"] = "progressed"
-    stage: str
-    done: int
-    total: int
+    stage: Annotated[str, Field(max_length=32)]
+    done: Count
+    total: Count
     time: float | None = None
     pose: Pose | None = None
 
 
-class Finished(BaseModel):
+class Finished(_Said):
     """The recording is on disk."""
 
     kind: Literal["finished"] = "finished"
-    frames: int
-    warnings: tuple[str, ...]
+    frames: Count
+    warnings: tuple[Line, ...]
 
 
-class Failed(BaseModel):
+class Failed(_Said):
     """The clip or language file cannot be used; `pointer` is the place of the fault in the file."""
 
     kind: Literal["failed"] = "failed"
-    code: str
-    detail: str
+    code: Annotated[str, Field(pattern="^[a-z_]{1,64}$")]
+    detail: Line
     pointer: str | None = None
 
 

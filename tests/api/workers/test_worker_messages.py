@@ -30,7 +30,30 @@ def test_a_message_is_one_line_and_comes_back(message: Message) -> None:
     assert parse(line.encode()) == message
 
 
-@pytest.mark.parametrize("line", [b"", b"{", b"{}", b'{"kind": "hello"}', b'{"kind": "failed"}'])
+@pytest.mark.parametrize(
+    "line",
+    [
+        b"",
+        b"{",
+        b"{}",
+        b'{"kind": "hello"}',
+        b'{"kind": "failed"}',
+        # What no database or no browser could take.
+        b'{"kind": "failed", "code": "<b>", "detail": ""}',
+        b'{"kind": "finished", "frames": 2147483648, "warnings": []}',
+        b'{"kind": "finished", "frames": -1, "warnings": []}',
+        b'{"kind": "probed", "width": -1, "height": 48, "duration": null, "frames": 3}',
+        b'{"kind": "probed", "width": 64, "height": 48, "duration": Infinity, "frames": 3}',
+        b'{"kind": "progressed", "stage": "poses", "done": 1, "total": 9, "time": NaN}',
+        b'{"kind": "progressed", "stage": "poses", "done": 1, "total": 9, "pose": [[0, NaN]]}',
+    ],
+)
 def test_what_is_no_message_is_an_error(line: bytes) -> None:
     with pytest.raises(ValueError, match="validation error"):
         parse(line)
+
+
+def test_a_text_is_one_that_every_database_takes() -> None:
+    said = parse(rb'{"kind": "failed", "code": "decoder", "detail": "topic /a\u0000b is empty"}')
+    assert isinstance(said, Failed)
+    assert said.detail == "topic /a\ufffdb is empty"
