@@ -93,7 +93,7 @@ def test_what_is_there_is_never_overwritten(kept: Path, tmp_path: Path) -> None:
 def test_what_is_no_backup_is_said_so(tmp_path: Path) -> None:
     other = tmp_path / "other.zip"
     other.write_bytes(b"no zip")
-    for source in (other, tmp_path / "absent.zip"):
+    for source in (other, tmp_path / "absent.zip", tmp_path):
         with pytest.raises(OsgError, match=r"other\.zip is no backup|cannot read"):
             restore_backup(source, tmp_path / "new")
 

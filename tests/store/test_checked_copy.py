@@ -20,6 +20,7 @@ from app.recognition.errors import OsgError
 from app.store import Clip, ClipStore, Database, LanguageStore
 from app.store.backup import DATABASE, restore_backup, write_backup
 from app.store.models import new_id
+from tests.postgres import Cluster
 from tests.store.conftest import add_clip
 from tests.store.new_database import put_database
 
@@ -70,6 +71,11 @@ STATEMENTS = [
     "UPDATE clip SET created = 'yesterday'",
     "UPDATE clip SET topics = '{'",
     "UPDATE clip SET topics = '{}'",
+    "UPDATE clip SET topics = '[1, {}]'",
+    "UPDATE clip SET media_type = 'text/html'",
+    "UPDATE clip SET media_type = 'video/mp4' || char(10) || 'Set-Cookie: a=b'",
+    "UPDATE clip SET frames = 9223372036854775807",
+    "UPDATE job SET warnings = '[1, {}]'",
     "UPDATE clip SET options = '{\"unknown\": 1}'",
     "UPDATE clip SET name = x'00ff'",
     "UPDATE clip SET size = -1000000",
@@ -127,6 +133,19 @@ def test_nothing_of_the_received_tables_is_kept_but_the_values(kept: Path, tmp_p
         assert named.fetchall() == []
         assert connection.execute("PRAGMA user_version").fetchone() == (0,)
     assert not list(folder.glob("studio.db-*"))
+
+
+@pytest.mark.parametrize("name", ["char(0)", "printf('%.*c', 300, 'x')"])
+def test_a_text_that_postgresql_does_not_take_is_refused(
+    kept: Path, tmp_path: Path, postgres: Cluster, name: str
+) -> None:
+    hostile = changed(kept, lambda connection: connection.execute(f"UPDATE clip SET name = {name}"))
+    url, folder = postgres.new_database(), tmp_path / "new"
+    with pytest.raises(OsgError, match="the database in the backup holds values") as refused:
+        restore_backup(hostile, folder, url=url)
+    assert "\n" not in str(refused.value)
+    assert not (folder / "clips").exists()
+    assert restore_backup(kept, folder, url=url) == 1
 
 
 def test_files_without_a_clip_are_refused(kept: Path, tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
-from sqlalchemy.exc import ProgrammingError
+from sqlalchemy.exc import DataError, ProgrammingError
 
 from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
@@ -260,7 +260,14 @@ def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None
         for database in (source, target):
             database.migrate()
         with source.reading() as rows, target.writing() as written:
-            copy_rows(rows, written)
+            try:
+                copy_rows(rows, written)
+            except DataError as error:
+                reason = " ".join(str(error.orig).split())
+                raise OsgError(
+                    f"the database in the backup holds values that this one does not take "
+                    f"({reason}); restore it into a data folder"
+                ) from error
             # Before the rows are committed, because no row may refer to a missing file.
             place_clips()
 
@@ -347,7 +354,7 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
                 if name != DATABASE and not _CLIP_FILE.fullmatch(name):
                     raise OsgError(f"{source.name} holds {name[:80]!r}, which no backup does")
             yield archive, digests
-    except FileNotFoundError as error:
+    except (FileNotFoundError, IsADirectoryError) as error:
         raise OsgError(f"cannot read {source}: {error.strerror}") from error
     except OsgError:
         raise

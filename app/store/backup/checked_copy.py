@@ -16,10 +16,11 @@ from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any, Final
 
+from pydantic import TypeAdapter
 from sqlalchemy import Boolean, Column, Float, Integer, String, select
 from sqlmodel import AutoString, SQLModel
 
-from app.clip_sources import SOURCES, ReadOptions
+from app.clip_sources import SOURCES, ClipTopic, ReadOptions
 from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
 from app.store.clip_folder import CLIP_ID
@@ -29,6 +30,12 @@ from app.store.models import Clip, UtcDateTime, now
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
 
+_MOST: Final = 2**53 - 1
+"""Largest integer that browsers read unchanged."""
+
+_VIDEO_TYPE: Final = re.compile(r"video/[a-z0-9-]{1,40}")
+_STRINGS: Final = TypeAdapter(tuple[str, ...])
+_TOPICS: Final = TypeAdapter(tuple[ClipTopic, ...])
 _REVISION: Final = re.compile(r"\d{4}")
 _READING: Final = frozenset({sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA})
 _OF_SQLITE: Final = "sqlite_"
@@ -146,7 +153,7 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
         case Float():
             return isinstance(value, int | float) and math.isfinite(value)
         case Integer():
-            return isinstance(value, int) and value >= 0
+            return isinstance(value, int) and 0 <= value <= _MOST
         case String() | AutoString():
             if not isinstance(value, str):
                 return False
@@ -155,6 +162,10 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
             place = f"{column.table.name}.{column.name}"
             return place not in _TEXTS or _TEXTS[place](value)
     return False
+
+
+def _is_json_as(kind: TypeAdapter[Any]) -> Callable[[str], bool]:
+    return lambda text: kind.validate_json(text) is not None
 
 
 def _is_json_of(kind: type) -> Callable[[str], bool]:
@@ -168,14 +179,16 @@ def _is_options(text: str) -> bool:
 
 _TEXTS: Final[dict[str, Callable[[str], bool]]] = {
     "clip.source": lambda text: text in {source.name for source in SOURCES},
-    "clip.topics": _is_json_of(list),
+    # As another type, a player would show the file as a page.
+    "clip.media_type": lambda text: _VIDEO_TYPE.fullmatch(text) is not None,
+    "clip.topics": _is_json_as(_TOPICS),
     "clip.options": _is_options,
-    "job.warnings": _is_json_of(list),
-    "language_revision.labels": _is_json_of(list),
+    "job.warnings": _is_json_as(_STRINGS),
+    "language_revision.labels": _is_json_as(_STRINGS),
     "language_revision.document": _is_json_of(dict),
     "recognition.result": _is_json_of(dict),
 }
-"""Checks of the texts that become paths or are parsed; they may raise ValueError."""
+"""Checks of the texts that become paths or headers or are parsed; they may raise ValueError."""
 
 
 def _shown(value: object) -> str:
