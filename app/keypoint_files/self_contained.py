@@ -38,6 +38,9 @@ DEFLATE, SHUFFLE, FLETCHER = 1, 2, 3
 FILTERS: Final = frozenset({DEFLATE, SHUFFLE, FLETCHER})
 """Filters that SLEAP uses, built into every HDF5; others would be loaded as plug-ins."""
 
+PLACE: Final = 16
+"""Bytes of a file that say where a text is, which the library counts as 8."""
+
 CHECKSUM: Final = 4
 """Bytes of Fletcher's checksum, which may be packed with the values."""
 
@@ -148,7 +151,7 @@ class _Check:
         if DEFLATE in filters:
             if set(filters[filters.index(DEFLATE) + 1 :]) - {FLETCHER}:
                 raise self._refusal(f"{name} is changed once more after it was packed")
-            each = math.prod(plan.get_chunk()) * kind.get_size()
+            each = math.prod(plan.get_chunk()) * max(kind.get_size(), PLACE)
             self._require_chunks_of(each + CHECKSUM, dataset, name)
         if self._varies(kind, name):
             self._texts(dataset, shape, count, name)

@@ -203,6 +203,9 @@ def test_packed_values_of_any_kind_are_read(
     with h5py.File(analysis, "a") as file:
         values = np.random.default_rng(1).random(1000)
         file.create_dataset("more", data=values, chunks=(300,), fletcher32=checksum, **filters)
+        texts = np.array(["nose", "left wrist"], dtype=h5py.string_dtype())
+        file.create_dataset("texts", data=texts, chunks=(2,), **filters)
+        file.create_dataset("none", shape=(0,), dtype="f8", chunks=(300,), maxshape=(None,))
     require_self_contained(analysis)
 
 
