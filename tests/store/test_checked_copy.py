@@ -148,6 +148,14 @@ def test_a_text_that_postgresql_does_not_take_is_refused(
     assert restore_backup(kept, folder, url=url) == 1
 
 
+def test_what_a_killed_restore_has_left_is_removed(kept: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "new"
+    (folder / ".restoring-killed").mkdir(parents=True)
+    (folder / ".restoring-killed" / DATABASE).write_text("all rows")
+    assert restore_backup(kept, folder) == 1
+    assert sorted(path.name for path in folder.iterdir()) == ["clips", DATABASE]
+
+
 def test_files_without_a_clip_are_refused(kept: Path, tmp_path: Path) -> None:
     statement = "DELETE FROM job; DELETE FROM clip"
     hostile = changed(kept, lambda connection: connection.executescript(statement))

@@ -38,6 +38,7 @@ DATABASE = "studio.db"
 MANIFEST = "manifest.json"
 
 _CLIP_FILE = re.compile(r"clips/[0-9a-f]{32}/[a-z]{1,16}(\.[a-z]{1,5})?")
+_RESTORING = ".restoring-"
 _PIECE = 1024 * 1024
 _BINARY = getattr(os, "O_BINARY", 0)  # Windows would change line breaks.
 
@@ -144,9 +145,11 @@ def restore_backup(
     clips = clips or data_dir / "clips"
     if clips.is_dir() and any(clips.iterdir()):
         raise OsgError(f"{clips} is not empty; restore into an empty folder")
+    for killed in data_dir.glob(f"{_RESTORING}*"):  # It holds a whole library.
+        shutil.rmtree(killed, ignore_errors=True)
     with (
         _open_backup(source) as (archive, digests),
-        tempfile.TemporaryDirectory(prefix=".restoring-", dir=data_dir) as scratch,
+        tempfile.TemporaryDirectory(prefix=_RESTORING, dir=data_dir) as scratch,
     ):
         folder = Path(scratch)
         checked = _unpack_checked(archive, digests, folder, source.name)
