@@ -160,10 +160,10 @@ def test_uploads_to_two_servers_at_the_same_time_share_one_quota(
 ) -> None:
     together = Barrier(2)
 
-    def add(store: ClipStore, *clip: Any) -> Any:
+    def add(store: ClipStore, *clip: Any, **upload: Any) -> Any:
         # Both uploads passed the first check of the quota, which has room for one clip.
         together.wait(60)
-        return add_clip(store, *clip)
+        return add_clip(store, *clip, **upload)
 
     add_clip = ClipStore.add
     monkeypatch.setattr(ClipStore, "add", add)

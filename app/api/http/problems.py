@@ -158,15 +158,7 @@ def problem_of(error: Exception) -> ProblemError:
                 current_revision=error.current,
             )
         case QuotaExceeded():
-            return ProblemError(
-                413 if error.alone else 507,
-                "quota_exceeded",
-                str(error),
-                # The rest of a body stays unread, so the connection cannot be used again.
-                headers={"Connection": "close"},
-                used={"clips": error.usage.clips, "bytes": error.usage.bytes},
-                limit=error.limit,
-            )
+            return _convert_quota(error)
         case StoreError():
             headers = {"Retry-After": RETRY_SECONDS}
             return ProblemError(503, "store_unavailable", str(error), headers=headers)
@@ -180,6 +172,21 @@ def problem_of(error: Exception) -> ProblemError:
         "internal",
         "the server met an error that it does not know; its log has the details",
     )
+
+
+def _convert_quota(error: QuotaExceeded) -> ProblemError:
+    problem = ProblemError(
+        507,
+        "quota_exceeded",
+        str(error),
+        # The rest of a body stays unread, so the connection cannot be used again.
+        headers={"Connection": "close"},
+        used={"clips": error.usage.clips, "bytes": error.usage.bytes},
+        limit=error.limit,
+    )
+    if error.alone:  # No deletion helps.
+        problem.status_code = 413
+    return problem
 
 
 def _convert_recognition_error(error: OsgError) -> ProblemError:

@@ -312,9 +312,9 @@ def test_uploads_at_the_same_time_share_one_quota(
 ) -> None:
     store = guarded.studio.clips.add
 
-    def store_slowly(*clip: Any) -> Any:
+    def store_slowly(*clip: Any, **upload: Any) -> Any:
         time.sleep(0.2)
-        return store(*clip)
+        return store(*clip, **upload)
 
     monkeypatch.setattr(guarded.studio.clips, "add", store_slowly)
     with (
