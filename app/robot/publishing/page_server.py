@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import socket
 import threading
 import time as clock
@@ -19,6 +20,9 @@ milliseconds, so an old connection is one that sends nothing."""
 MOST_SECONDS: Final = 20.0
 """Longest time of one connection, which carries one request: enough for a language of some hundred
 kilobytes over a slow tether."""
+
+HOST: Final = re.compile(r"[\w.:\[\]-]+", re.ASCII)
+"""Characters of a host header: of addresses, names and ports, and of no user."""
 
 LOCAL_ENDINGS: Final = (".local", ".localhost", ".lan", ".internal", ".home.arpa")
 """Endings of names that only a local network gives, and no stranger on the internet."""
@@ -95,6 +99,8 @@ def is_own_host(host: str | None) -> bool:
     """
     if host is None:
         return True
+    if not HOST.fullmatch(host):
+        return False
     try:
         name = (urlsplit(f"//{host}").hostname or "").rstrip(".")
     except ValueError:

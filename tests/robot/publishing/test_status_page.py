@@ -114,6 +114,8 @@ def test_a_robot_that_waits_says_for_what_and_is_well(page: StatusPage) -> None:
         ("192.168.2.2.evil.example:9850", 403),
         ("local.evil.example", 403),
         ("evil.example.", 403),
+        ("evil@127.0.0.1", 403),
+        ("127.0.0.1/evil", 403),
         ("[", 403),
         ("", 403),
     ],
