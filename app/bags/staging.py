@@ -39,6 +39,10 @@ ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 """File endings by which rosbags recognises the two storages."""
 
 
+ODD = frozenset("%?#")
+"""Characters of a path by which SQLite, which is given an address, reads another place."""
+
+
 @contextmanager
 def stage(path: Path) -> Iterator[Path]:
     """Yield the path from which a recording can be read; unpacked files are removed at the end.
@@ -52,11 +56,16 @@ def stage(path: Path) -> Iterator[Path]:
     kind = _known_kind(path)
     if kind == "folder":
         _require_plain([each.name for each in path.iterdir()], path.name)
-        yield path
-        return
+        if not set(str(path.resolve())) & ODD:
+            yield path
+            return
     with tempfile.TemporaryDirectory(prefix="bag-") as made:
         folder = Path(made)
-        if kind == "zip":
+        if kind == "folder":
+            place = folder / "recording"
+            place.symlink_to(path.resolve(), target_is_directory=True)
+            yield place
+        elif kind == "zip":
             yield _unpack(path, folder)
         else:
             place = folder / f"recording{ENDINGS[kind]}"
@@ -139,7 +148,7 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
 
 def _require_plain(files: Iterable[str], name: str) -> None:
     """Refuse names that SQLite, which is given an address, reads as another place."""
-    if odd := [each for each in files if _belongs(each) and set(each) & set("%?#")]:
+    if odd := [each for each in files if _belongs(each) and set(each) & ODD]:
         raise BagError(
             f"{name} has a file with %, ? or # in its name ({odd[0][:80]!r}); rename it, there and "
             f"in {METADATA}"

@@ -159,6 +159,16 @@ def test_a_name_that_sqlite_reads_as_another_place_opens_nothing(tmp_path: Path)
         pytest.fail(f"opened a recording of {[topic.name for topic in bag.topics]}")
 
 
+def test_a_folder_that_sqlite_reads_as_another_one_is_read_itself(tmp_path: Path) -> None:
+    for place, text in (("dives", "another one"), ("own", "own")):
+        said = message("std_msgs/msg/String", text)
+        (tmp_path / place).mkdir()
+        write_bag(tmp_path / place / "dive", [("/said", said, START)], "sqlite3")
+    folder = (tmp_path / "own").rename(tmp_path / "%64ives") / "dive"
+    with open_bag(folder) as bag:
+        assert [each.content.data for each in bag.messages("/said")] == ["own"]
+
+
 @pytest.mark.withstands(row="H28")
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_metadata_that_names_files_elsewhere_opens_nothing(
