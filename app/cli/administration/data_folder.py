@@ -61,7 +61,7 @@ def audit_of(settings: Settings) -> Iterator[Callable[[str, str], None]]:
     def note(command: str, about: str) -> None:
         entry = AuditEntry(
             name=COMMAND_LINE,
-            role=Role.ADMIN.value,
+            role=str(Role.ADMIN),
             address="local",
             method=command,
             path=about[:LONGEST_ABOUT],
