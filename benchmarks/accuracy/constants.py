@@ -32,7 +32,11 @@ from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
 from benchmarks.sets.one_shot_draws import Draw, draws
-from benchmarks.sets.recorded_sets import RecordedSet
+from benchmarks.sets.recorded_sets import SETS, RecordedSet
+from benchmarks.sets.simulated_bodies import CARRIED
+
+CHOSEN_ON = (*SETS, "utd_other", "utkinect", *CARRIED)
+"""The sets that the shipped constants were chosen on; the default."""
 
 ROUNDS, STEP = 200, 0.3
 """Steps of the exponentiated gradient, and their length."""
@@ -286,7 +290,7 @@ def main() -> None:
     parser = set_arguments(__doc__, draws=10, queries=40)
     parser.add_argument("--subject", choices=("voters", "rejection"), default="voters")
     given = parser.parse_args()
-    sets = list(all_sets(given.data / "trajectories", given.sets))
+    sets = list(all_sets(given.data / "trajectories", given.sets or CHOSEN_ON))
     if given.subject == "voters":
         print_voters({each.name: [*compare(each, given)] for each in sets})
     else:

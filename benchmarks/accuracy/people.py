@@ -1,31 +1,91 @@
-"""Accuracy on people not used for tuning, beside plain DTW of positions and of velocities.
+"""Accuracy on other people, with one person's demonstrations and with several people's.
 
-Each gesture has one demonstration, all by one person; queries are by the same person (UD) or by
-everybody else (UI). `nearest` is the share of queries whose nearest gesture is the right one,
-`refused` the share of these that the shipped thresholds reject; the interval is Wilson's.
+Columns of a set's table: `same person` and `another` have one take of each class by one person, and
+queries by that person (by anybody where people are not known) and by everybody else. The other
+columns (one take or two by one person, one take each by two, three and five people) share their
+queries, which are by people who show nothing, or by anybody where people are not known. Rows:
+
+- `nearest`: share of takes whose nearest gesture is right; plain DTW of positions, of velocities
+  and of both stands beside it;
+- `right rejected`: share of right nearest gestures that are rejected all the same;
+- `half: ...`: the same where a random half of the classes is the language, and of what it lacks
+  the share that is accepted: takes of the other classes (`near`), and, for whole bodies, movements
+  of people who do not sign (`far`);
+- asking back, whether or not a take is rejected: the answer has every gesture whose score is at
+  most `--ratio` times the best one. `wrong alone` is the share of wrong nearest gestures that are
+  the whole answer.
+
+Shares are of all draws together; the interval is Wilson's, which does not know that takes of one
+draw share demonstrations. ``--json`` also has every draw's counts, so that two versions of the
+recogniser can be compared draw by draw.
 
     python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
 """
 
 from __future__ import annotations
 
+import json
+from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from app.evaluation.proportion import Share
-from app.recognition import Language, PoseError, PoseSequence, Recognition, Recognizer
+from app.recognition import (
+    Gesture,
+    GestureError,
+    Language,
+    PoseError,
+    PoseSequence,
+    Recognition,
+    Recognizer,
+)
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
-from benchmarks.sets.one_shot_draws import Draw, draws
+from benchmarks.sets.one_shot_draws import Draw, SeveralPeople, draw_several, draws
 from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
 from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
-from benchmarks.sets.whole_body_sets import ARM_CLASSES, whole_body_sets
+from benchmarks.sets.whole_body_sets import ARM_CLASSES, far_movements, whole_body_sets
+
+SHOWN = {
+    "1 person": (1, 1),
+    "2 takes": (1, 2),
+    "2 people": (2, 1),
+    "3 people": (3, 1),
+    "5 people": (5, 1),
+}
+"""Who shows every gesture of a language: number of people, and of takes by each."""
+
+COLUMNS = ("same person", "another", *SHOWN)
+
+SIZE = "size of answer"
+"""The measure that is a mean, not a share."""
+
+MEASURES = (
+    "nearest",
+    "DTW positions",
+    "DTW velocities",
+    "DTW of both",
+    "right rejected",
+    "half: right rejected",
+    "half: near accepted",
+    "half: far accepted",
+    "wrong alone",
+    "right in answer",
+    SIZE,
+)
+"""Rows of the table."""
+
+RATIO = 1.14
+"""A gesture belongs to the answer if its score is at most this times the best one."""
 
 STEPS, BAND = 32, 8
 """Steps that a recording is resampled to in time, and the band of DTW in steps."""
@@ -33,7 +93,11 @@ STEPS, BAND = 32, 8
 MOVING = ("elbow", "wrist", "hand", "hand_tip", "thumb", "index")
 """Parts of the body that plain DTW follows."""
 
-Name = Callable[[PoseSequence], Recognition | str | None]
+Found = Iterator[tuple[str, int]]
+"""Measures of one query: name and value, 0 or 1, or the size of the answer."""
+
+Counts = dict[tuple[str, str], dict[int, list[int]]]
+"""Values of a set by column and measure, by number of the draw."""
 
 
 def positions(poses: PoseSequence) -> FloatArray:
@@ -60,68 +124,231 @@ def velocities(poses: PoseSequence) -> FloatArray:
     return np.asarray(speed / max(float(np.sqrt((speed**2).mean())), 1e-9))
 
 
-def plain_dtw(
-    describe: Callable[[PoseSequence], FloatArray], templates: Sequence[PoseSequence]
-) -> Callable[[PoseSequence], FloatArray]:
-    """Return a function that measures the distances to all templates, over their median."""
-    references = np.stack([describe(each) for each in templates])
-    between = [dtw_distances(each, references, BAND) for each in references]
-    typical = float(np.median(np.array(between)[np.triu_indices(len(references), 1)]))
-    return lambda poses: dtw_distances(describe(poses), references, BAND) / typical
+def plain_dtw(templates: Sequence[PoseSequence]) -> Callable[[PoseSequence], dict[str, FloatArray]]:
+    """Return a function that measures a take's distances to all templates, by method.
+
+    Distances are over their median between templates.
+    """
+
+    def measured(
+        describe: Callable[[PoseSequence], FloatArray],
+    ) -> Callable[[PoseSequence], FloatArray]:
+        references = np.stack([describe(each) for each in templates])
+        between = [dtw_distances(each, references, BAND) for each in references]
+        typical = float(np.median(np.array(between)[np.triu_indices(len(references), 1)]))
+        return lambda poses: dtw_distances(describe(poses), references, BAND) / typical
+
+    of_positions, of_velocities = measured(positions), measured(velocities)
+
+    def compare(poses: PoseSequence) -> dict[str, FloatArray]:
+        place, speed = of_positions(poses), of_velocities(poses)
+        return {"DTW positions": place, "DTW velocities": speed, "DTW of both": place + speed}
+
+    return compare
 
 
-def score(recorded: RecordedSet, chosen: Draw) -> Iterator[tuple[str, str, Share, Share]]:
-    """Yield method, relation, share of right nearest gestures, and share rejected among these."""
-    templates = [recorded.recordings[index] for index in chosen.templates]
-    labels = [str(recorded.labels[index]) for index in chosen.templates]
-    language = Language(recorded.name, list(map(gesture_of, labels, templates)))
-    full = Recognizer(language, "full")
-    plain = {
-        "DTW positions": plain_dtw(positions, templates),
-        "DTW velocities": plain_dtw(velocities, templates),
-    }
-    for relation, queries in (("UD", chosen.own), ("UI", chosen.others)):
-        for query in queries:
-            poses, label = recorded.recordings[query], str(recorded.labels[query])
-            compared = {name: distances(poses) for name, distances in plain.items()}
-            compared["DTW of both"] = np.asarray(sum(compared.values()))
-            for name, distances in compared.items():
-                yield name, relation, Share(labels[distances.argmin()] == label, 1), Share(0, 0)
-            try:
-                result = full.recognize(poses)
-            except PoseError:
-                yield "full", relation, Share(0, 1), Share(0, 0)
-                continue
-            right = result.nearest == label
-            refused = Share(result.label is None, 1) if right else Share(0, 0)
-            yield "full", relation, Share(right, 1), refused
+def define(recorded: RecordedSet, takes: Sequence[int]) -> Gesture:
+    """Make a gesture of one take or several, with the people who show them."""
+    first, *others = takes
+    diver = str(recorded.people[first])
+    gesture = replace(
+        gesture_of(str(recorded.labels[first]), recorded.recordings[first]), diver=diver
+    )
+    for take in others:
+        poses, diver = recorded.recordings[take], str(recorded.people[take])
+        try:
+            gesture = gesture.with_demonstration(poses, diver=diver)
+        except GestureError:
+            gesture = gesture.with_demonstration(poses, diver=diver, salient=poses.landmarks)
+    return gesture
+
+
+def judge(result: Recognition | None, label: str, ratio: float) -> Found:
+    """Yield what a take of a gesture of the language tells; None: it cannot be compared."""
+    right = result is not None and result.nearest == label
+    yield "nearest", right
+    if result is None:
+        return
+    if right:
+        yield "right rejected", result.label is None
+    bound = ratio * float(result.scores.min())
+    answer = [
+        name for name, score in zip(result.gestures, result.scores, strict=True) if score <= bound
+    ]
+    if not right:
+        yield "wrong alone", len(answer) == 1
+    yield "right in answer", label in answer
+    yield SIZE, len(answer)
+
+
+def judge_half(result: Recognition | None, label: str, language: Language) -> Found:
+    """Yield what a take tells whose gesture the language may lack."""
+    accepted = result is not None and result.label is not None
+    if label not in language.labels:
+        yield "half: near accepted", accepted
+    elif result is not None and result.nearest == label:
+        yield "half: right rejected", not accepted
+
+
+def recognize(
+    recognizer: Recognizer, recorded: RecordedSet, queries: npt.NDArray[np.intp]
+) -> Iterator[tuple[Recognition | None, str]]:
+    """Yield the result of each query, None where nothing can be compared, and its class."""
+    for query in queries:
+        result = None
+        with suppress(PoseError):
+            result = recognizer.recognize(recorded.recordings[query])
+        yield result, str(recorded.labels[query])
+
+
+def score(
+    recorded: RecordedSet,
+    rows: Sequence[Sequence[int]],
+    recognizer: Recognizer,
+    queries: npt.NDArray[np.intp],
+    ratio: float,
+) -> Found:
+    """Yield the measures of queries to a language that has all classes.
+
+    Parameters
+    ----------
+    recorded
+        The set.
+    rows
+        Per gesture its takes.
+    recognizer
+        Of these gestures.
+    queries
+        Indices of recordings.
+    ratio
+        See `RATIO`.
+
+    """
+    for result, label in recognize(recognizer, recorded, queries):
+        yield from judge(result, label, ratio)
+    taken = [take for row in rows for take in row]
+    compare = plain_dtw([recorded.recordings[take] for take in taken])
+    for query in queries:
+        for method, distances in compare(recorded.recordings[query]).items():
+            nearest = recorded.labels[taken[int(distances.argmin())]]
+            yield method, bool(nearest == recorded.labels[query])
+
+
+def score_half(
+    recorded: RecordedSet, recognizer: Recognizer, several: SeveralPeople, far: RecordedSet
+) -> Found:
+    """Yield the measures of queries, and of as many far movements, to a language of a half."""
+    for result, label in recognize(recognizer, recorded, several.queries):
+        yield from judge_half(result, label, recognizer.language)
+    if is_of_bodies(recorded):
+        order = np.random.default_rng(several.queries).permutation(len(far.recordings))
+        for result, _ in recognize(recognizer, far, order[: len(several.queries)]):
+            yield "half: far accepted", result is not None and result.label is not None
+
+
+def is_of_bodies(recorded: RecordedSet) -> bool:
+    """Return whether the torso is seen."""
+    return recorded.recordings[0].torso_length() is not None
+
+
+def count_people(recorded: RecordedSet) -> int | None:
+    """Return how many people there are takes of, None where they are not known."""
+    count = len(np.unique(recorded.people))
+    return count if count > 1 else None
+
+
+def measure(
+    recorded: RecordedSet, chosen: Draw, several: SeveralPeople, far: RecordedSet, ratio: float
+) -> Iterator[tuple[str, str, int]]:
+    """Yield column, measure and value of every query of one draw."""
+    for column, (people, takes) in SHOWN.items():
+        if people > len(several.takes):
+            continue
+        rows = several.rows(people, takes)
+        gestures = [define(recorded, row) for row in rows]
+        whole = Recognizer(Language(recorded.name, gestures), "full")
+        asked = {column: several.queries}
+        if (people, takes) == (1, 1):
+            asked |= {"same person": chosen.own, "another": chosen.others}
+        for of_column, queries in asked.items():
+            for name, value in score(recorded, rows, whole, queries, ratio):
+                yield of_column, name, value
+        kept = [gesture for gesture in gestures if gesture.label in several.half]
+        half = Recognizer(Language(recorded.name, kept), "full")
+        for name, value in score_half(recorded, half, several, far):
+            yield column, name, value
+
+
+def summarize(name: str, by_draw: Sequence[Sequence[int]]) -> dict[str, Any]:
+    """Return a measure as plain JSON types, with sum and number of values of every draw."""
+    counts = [[sum(values), len(values)] for values in by_draw]
+    total, asked = np.sum(counts, axis=0).tolist()
+    whole = {"mean": total / asked} if name == SIZE else Share(total, asked).to_dict()
+    return {**whole, "asked": asked, "draws": counts}
+
+
+def print_table(recorded: RecordedSet, found: Counts) -> None:
+    """Print one line a measure, one column for each way to show the gestures."""
+    for name in MEASURES:
+        cells = []
+        for column in COLUMNS:
+            values = [value for of_draw in found[column, name].values() for value in of_draw]
+            share = str(Share(sum(values), len(values))) if name != SIZE else "-"
+            cells.append(f"{np.mean(values):.2f}" if name == SIZE and values else share)
+        print(f"{recorded.name:16} {name:21}" + "".join(f"{cell:>19}" for cell in cells))
+    numbers = [
+        sum(len(of_draw) for of_draw in found[column, "nearest"].values()) for column in COLUMNS
+    ]
+    people = count_people(recorded) or "unknown"
+    print(
+        f"{recorded.name:16} {f'takes, {people} people':21}"
+        + "".join(f"{number:>19}" for number in numbers),
+        flush=True,
+    )
 
 
 def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]:
     """Yield the recorded sets of hands and of whole bodies, and hands' paths carried by bodies."""
     wanted = [*SETS, *ARM_CLASSES, *CARRIED] if names is None else names
     yield from recorded_sets(folder, [name for name in wanted if name in SETS])
-    for recorded in whole_body_sets(folder) if set(wanted) & set(ARM_CLASSES) else ():
-        if recorded.name in wanted:
-            yield recorded
+    yield from whole_body_sets(folder, [name for name in wanted if name in ARM_CLASSES])
     yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
 
 
 def main() -> None:
-    """Print one line per set, method and relation."""
+    """Print the table of every set, and write the JSON file after each."""
     parser = set_arguments(__doc__, draws=8, queries=60)
+    parser.add_argument("--ratio", type=float, default=RATIO, help="of scores in one answer")
+    parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
     given = parser.parse_args()
-    for recorded in all_sets(given.data / "trajectories", given.sets):
-        right: dict[tuple[str, str], Share] = {}
-        refused: dict[tuple[str, str], Share] = {}
-        for chosen in draws(recorded, given.draws, given.queries, given.seed):
-            for method, relation, nearest, rejected in score(recorded, chosen):
-                key = method, relation
-                right[key] = right.get(key, Share(0, 0)) + nearest
-                refused[key] = refused.get(key, Share(0, 0)) + rejected
-        for (method, relation), share in right.items():
-            note = f"  refused {refused[method, relation]}" if method == "full" else ""
-            print(f"{recorded.name:10} {relation} {method:15} {share}{note}", flush=True)
+    folder = given.data / "trajectories"
+    far = far_movements(folder)
+    most = max(people for people, _ in SHOWN.values())
+    report: dict[str, Any] = {
+        "arguments": {name: getattr(given, name) for name in ("draws", "queries", "seed", "ratio")},
+        "sets": {},
+    }
+    print(f"{'set':16} {'':21}" + "".join(f"{column:>19}" for column in COLUMNS), flush=True)
+    for recorded in all_sets(folder, given.sets):
+        found: Counts = defaultdict(lambda: defaultdict(list))
+        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
+            several = draw_several(recorded, chosen, most, given.queries, given.seed + number)
+            for column, name, value in measure(recorded, chosen, several, far, given.ratio):
+                found[column, name][number].append(int(value))
+        print_table(recorded, found)
+        measured: dict[str, dict[str, Any]] = defaultdict(dict)
+        for (column, name), by_draw in found.items():
+            if by_draw:
+                in_order = [by_draw.get(number, []) for number in range(given.draws)]
+                measured[column][name] = summarize(name, in_order)
+        report["sets"][recorded.name] = {
+            "people": count_people(recorded),
+            "recordings": len(recorded.recordings),
+            "classes": len(np.unique(recorded.labels)),
+            "measured": measured,
+        }
+        if given.json:
+            given.json.write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -66,8 +66,8 @@ def measure(folder: Path, name: str, draw: int, queries: int, seed: int) -> dict
 
 
 def _load(folder: Path, name: str, turn: float) -> RecordedSet:
-    sets = whole_body_sets(folder, turn, depth=DEPTH_ERROR)
-    return next(each for each in sets if each.name == name)
+    (recorded,) = whole_body_sets(folder, [name], turn, depth=DEPTH_ERROR)
+    return recorded
 
 
 def _nearest(recognizer: Recognizer, poses: PoseSequence) -> str | None:

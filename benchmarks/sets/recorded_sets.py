@@ -53,16 +53,16 @@ def recorded_sets(folder: Path, names: Collection[str] | None = None) -> Iterato
     `names`: only these; None: all.
     """
     wanted = SETS if names is None else [name for name in SETS if name in names]
-    madlab = _content(folder / "madlab3d.npz")
+    madlab = read_arrays(folder / "madlab3d.npz")
     for domain in (name for name in wanted if name in DOMAINS):
         chosen = (madlab["domain"] == domain) & (madlab["label"] != DUPLICATED)
         yield _recorded_set(domain, madlab, np.flatnonzero(chosen))
     for name in (name for name in wanted if name not in DOMAINS):
-        content = _content(folder / f"{name}.npz")
+        content = read_arrays(folder / f"{name}.npz")
         yield _recorded_set(name, content, np.arange(len(content["label"])))
 
 
-def _content(path: Path) -> dict[str, npt.NDArray[Any]]:
+def read_arrays(path: Path) -> dict[str, npt.NDArray[Any]]:
     """Read all arrays of a file once: each access to an opened file would read again."""
     with np.load(path, allow_pickle=True) as file:
         return dict(file)

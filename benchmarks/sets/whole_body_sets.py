@@ -1,11 +1,12 @@
 """Whole bodies recorded by depth cameras, seen as a camera in front sees them.
 
-Only gestures of the arms are kept. Nothing has been tuned on these sets.
+Only gestures of the arms are kept. Nothing has been tuned on these sets. Other movements are *far*:
+what people do when they do not sign.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +15,20 @@ import numpy.typing as npt
 
 from app.recognition import PoseSequence
 from app.recognition.poses.sequence import FloatArray
-from benchmarks.sets.recorded_sets import FRAME, RATE, RecordedSet
+from benchmarks.sets.recorded_sets import FRAME, RATE, RecordedSet, read_arrays
 
 FOCAL = 525.0
 """Pixels: the focal length of a Kinect's colour camera at 640 x 480."""
+
+FIGURES = (
+    "draw_circle_ccw",
+    "draw_circle_cw",
+    "draw_triangle",
+    "draw_x",
+    "swipe_left",
+    "swipe_right",
+)
+"""The drawn figures and swipes of UTD-MHAD."""
 
 ARM_CLASSES = {
     "utd_other": (
@@ -33,8 +44,16 @@ ARM_CLASSES = {
         "tennis_swing",
     ),
     "utkinect": ("clapHands", "pull", "push", "throw", "waveHands"),
+    "utd_signals": ("arm_cross", "clap", *FIGURES, "knock", "throw", "wave"),
+    "utd_figures": FIGURES,
 }
 """The classes performed with the arms, by set."""
+
+FILES = {"utd_figures": "utd_signals"}
+"""Names of the files of sets that have none of their own."""
+
+LIKE_SIGNALS = ("Throw", "Punch", "Push", "Wave", "Swipe", "Draw")
+"""How the names of movements begin that the other sets have, or that are signals."""
 
 OUR_NAMES = {"left_hand": "left_index", "right_hand": "right_index", "head": "nose"}
 """Our landmark nearest to a joint, where the names differ."""
@@ -48,14 +67,20 @@ UPPER_BODY = tuple(
 
 
 def whole_body_sets(
-    folder: Path, turned: float = 0.0, *, depth: float | None = None
+    folder: Path,
+    names: Collection[str] | None = None,
+    turned: float = 0.0,
+    *,
+    depth: float | None = None,
 ) -> Iterator[RecordedSet]:
     """Read the sets.
 
     Parameters
     ----------
     folder
-        It holds ``utd_other.npz`` and ``utkinect.npz``.
+        It holds ``utd_other.npz``, ``utkinect.npz`` and ``utd_signals.npz``.
+    names
+        Only these of `ARM_CLASSES`; None: all.
     turned
         Degrees by which everybody is turned about the vertical before the camera looks, positive
         to the own left.
@@ -63,17 +88,35 @@ def whole_body_sets(
         Standard deviation in metres of the error of known depth; None: depth is not known.
 
     """
-    for name, classes in ARM_CLASSES.items():
-        with np.load(folder / f"{name}.npz", allow_pickle=True) as file:
-            content: dict[str, npt.NDArray[Any]] = dict(file)
-        labels = content["label"].astype(str)
-        chosen = np.flatnonzero(np.isin(labels, classes))
-        yield RecordedSet(
-            name,
-            [_seen_by_camera(content, int(index), turned, depth) for index in chosen],
-            labels[chosen],
-            content["subject"][chosen].astype(str),
-        )
+    for name in ARM_CLASSES if names is None else names:
+        content = read_arrays(folder / f"{FILES.get(name, name)}.npz")
+        chosen = np.flatnonzero(np.isin(content["label"], ARM_CLASSES[name]))
+        yield _whole_body_set(name, content, chosen, turned, depth)
+
+
+def far_movements(folder: Path) -> RecordedSet:
+    """Read the movements of Kinder-Gator that are no signals, such as bows, kicks and lunges.
+
+    Ten people, adults and children, once each; `folder` holds ``kindergator.npz``.
+    """
+    content = read_arrays(folder / "kindergator.npz")
+    signals = [str(label).startswith(LIKE_SIGNALS) for label in content["label"]]
+    return _whole_body_set("kindergator", content, np.flatnonzero(~np.array(signals)), 0.0, None)
+
+
+def _whole_body_set(
+    name: str,
+    content: dict[str, npt.NDArray[Any]],
+    chosen: npt.NDArray[np.intp],
+    turned: float,
+    depth: float | None,
+) -> RecordedSet:
+    return RecordedSet(
+        name,
+        [_seen_by_camera(content, int(index), turned, depth) for index in chosen],
+        content["label"][chosen].astype(str),
+        content["subject"][chosen].astype(str),
+    )
 
 
 def _seen_by_camera(
@@ -83,10 +126,9 @@ def _seen_by_camera(
     places: FloatArray = content["x"][index].astype(np.float64)
     places = places[:, [joints.index(name) for name in UPPER_BODY]]
     seen = _turn(places, -turned)
-    frames = content["frame"][index] if "frame" in content else np.arange(len(places))
     away = np.where(seen[..., 2] > 0.1, seen[..., 2], np.nan)
     xy = np.stack([seen[..., 0] / away, -seen[..., 1] / away], axis=2) * FOCAL
-    time = np.asarray(frames, dtype=np.float64) / RATE
+    time = _seconds(content, index)
     first = np.concatenate([[True], np.diff(time) > 0])
     world = None
     if depth is not None:
@@ -99,6 +141,14 @@ def _seen_by_camera(
         frame_size=FRAME,
         world=world,
     )
+
+
+def _seconds(content: dict[str, npt.NDArray[Any]], index: int) -> FloatArray:
+    """Return ``(T,)`` times of a recording: its own, or of its frames at `RATE`."""
+    if "t" in content:
+        return np.asarray(content["t"][index], dtype=np.float64)
+    frames = content["frame"][index] if "frame" in content else range(len(content["x"][index]))
+    return np.asarray(frames, dtype=np.float64) / RATE
 
 
 def _turn(places: FloatArray, degrees: float) -> FloatArray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchmarks.accuracy.rejection import (
+from benchmarks.accuracy.reliability import (
     REFUSED,
     Outcomes,
     accepted_as_calibrated,

@@ -1,0 +1,108 @@
+"""Measures of a draw: nearest and rejected takes, answers of several gestures, and sums."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.recognition import Language, Recognition, Recognizer
+from benchmarks.accuracy.people import (
+    COLUMNS,
+    MEASURES,
+    SIZE,
+    define,
+    judge,
+    judge_half,
+    measure,
+    summarize,
+)
+from benchmarks.sets.one_shot_draws import draw_several, draws
+from benchmarks.sets.recorded_sets import RecordedSet
+from tests.recognition.strategies import SHAPES, recording
+
+CLASSES = ("circle", "line", "square", "wedge")
+TAKES = [(label, person, take) for person in "abcd" for label in CLASSES for take in range(3)]
+
+
+@pytest.fixture(scope="module")
+def recorded() -> RecordedSet:
+    return RecordedSet(
+        "drawn",
+        [
+            recording(SHAPES[label], jitter=0.01, seed=17 * index, torso=80 + 10 * take)
+            for index, (label, _, take) in enumerate(TAKES)
+        ],
+        np.array([label for label, _, _ in TAKES]),
+        np.array([person for _, person, _ in TAKES]),
+    )
+
+
+@pytest.fixture(scope="module")
+def result(recorded: RecordedSet) -> Recognition:
+    language = Language("drawn", [define(recorded, [index]) for index in (0, 3, 6)])
+    return Recognizer(language, "full").recognize(recorded.recordings[1])
+
+
+def test_a_gesture_has_a_demonstration_and_a_diver_for_each_take(recorded: RecordedSet) -> None:
+    shown = define(recorded, [0, 1, 12]).single_demonstrations()
+    assert [each.diver for each in shown] == ["a", "a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("scores", "label", "alone", "size"),
+    [
+        ([1.0, 1.15, 3.0], "circle", None, 1),
+        ([1.0, 1.05, 3.0], "circle", None, 2),
+        ([1.0, 1.15, 3.0], "line", True, 1),
+        ([1.0, 1.05, 1.08], "line", False, 3),
+        ([1.0, 1.05, 3.0], "square", False, 2),
+    ],
+)
+def test_an_answer_has_all_gestures_near_the_best(
+    result: Recognition, scores: list[float], label: str, alone: bool | None, size: int
+) -> None:
+    near = replace(result, nearest="circle", label="circle", scores=np.array(scores))
+    found = dict(judge(near, label, ratio=1.1))
+    assert found["nearest"] == (label == "circle")
+    assert found.get("wrong alone") == alone
+    assert found[SIZE] == size
+    assert found["right in answer"] == (label in CLASSES[:size])
+    assert found.get("right rejected") == (False if label == "circle" else None)
+
+
+def test_what_cannot_be_compared_is_an_error_and_not_accepted(recorded: RecordedSet) -> None:
+    language = Language("drawn", [define(recorded, [0])])
+    assert dict(judge(None, "circle", ratio=1.1)) == {"nearest": False}
+    assert dict(judge_half(None, "line", language)) == {"half: near accepted": False}
+    assert dict(judge_half(None, "circle", language)) == {}
+
+
+def test_half_a_language_accepts_or_rejects(recorded: RecordedSet, result: Recognition) -> None:
+    language = Language("drawn", [define(recorded, [0])])
+    accepted = replace(result, nearest="circle", label="circle")
+    rejected = replace(result, nearest="circle", label=None)
+    assert dict(judge_half(accepted, "circle", language)) == {"half: right rejected": False}
+    assert dict(judge_half(rejected, "circle", language)) == {"half: right rejected": True}
+    assert dict(judge_half(accepted, "line", language)) == {"half: near accepted": True}
+    assert dict(judge_half(rejected, "line", language)) == {"half: near accepted": False}
+
+
+def test_every_column_is_measured_as_far_as_there_are_people(recorded: RecordedSet) -> None:
+    (chosen,) = draws(recorded, 1, 4, seed=1)
+    several = draw_several(recorded, chosen, 5, 4, seed=1)
+    found = list(measure(recorded, chosen, several, recorded, ratio=1.14))
+    assert {column for column, _, _ in found} == {*COLUMNS} - {"5 people"}
+    assert {name for _, name, _ in found} <= {*MEASURES}
+    for column in {*COLUMNS} - {"5 people"}:
+        asked = [name for of_column, name, _ in found if of_column == column]
+        assert asked.count("nearest") == asked.count("DTW of both") == 4
+        halves = 0 if column in ("same person", "another") else 4
+        assert asked.count("half: far accepted") == halves
+    right = [value for column, name, value in found if (column, name) == ("3 people", "nearest")]
+    assert np.mean(right) > 0.5
+
+
+def test_counts_of_all_draws_are_summed_up_and_kept() -> None:
+    share = summarize("nearest", [[1, 1, 0], [], [1]])
+    assert (share["share"], share["asked"], share["draws"]) == (0.75, 4, [[2, 3], [0, 0], [1, 1]])
+    assert summarize(SIZE, [[1, 2, 3], [2]])["mean"] == 2.0
