@@ -140,7 +140,7 @@ def main() -> None:
             created=CREATED,
             grammar=sample.grammar,
         )
-        language.calibrated().save(FOLDER / f"{stem}.json")
+        language.save(FOLDER / f"{stem}.json")
 
 
 if __name__ == "__main__":

@@ -60,4 +60,4 @@ def posed_language(trigger: Trigger = BY_BELLY) -> Language:
         Gesture.from_demonstration("circle", circle),
         Gesture.from_demonstration("wedge", wedge),
     ]
-    return replace(Language("posed", gestures).calibrated(), trigger=trigger)
+    return replace(Language("posed", gestures), trigger=trigger)

@@ -194,7 +194,7 @@ def define(
     for count, _ in enumerate(labels, 1):  # before any clip is read
         require_distinct_labels(labels[:count])
     gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
-    language = Language(compose(name), gestures, author=author, trigger=held).calibrated()
+    language = Language(compose(name), gestures, author=author, trigger=held)
     language.save(output)
     people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 

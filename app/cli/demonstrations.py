@@ -102,7 +102,7 @@ def _without(gesture: Gesture, number: int) -> Gesture:
 
 
 def _save(language: Language, output: Path) -> None:
-    language.calibrated().save(output)
+    language.save(output)
     people.print(
         f"{output}: revision {language.revision}, {output.stat().st_size / 1000:.0f} kB",
         markup=False,

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Final
 
 import numpy as np
 
@@ -16,8 +15,7 @@ from app.recognition.decision.trace import Trace
 from app.recognition.decision.vote import Vote
 from app.recognition.errors import LanguageError, PoseError
 from app.recognition.gestures.demonstration import condense
-from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.profile import ProfileName, find_profile
+from app.recognition.gestures.profile import find_profile
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
@@ -37,11 +35,6 @@ from app.recognition.preprocessing.quality import find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 
-_VOTES: Final[dict[ProfileName, Callable[[Sequence[Gesture], Tuning], Vote]]] = {
-    "paper": MajorityVote,
-    "full": FusedVote,
-}
-
 
 class Recognizer:
     """Recognises the gestures of one language.
@@ -49,10 +42,10 @@ class Recognizer:
     Parameters
     ----------
     language
-        At least one gesture. Profile ``full`` uses its thresholds and calibrates those that are
-        missing or belong to other gestures; `Recognizer.language` then has them.
+        At least one gesture.
     profile
-        One of `PROFILES`; the language's own when not given.
+        One of `PROFILES`; the language's own when not given. A language of nothing but imported
+        images is recognised by ``paper``, because ``full`` compares demonstrations.
     tuning
         Changes to the profile; the language's own when not given
         (`Language.tuning_with`).
@@ -69,14 +62,20 @@ class Recognizer:
     def __init__(
         self, language: Language, profile: str | None = None, *, tuning: Tuning | None = None
     ) -> None:
-        traits = find_profile(language.profile if profile is None else profile)
         if not language.gestures:
             raise LanguageError(f"language {language.name!r} has no gestures yet: add one", "")
+        traits = find_profile(language.profile if profile is None else profile)
+        if all(gesture.trajectory is None for gesture in language.gestures):
+            traits = find_profile("paper")
         tuning = language.tuning_with(traits.name) if tuning is None else tuning
-        self.language = language.calibrated() if traits.rejects else language
+        self.language = language
         self.profile: str = traits.name
         self.tuning = tuning
-        self.vote = _VOTES[traits.name](self.language.gestures, tuning)
+        self.vote: Vote = (
+            FusedVote(language.gestures, tuning, language.most_refused)
+            if traits.rejects
+            else MajorityVote(language.gestures, tuning)
+        )
         self._reads_hands = traits.compares_motion and any(
             gesture.is_held for gesture in language.gestures
         )
@@ -95,7 +94,7 @@ class Recognizer:
         wins; among equals the one with the smallest mean relative distance (a voter's distance
         over its mean distance to all gestures), among those the first in the language.
         Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`, and is
-        rejected where it is beyond its thresholds, see `rejection`.
+        rejected where it is beyond the limit, see `rejection`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
         still of insufficient quality get no label, and `fault` gives the reason. The same applies

@@ -85,7 +85,7 @@ def report_samples() -> None:
             Gesture.from_demonstration(label, poses.select(known))
             for label, poses in demonstrations
         ]
-        language = Language("samples", gestures).calibrated()
+        language = Language("samples", gestures)
         for profile in PROFILES:
             recognizer = Recognizer(language, profile)
             for asked, seen in SETS.items():

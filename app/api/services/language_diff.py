@@ -140,8 +140,6 @@ def _describe_gesture(before: Gesture, after: Gesture) -> tuple[str, ...]:
         words.append(f"another demonstration{_seconds(before, after)}")
     elif not words and _are_drawn_otherwise(before, after):
         words.append("drawn anew from the same demonstration")
-    if before.thresholds != after.thresholds:
-        words.append("other thresholds of rejection")
     return tuple(words)
 
 

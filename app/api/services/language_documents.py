@@ -43,7 +43,7 @@ def edit_document(
     """Return the `change` for `LanguageStore.edit`: it makes the next revision's document."""
 
     def draft(head: LanguageRevision, number: int) -> Draft:
-        language = change_language(Language.from_json(head.document)).calibrated()
+        language = change_language(Language.from_json(head.document))
         return draft_of(replace(language, revision=number), change)
 
     return draft

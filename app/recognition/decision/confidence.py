@@ -10,17 +10,17 @@ import math
 
 from app.recognition.decision.rejection import SCORE_FLOOR
 
-CONFIDENCE_AT_ONE = -1.15
-CONFIDENCE_PER_NOVELTY = -0.9
-CONFIDENCE_PER_SHARE = -0.95
-"""Coefficients of `estimate_confidence`, fitted on eleven sets, in languages of half of the
-classes. Coefficients fitted on ten of the sets differ by at most 0.2, except those fitted without
+CONFIDENCE_AT_ONE = -1.65
+CONFIDENCE_PER_NOVELTY = -3.7
+CONFIDENCE_PER_SHARE = -2.25
+"""Coefficients of `estimate_confidence`, fitted on eight sets, in languages of half of the classes.
+Coefficients fitted on seven of the sets differ by at most 0.4, except those fitted without
 `utkinect` (`benchmarks/studies/people.md`)."""
 
-TIE_EXPONENT = 5.0
+TIE_EXPONENT = 9.0
 """Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
-seven recorded sets. The probability is 0.71 with a runner-up 1.2 times as far, and 0.97 with one
-twice as far."""
+six recorded sets, 6 to 15 on each. The probability is 0.84 with a runner-up 1.2 times as far, and
+0.97 with one 1.5 times as far."""
 
 
 def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
@@ -30,7 +30,7 @@ def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     nearest and t of the second gesture, 0.02 added to each: novelty separates gestures from
     out-of-vocabulary movements, the ratio separates the two gestures. The coefficients are a
     logistic regression on other people's recordings, half of them out-of-vocabulary; the
-    reliability table is in `docs/results.md`. The result is at most ``1 / (1 + (s / t)^5)``: of two
+    reliability table is in `docs/results.md`. The result is at most ``1 / (1 + (s / t)^9)``: of two
     equally near gestures, each has probability 0.5, however near they are.
 
     Parameters

@@ -13,29 +13,22 @@ import numpy.typing as npt
 
 from app.recognition.decision.confidence import estimate_confidence
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
-from app.recognition.decision.hand_references import HandReferences
+from app.recognition.decision.hand_references import HAND_LIMIT, HandReferences, score_hands
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     MotionReferences,
+    NearestTraversals,
     describe_movement,
     find_tempo_dependent,
     find_unambiguous_traversals,
 )
 from app.recognition.decision.moving_shapes import WEIGHT, MovingShapes, weigh_shapes
 from app.recognition.decision.references import References
-from app.recognition.decision.rejection import (
-    CUE_GROUPS,
-    HAND_CUE_GROUP,
-    build_novelty_weights,
-    gather_thresholds,
-    is_rejected,
-    measure_clearness,
-    measure_group_novelties,
-)
+from app.recognition.decision.rejection import MOST_REFUSED, NOVELTIES, choose_limit, is_rejected
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.decision.virtual_views import View, Views
+from app.recognition.features.trajectory_image import is_drawable
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
@@ -44,16 +37,10 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
 from app.recognition.voters.motion.tempo import Tempo
-from app.recognition.voters.registry import (
-    HAND_VOTER_NAMES,
-    PAPER_VOTERS,
-    VOTER_NAMES,
-    VOTERS,
-)
+from app.recognition.voters.motion.velocity import Velocity
+from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOTER_NAMES
 
-_SHAPES = len(PAPER_VOTERS)
 _TEMPO = VOTER_NAMES.index(Tempo.name)
-_NOVELTY_WEIGHTS = build_novelty_weights(VOTER_NAMES)
 _ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 
 CLOSE_SCORES = 0.05
@@ -70,6 +57,8 @@ class FusedVote:
         G gestures, at least one.
     tuning
         Its weight factors multiply the voters' weights in this language.
+    refused
+        Share of right takes that may be rejected, where several people have shown the gestures.
 
     Raises
     ------
@@ -78,11 +67,15 @@ class FusedVote:
 
     """
 
-    def __init__(self, gestures: Sequence[Gesture], tuning: Tuning = AS_THE_PROFILE) -> None:
+    def __init__(
+        self,
+        gestures: Sequence[Gesture],
+        tuning: Tuning = AS_THE_PROFILE,
+        refused: float = MOST_REFUSED,
+    ) -> None:
         self._labels = tuple(gesture.label for gesture in gestures)
         self._shown = References.of(gestures)
         sides, self._owners = self._shown.gestures, self._shown.owners
-        self._shapes = ShapeReferences(sides, tuning.simplification)
         self._motions = MotionReferences.of(sides)
         self._hands = HandReferences.of(sides, self._owners)
         self._moving_shapes = MovingShapes.of(sides, self._owners)
@@ -92,64 +85,66 @@ class FusedVote:
             if gesture.trajectory is not None and not gesture.is_held and len(self._hands)
         )
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
-        self._calibrate(sides)
-        # Set last, because weight factors must not change which directions and tempos the language
-        # needs.
-        self._factors = tuning.weights_of(VOTER_NAMES)
-        self._weights: FloatArray = self._weights * self._factors
-        self._draws = self._needs_drawings()
-        if not self._draws:
-            self._weights[:_SHAPES] = 0.0
-        self._thresholds = gather_thresholds(sides, VOTER_NAMES)
-        self._hand_thresholds = gather_thresholds(sides, HAND_VOTER_NAMES)
-        self._simplification = tuning.simplification
-        self._views = self._prepare_views()
+        # Weight factors must not change which directions and tempos the language needs.
+        self._weights, self._between = self._weigh()
+        self._limit = self._calibrate(sides, refused)
+        self._weights = self._weights * tuning.weights_of(VOTER_NAMES)
+        self._views = Views(sides, self._motions)
 
-    def _prepare_views(self) -> Views:
-        shapes = self._shapes if self._draws else None
-        return Views(self._shown.gestures, shapes, self._motions, self._simplification)
-
-    def _calibrate(self, sides: Sequence[Gesture]) -> None:
-        """Compute the weights, and which directions and tempos the language needs."""
+    def _weigh(self) -> tuple[FloatArray, FloatArray]:
+        """Return the voters' weights in the language, and their between-class distances."""
         first_rows = self._motions.as_shown[:MAX_GESTURES_TRAVERSED]
-        own = self._motions.own_distances
         one, other = np.triu_indices(len(first_rows), 1)
         owners = self._owners[self._motions.gestures[first_rows]]
         apart = owners[one] != owners[other]
-        pairs = own[:, :, first_rows][:, one[apart], other[apart]]
-        shapes = self._shapes.own_distances(MAX_GESTURES_TRAVERSED)
-        self._weights, self._between = weigh_voters(
-            VOTERS,
-            [*shapes, *(row[np.isfinite(row)] for row in pairs)],
-            max(1, len(self._motions.landmarks)),
-        )
-        if len(first_rows) < len(self._motions.as_shown):
-            return
-        self._tempo = find_tempo_dependent(
-            self._motions, own, *self._of_motion, sides, self._owners
-        )
-        self._moving_shapes = self._moving_shapes.with_twins(sides, self._compare_movements_of(own))
-        free = [
-            owner
-            for owner, gesture in zip(self._owners, sides, strict=True)
-            if gesture.switches.direction == "off"
-        ]
-        kept = find_unambiguous_traversals(self._motions, own, *self._of_motion, self._owners, free)
-        self._motions = self._motions.take(kept)
+        pairs = self._motions.own_distances[:, :, first_rows][:, one[apart], other[apart]]
+        known = [row[np.isfinite(row)] for row in pairs]
+        return weigh_voters(MOTION_VOTERS, known, arms=self._motions.sees_arms)
 
-    def _compare_movements_of(self, own: FloatArray) -> FloatArray:
+    def _calibrate(self, sides: Sequence[Gesture], refused: float) -> float:
+        """Find which directions and tempos the language needs, and return its limit."""
+        scores = fuse(self._motions.own_distances, self._weights, self._between)
+        scores *= self._motions.own_corrections
+        kept = np.arange(len(self._motions))
+        if len(self._motions.as_shown) <= MAX_GESTURES_TRAVERSED:
+            self._tempo = find_tempo_dependent(self._motions, scores, sides, self._owners)
+            self._moving_shapes = self._moving_shapes.with_twins(sides, self._spread(scores))
+            free = [
+                owner
+                for owner, gesture in zip(self._owners, sides, strict=True)
+                if gesture.switches.direction == "off"
+            ]
+            kept = find_unambiguous_traversals(self._motions, scores, self._owners, free)
+            self._motions = self._motions.take(kept)
+        others = self._measure_others(scores[:, kept] * self._motions.penalties, sides)
+        alike = max(1.0, Velocity.between / float(self._between[VOTER_NAMES.index(Velocity.name)]))
+        return choose_limit(others, refused, arms=self._motions.sees_arms, alike=alike)
+
+    def _spread(self, scores: FloatArray) -> FloatArray:
         """Return the scores of the references' movements as shown, ``(S, S)``; infinite if none."""
         rows = self._motions.as_shown
-        scores = np.full((len(self._owners), len(self._owners)), np.inf)
+        spread = np.full((len(self._owners), len(self._owners)), np.inf)
         members = self._motions.gestures[rows]
-        scores[np.ix_(members, members)] = fuse(own[:, :, rows], *self._of_motion)
-        return scores
+        spread[np.ix_(members, members)] = scores[:, rows]
+        return spread
 
-    def _needs_drawings(self) -> bool:
-        """Return whether a gesture has only a drawing, or the tuning raises a shape voter."""
-        with_movement = set(self._motions.gestures.tolist())
-        raised = self._factors[:_SHAPES].max() > np.median(self._factors[_SHAPES:])
-        return bool(raised) or not with_movement.issuperset(self._shapes.members)
+    def _measure_others(self, scores: FloatArray, sides: Sequence[Gesture]) -> FloatArray:
+        """Return the scores of demonstrations for their gestures as other people show them.
+
+        Parameters
+        ----------
+        scores
+            ``(S, R)`` of the demonstrated traversals, with penalties, for all rows.
+        sides
+            The references. Those whose diver is not named count as by one person.
+
+        """
+        divers = np.array([each.diver for each in sides])[self._motions.gestures]
+        owners = self._owners[self._motions.gestures]
+        rows = self._motions.as_shown[: len(scores)]
+        by_others = (owners[rows][:, None] == owners) & (divers[rows][:, None] != divers)
+        nearest = np.where(by_others, scores, np.inf).min(axis=1, initial=np.inf)
+        return np.asarray(nearest[np.isfinite(nearest)])
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
@@ -186,7 +181,15 @@ class FusedVote:
     @property
     def needed(self) -> tuple[str, ...]:
         """The landmarks that any gesture needs, in alphabetical order."""
-        return self._shapes.needed
+        return tuple(sorted({name for salient in self._salient for name in salient}))
+
+    @cached_property
+    def _salient(self) -> dict[tuple[str, ...], npt.NDArray[np.intp]]:
+        """The references with a movement, by their salient landmarks."""
+        found: dict[tuple[str, ...], list[int]] = {}
+        for index in np.unique(self._motions.gestures).tolist():
+            found.setdefault(self._shown.gestures[index].salient, []).append(index)
+        return {salient: np.array(rows, dtype=np.intp) for salient, rows in found.items()}
 
     @property
     def unnormalized_weights(self) -> dict[str, float]:
@@ -212,54 +215,41 @@ class FusedVote:
         return dict(zip(VOTER_NAMES, self._between.tolist(), strict=True))
 
     @property
-    def _of_motion(self) -> tuple[FloatArray, FloatArray]:
-        """Weights and between-class distances of the motion voters alone."""
-        return self._weights[_SHAPES:], self._between[_SHAPES:]
+    def limit(self) -> float:
+        """The score beyond which a movement is rejected (`rejection`)."""
+        return self._limit
 
     @property
     def references(self) -> MotionReferences:
         """The gestures' movements in all traversals that are not ambiguous in the language."""
         return self._motions
 
-    def with_thresholds(self, thresholds: FloatArray) -> FusedVote:
-        """Return the same vote with other thresholds, ``(V, G)``."""
-        other = copy(self)
-        other._thresholds = thresholds[:, self._owners]
-        return other
-
     def among(self, gestures: npt.NDArray[np.intp]) -> FusedVote:
         """Return the same vote between some of the gestures, given in ascending order.
 
-        Weights, thresholds and traversals stay those of the whole language.
+        Weights, limit and traversals stay those of the whole language.
         """
         shown, sides = self._shown.take(gestures)
         rows = np.flatnonzero(np.isin(self._motions.gestures, sides))
         motions = self._motions.take(rows)
         other = copy(self)
-        other.__dict__.pop("weights", None)
+        for name in ("weights", "_salient"):
+            other.__dict__.pop(name, None)
         other._labels = tuple(self._labels[index] for index in gestures.tolist())
         other._shown, other._owners = shown, shown.owners
-        other._shapes = self._shapes.take(sides)
         other._motions = replace(motions, gestures=np.searchsorted(sides, motions.gestures))
         other._tempo = self._tempo[sides]
-        other._thresholds = self._thresholds[:, sides]
         other._hands = self._hands.take(sides)
         other._moving_shapes = self._moving_shapes.take(sides, other._owners)
-        other._hand_thresholds = self._hand_thresholds[:, sides]
-        other._views = other._prepare_views()
+        other._views = Views(shown.gestures, other._motions)
         return other
 
-    def compare(self, trajectory: Trajectory, *, drawn: bool = True) -> ScoreTable:
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with the nearest demonstration of every gesture.
 
         Mirror images count as demonstrations. Demonstrations with depth are turned to face as the
         diver of the query does (`views`); where that is not known, to the view in which one of them
         is nearest.
-
-        The shape voters are used only where a gesture has no demonstration or the tuning raises the
-        weight of one of them. Otherwise they would take a quarter of the time and change no set's
-        accuracy by more than sampling error (`benchmarks/studies/people.md`). Without `drawn` they
-        are left out in any case.
 
         A query that holds one hand shape is compared with the held shapes, a query that holds two
         in sequence with the sequences, and any other query with the movements. A query that holds a
@@ -267,21 +257,21 @@ class FusedVote:
         movement if it is accepted as one, otherwise the alternative of lower novelty.
         """
         if not len(self._hands):
-            return self._compare_movements(trajectory, drawn)
+            return self._compare_movements(trajectory)
         held = self._compare_hands(trajectory) if trajectory.hands else None
         if held is not None and measure_movement(trajectory) < self._least_movement:
             return held
-        moved = self._compare_movements(trajectory, drawn)
+        moved = self._compare_movements(trajectory)
         if not self._moving_shapes.any_counts:
             moved = moved.with_idle_voters(HAND_VOTER_NAMES)
         if held is None or not is_rejected(_measure_novelty(moved)):
             return moved
         return min(held, moved, key=_measure_novelty)
 
-    def _compare_movements(self, trajectory: Trajectory, drawn: bool) -> ScoreTable:
+    def _compare_movements(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a movement with those of the language."""
         views = self._views.list_for(trajectory.facing)
-        tables = [self._compare_in(view, trajectory, drawn) for view in views]
+        tables = [self._compare_in(view, trajectory) for view in views]
         return min(tables, key=lambda table: float(table.scores.min()))
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
@@ -291,9 +281,9 @@ class FusedVote:
         chosen = self._shown.find_nearest(shares.sum(axis=0))
         distances = np.full((len(_ALL_NAMES), len(chosen)), np.inf)
         contributions = np.zeros(distances.shape)
-        distances[len(VOTERS) :] = sides.take(chosen, axis=1)
-        contributions[len(VOTERS) :] = shares.take(chosen, axis=1)
-        novelty = np.full((len(CUE_GROUPS) + 1, len(chosen)), np.nan)
+        distances[len(VOTER_NAMES) :] = sides.take(chosen, axis=1)
+        contributions[len(VOTER_NAMES) :] = shares.take(chosen, axis=1)
+        novelty = np.full((len(NOVELTIES), len(chosen)), np.nan)
         novelty[-1] = self._hand_novelty(sides)[chosen]
         return ScoreTable(
             voters=_ALL_NAMES,
@@ -308,9 +298,10 @@ class FusedVote:
             novelty_by_view=novelty,
         )
 
-    def _compare_in(self, view: View, trajectory: Trajectory, drawn: bool) -> ScoreTable:
-        distances, rows = self._compare_sides(view, trajectory, drawn)
-        shares = weigh_distances(distances, self._weights, self._between)
+    def _compare_in(self, view: View, trajectory: Trajectory) -> ScoreTable:
+        nearest = self._compare_sides(view, trajectory)
+        distances, rows = nearest.distances, nearest.rows
+        shares = nearest.corrections * weigh_distances(distances, self._weights, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
         moved = rows >= 0
         factors[moved] = self._motions.penalties[rows[moved]]
@@ -321,16 +312,16 @@ class FusedVote:
             slower = self._tempo & np.isfinite(distances[_TEMPO])
             shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
             scores = shares.sum(axis=0)
-        voters, novelty = VOTER_NAMES, factors * self._novelty_by_view(distances)
-        compared = scores + turned
-        hand_novelty = np.empty((0, len(rows)))
+        voters, compared = VOTER_NAMES, scores + turned
+        novelty = np.full((len(NOVELTIES), len(rows)), np.nan)
+        novelty[0] = compared / self._limit
         if self._moving_shapes.any_counts:
             voters = _ALL_NAMES
             hands = self._compare_moving_hands(trajectory, rows, compared)
             distances = np.concatenate([distances, hands])
             shares = np.concatenate([shares, weigh_shapes(hands)])
             compared = shares.sum(axis=0) + turned
-            hand_novelty = self._hand_novelty(hands)[None]
+            novelty[-1] = self._hand_novelty(hands)
         chosen = self._shown.find_nearest(compared)
         return ScoreTable(
             voters=voters,
@@ -344,12 +335,7 @@ class FusedVote:
             demonstrations=self._shown.demonstrations[chosen],
             views=view.turns[chosen],
             facing=trajectory.facing,
-            novelty_by_view=np.concatenate(
-                [
-                    novelty.take(chosen, axis=1) * measure_clearness(compared[chosen]),
-                    hand_novelty.take(chosen, axis=1),
-                ]
-            ),
+            novelty_by_view=novelty.take(chosen, axis=1),
         )
 
     def _compare_moving_hands(
@@ -375,19 +361,9 @@ class FusedVote:
         return found
 
     def _hand_novelty(self, distances: FloatArray) -> FloatArray:
-        """Return the novelties ``(sides,)`` of hand voters' distances; NaN without thresholds."""
-        weights = np.ones((1, len(HAND_VOTER_NAMES)))
-        novelty: FloatArray = measure_group_novelties(distances, self._hand_thresholds, weights)[0]
-        return novelty
-
-    def fuse(self, distances: FloatArray) -> FloatArray:
-        """Return the scores of distances ``(V, N)`` by the language's weights, ``(N,)``."""
-        return fuse(distances, self._weights, self._between)
-
-    def _novelty_by_view(self, distances: FloatArray) -> FloatArray:
-        return measure_group_novelties(
-            distances, self._thresholds, self._factors * _NOVELTY_WEIGHTS
-        )
+        """Return the novelties ``(sides,)`` of hand voters' distances; NaN where not comparable."""
+        score = score_hands(distances)
+        return np.where(np.isfinite(score), score / HAND_LIMIT, np.nan)
 
     def recognize(self, trajectory: Trajectory) -> Recognition | None:
         """Recognise a condensed query; None if no landmark that a gesture needs moves."""
@@ -432,9 +408,7 @@ class FusedVote:
             weights=self._weights_in(compared),
             scores=scores,
             novelty=novelty,
-            novelty_by_view=dict(
-                zip((*CUE_GROUPS, HAND_CUE_GROUP), compared.novelty_by_view, strict=False)
-            ),
+            novelty_by_view=dict(zip(NOVELTIES, compared.novelty_by_view, strict=True)),
             facing=compared.facing,
             views=compared.views.astype(np.float64),
         )
@@ -443,33 +417,34 @@ class FusedVote:
         """Return the voters' weights in a decision: of the movement, or of the held hands."""
         if not len(self._hands):
             return self.weights
-        by_hand = not np.isfinite(compared.distances[: len(VOTERS)]).any()
+        by_hand = not np.isfinite(compared.distances[: len(VOTER_NAMES)]).any()
         shares = (self._hands.weights / self._hands.weights.sum()).tolist()
         of_hand = dict(zip(HAND_VOTER_NAMES, shares, strict=True))
         if by_hand:
             return MappingProxyType(dict.fromkeys(VOTER_NAMES, 0.0) | of_hand)
         return MappingProxyType(dict.fromkeys(HAND_VOTER_NAMES, 0.0) | {**self.weights})
 
-    def _compare_sides(
-        self, view: View, trajectory: Trajectory, drawn: bool
-    ) -> tuple[FloatArray, npt.NDArray[np.intp]]:
-        """Return ``(V, sides)`` distances and ``(sides,)`` rows of the traversals, -1: none."""
-        distances = np.full((len(VOTERS), len(self._owners)), np.inf)
-        if drawn and view.shapes is not None:
-            distances[:_SHAPES] = view.shapes.distances(trajectory)
-            comparable = np.asarray(np.isfinite(distances[:_SHAPES]).any(axis=0))
-        elif drawn:
-            comparable = self._shapes.find_comparable(trajectory)
-        else:
-            shown = not set(self.needed).isdisjoint(trajectory.landmarks)
-            comparable = np.full(len(self._owners), shown)
-        rows = np.full(len(self._owners), -1, dtype=np.intp)
-        if len(self._motions) and len(trajectory) > 1 and comparable.any():
-            query = describe_movement(trajectory, self._motions.landmarks)
-            nearest = view.motions.find_nearest(query, *self._of_motion, len(self._owners))
-            rows, distances[_SHAPES:] = nearest.rows, nearest.distances
-            distances[_SHAPES:, ~comparable] = np.inf
-        return distances, rows
+    def _compare_sides(self, view: View, trajectory: Trajectory) -> NearestTraversals:
+        """Return the nearest traversal of every reference; infinite where not comparable."""
+        count = len(self._owners)
+        comparable = self._find_comparable(trajectory)
+        if not comparable.any():
+            distances = np.full((len(VOTER_NAMES), count), np.inf)
+            return NearestTraversals(np.full(count, -1), distances, np.ones(count))
+        query = describe_movement(trajectory, self._motions.landmarks)
+        nearest = view.motions.find_nearest(query, self._weights, self._between, count)
+        nearest.distances[:, ~comparable] = np.inf
+        return nearest
+
+    def _find_comparable(self, trajectory: Trajectory) -> npt.NDArray[np.bool_]:
+        """Return ``(S,)``: the references whose salient landmarks a query shows and moves."""
+        comparable = np.zeros(len(self._owners), dtype=bool)
+        for salient, members in self._salient.items():
+            if len(trajectory) > 1 and set(salient) <= set(trajectory.landmarks):
+                seen = trajectory.select(salient)
+                shown = np.isfinite(seen.xy).all(axis=2).any(axis=0).all()
+                comparable[members] = bool(shown) and is_drawable(seen)
+        return comparable
 
 
 def _measure_novelty(table: ScoreTable) -> float:

@@ -20,13 +20,13 @@ import numpy as np
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
-PAIRS_BEFORE = 3
+PAIRS_BEFORE = 1
 """Weight, in pairs of gestures, of the voter's general between-class distance: a language of two
 has one pair, which may be alike by chance."""
 
 
 def weigh_voters(
-    voters: Sequence[Voter], own: Sequence[FloatArray], landmarks: int
+    voters: Sequence[Voter], own: Sequence[FloatArray], *, arms: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Compute the weight of each voter in a language.
 
@@ -36,8 +36,8 @@ def weigh_voters(
         V voters.
     own
         Per voter all its finite distances between gestures of the language.
-    landmarks
-        Number of the language's landmarks.
+    arms
+        Whether the elbows are seen.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def weigh_voters(
         known = np.concatenate([distances, np.full(PAIRS_BEFORE, voter.between)])
         between[index] = float(np.median(known))
         apart = max(0.0, 1.0 - voter.within / max(between[index], 1e-9))
-        weights[index] = voter.prior_for(landmarks) * apart
+        weights[index] = voter.prior_for(arms=arms) * apart
     return weights, np.maximum(between, 1e-9)
 
 

@@ -23,6 +23,10 @@ to a small fist it is larger (exponent 1), and it is larger still for hidden fin
 many accepted out-of-vocabulary takes, 76 % of takes from other views are accepted with exponent 0,
 84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
 
+HAND_LIMIT = 0.44
+"""Largest share of the distance between two hand shapes that is accepted as the same one, for every
+shape and language (`benchmarks/studies/hand-shapes.md`)."""
+
 SAME_SHAPE = 0.25
 """Score below which two held shapes are the same one: that of most takes from another view."""
 
@@ -94,7 +98,7 @@ class HandReferences:
         own = np.array([shown.distances(each)[:, rows] for each in shapes])
         pairs = [own[:, voter][apart] for voter in range(len(HAND_VOTERS))]
         weights, between = weigh_voters(
-            HAND_VOTERS, [pair[np.isfinite(pair)] for pair in pairs], landmarks=1
+            HAND_VOTERS, [pair[np.isfinite(pair)] for pair in pairs], hands=1
         )
         turned = np.array([shown.distances(_mirror(each))[:, rows] for each in shapes])
         alike = (fuse(turned.transpose(1, 0, 2), weights, between) < SAME_SHAPE) & apart
@@ -218,6 +222,12 @@ class _Group:
             ],
             [*((means[:, None] / palms) ** PALM_EXPONENT).T],
         )
+
+
+def score_hands(distances: FloatArray) -> FloatArray:
+    """Return the scores of hand voters' distances ``(2, ...)``: 1 for two shapes, typically."""
+    between = np.array([voter.between for voter in HAND_VOTERS])
+    return fuse(distances, np.ones(len(HAND_VOTERS)), between)
 
 
 def measure_mean_palm(shapes: HeldShapes) -> float:

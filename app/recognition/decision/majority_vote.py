@@ -8,7 +8,7 @@ from itertools import chain
 
 import numpy as np
 
-from app.recognition.decision.rejection import CUE_GROUPS
+from app.recognition.decision.rejection import NOVELTIES
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.shape_references import ShapeReferences
@@ -85,7 +85,7 @@ class MajorityVote:
             turned=np.zeros(count),
             traversals=(None,) * count,
             mirrored=np.zeros(count, dtype=bool),
-            novelty_by_view=np.full((len(CUE_GROUPS), count), np.nan),
+            novelty_by_view=np.full((len(NOVELTIES), count), np.nan),
             demonstrations=np.array(
                 [part.argmin() for part in np.split(relative, self._first[1:])]
             ),

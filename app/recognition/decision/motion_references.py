@@ -11,7 +11,12 @@ import numpy.typing as npt
 
 from app.recognition.decision.fusion import fuse
 from app.recognition.decision.shown_gesture import ShownGesture, describe_traversals
-from app.recognition.features.motion import build_movement, find_followed_landmarks
+from app.recognition.features.motion import (
+    SHARES,
+    build_movement,
+    find_followed_landmarks,
+    list_arm_landmarks,
+)
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import BAND, DtwBatch, DtwReferences
@@ -23,18 +28,16 @@ from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.registry import MOTION_VOTERS
 
-SAME_FIGURE = 0.12
+SAME_FIGURE = 0.25
 """Score below which two gestures are the same figure: that of two people's takes of one gesture. On
-air-drawn digits and commands the accuracy falls beyond 0.2, when useful traversals are lost
-(`benchmarks/studies/voters.md`)."""
+air-drawn digits and commands the accuracy falls beyond 0.4, when useful traversals are lost."""
 
-TURNED = 0.1
-"""Ratio of backward to forward distance below which two figures are one in opposite directions,
-such as two swipes. For the same person it rarely exceeds 0.03; for different digits and commands it
-is above 0.13."""
+TURNED = 0.2
+"""Ratio of backward to forward score below which two figures are one in opposite directions, such
+as two swipes."""
 
-CLEARANCE = 0.4
-"""Largest ratio of backward to forward distance at which a direction matters: two circles with
+CLEARANCE = 0.63
+"""Largest ratio of backward to forward score at which a direction matters: two circles with
 different starting points are about as near either way."""
 
 CLEARLY_SLOWER = 0.8
@@ -68,6 +71,9 @@ _OTHERS = {
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
 
+LEAST_SHARED = 0.05
+"""Least cosine between the shares of two movements, so that none is infinitely far."""
+
 
 @dataclass(frozen=True, eq=False)
 class NearestTraversals:
@@ -79,11 +85,14 @@ class NearestTraversals:
         ``(G,)``: row of the references; -1 for a gesture without demonstration.
     distances
         ``(V, G)`` to these traversals, infinite for a gesture without demonstration.
+    corrections
+        ``(G,)``: see `MotionReferences.correct`; 1 for a gesture without demonstration.
 
     """
 
     rows: npt.NDArray[np.intp]
     distances: FloatArray
+    corrections: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +108,7 @@ class MotionReferences:
     traversals
         The traversal of each row.
     descriptors
-        By voter's name, ``(R, ...)``.
+        By voter's name, ``(R, ...)``, and the `SHARES`.
 
     """
 
@@ -133,10 +142,10 @@ class MotionReferences:
             np.repeat(np.array([*described], dtype=np.intp), sizes),
             tuple(traversal for each in described.values() for traversal in each.traversals),
             {
-                voter.name: np.concatenate(
-                    [each.descriptors[voter.name] for each in described.values()] or [np.empty(0)]
+                name: np.concatenate(
+                    [each.descriptors[name] for each in described.values()] or [np.empty(0)]
                 )
-                for voter in MOTION_VOTERS
+                for name in (*(voter.name for voter in MOTION_VOTERS), SHARES)
             },
         )
 
@@ -183,18 +192,37 @@ class MotionReferences:
                 descriptors[name][rows] = values
         return MotionReferences(self.landmarks, self.gestures, self.traversals, descriptors)
 
-    def distances(self, query: dict[str, FloatArray]) -> FloatArray:
-        """Compute the distances of a query, described per voter, to the rows of `find_promising`.
+    def correct(self, shares: FloatArray, rows: npt.NDArray[np.intp] | None = None) -> FloatArray:
+        """Compute the factors on the scores of a movement for how much each joint moves.
+
+        The root of Jackknife's correction factor (Taranta et al. 2017): one over the cosines
+        between the `Movement.shares` of both.
+
+        Parameters
+        ----------
+        shares
+            ``(2, 2 A)`` of the movement.
+        rows
+            Indices of M of the rows; all when not given.
 
         Returns
         -------
-        ``(V, R)``; infinite for the other rows.
+        ``(M,)`` >= 1.
 
         """
-        rows = self.find_promising(query[Path.name])
-        distances = np.full((len(MOTION_VOTERS), len(self)), np.inf)
-        distances[:, rows] = self._measure(query, rows)
-        return distances
+        shown = self.descriptors[SHARES]
+        alike = np.einsum("mij,ij->mi", shown if rows is None else shown[rows], shares)
+        return np.asarray(1.0 / np.sqrt(np.maximum(alike, LEAST_SHARED).prod(axis=1)))
+
+    @property
+    def sees_arms(self) -> bool:
+        """Whether the elbows are seen in any demonstration."""
+        if not len(self):
+            return False
+        names = list_arm_landmarks(self.landmarks)
+        elbows = [index for index, name in enumerate(names) if name.endswith("elbow")]
+        moved = self.descriptors[SHARES].reshape(len(self), 2, -1, 2)
+        return bool(moved[:, :, elbows].any())
 
     def find_promising(self, path: FloatArray) -> npt.NDArray[np.intp]:
         """Return the traversals that are compared with a query by DTW.
@@ -257,6 +285,14 @@ class MotionReferences:
         return np.array([traversal.penalty for traversal in self.traversals])
 
     @cached_property
+    def own_corrections(self) -> FloatArray:
+        """``(S, R)``: the corrections of the first S demonstrated traversals."""
+        rows = self.as_shown[:MAX_GESTURES_TRAVERSED].tolist()
+        return np.array([self.correct(self.descriptors[SHARES][row]) for row in rows]).reshape(
+            len(rows), len(self)
+        )
+
+    @cached_property
     def own_distances(self) -> FloatArray:
         """``(V, S, R)``: distances of the first S demonstrated traversals to all rows."""
         rows = self.as_shown[:MAX_GESTURES_TRAVERSED]
@@ -301,17 +337,22 @@ class MotionReferences:
         """
         compared = self.find_promising(query[Path.name])
         measured = self._measure(query, compared)
-        scores = fuse(measured, weights, between) * self.penalties[compared]
+        corrections = self.correct(query[SHARES], compared)
+        scores = fuse(measured, weights, between) * self.penalties[compared] * corrections
         # The best is written last; of equals the first row, the demonstrated traversal.
         order = np.argsort(scores, kind="stable")[::-1]
         chosen = np.full(count, -1, dtype=np.intp)
         chosen[self.gestures[compared[order]]] = order
         found = chosen >= 0
         if found.all():
-            return NearestTraversals(compared.take(chosen), measured.take(chosen, axis=1))
+            return NearestTraversals(
+                compared.take(chosen), measured.take(chosen, axis=1), corrections.take(chosen)
+            )
         distances = np.full((len(MOTION_VOTERS), count), np.inf)
         distances[:, found] = measured[:, chosen[found]]
-        return NearestTraversals(np.where(found, compared[chosen], -1), distances)
+        corrected = np.ones(count)
+        corrected[found] = corrections[chosen[found]]
+        return NearestTraversals(np.where(found, compared[chosen], -1), distances, corrected)
 
 
 def _describe_turned(
@@ -333,9 +374,7 @@ def _build_cached(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
 
 def find_tempo_dependent(
     references: MotionReferences,
-    own: FloatArray,
-    weights: FloatArray,
-    between: FloatArray,
+    scores: FloatArray,
     gestures: Sequence[Gesture],
     owners: npt.NDArray[np.intp],
 ) -> npt.NDArray[np.bool_]:
@@ -345,10 +384,11 @@ def find_tempo_dependent(
     `find_unambiguous_traversals`; `gestures` are those of the references, S in number.
     """
     shown = references.as_shown
-    scores = fuse(own, weights, between)[:, shown]
-    doublings = own[_TEMPO][:, shown]
+    doublings = references.own_distances[_TEMPO][:, shown]
     owner = owners[references.gestures[shown]]
-    twins = (scores < SAME_FIGURE) & (doublings > CLEARLY_SLOWER) & (owner[:, None] != owner)
+    twins = (
+        (scores[:, shown] < SAME_FIGURE) & (doublings > CLEARLY_SLOWER) & (owner[:, None] != owner)
+    )
     needed = np.zeros(len(gestures), dtype=bool)
     needed[references.gestures[shown]] = twins.any(axis=0)
     for index, gesture in enumerate(gestures):
@@ -362,34 +402,31 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
 
     def compute() -> dict[str, FloatArray]:
         seen = build_movement(trajectory, landmarks)
-        return {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
+        described = {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
+        return described | {SHARES: seen.shares}
 
     return trajectory.compute_once(("movement", tuple(landmarks)), compute)
 
 
 def find_unambiguous_traversals(
     references: MotionReferences,
-    own: FloatArray,
-    weights: FloatArray,
-    between: FloatArray,
+    scores: FloatArray,
     owners: npt.NDArray[np.intp],
     free: Collection[int] = (),
 ) -> npt.NDArray[np.intp]:
     """Return the rows of the traversals by which no gesture is confused with another one.
 
     Backward traversals are left out when another gesture is the same figure in the opposite
-    direction: for some starting points, the distance with one of them reversed is below
-    `SAME_FIGURE` or `TURNED` times the forward distance, and also below `CLEARANCE` times the
-    forward distance. Exchanged sides are left out by the same rule.
+    direction: for some starting points, the score with one of them reversed is below
+    `SAME_FIGURE` or `TURNED` times the forward score, and also below `CLEARANCE` times the forward
+    score. Exchanged sides are left out by the same rule.
 
     Parameters
     ----------
     references
         In all traversals.
-    own
-        `own_distances` of the references.
-    weights, between
-        Of the voters, see `fusion.weigh_voters`.
+    scores
+        ``(S, R)`` of the demonstrated traversals for all rows, without penalties.
     owners
         ``(S,)``: index in the language of each reference's gesture.
     free
@@ -399,7 +436,7 @@ def find_unambiguous_traversals(
     labels = owners[references.gestures]
     shown = references.as_shown
     same = labels[shown][:, None] == labels[None]
-    scores = np.where(same, np.inf, fuse(own, weights, between))
+    scores = np.where(same, np.inf, scores)
     backward = np.array([traversal.backward for traversal in references.traversals], dtype=bool)
     exchanged = np.array([traversal.exchanged for traversal in references.traversals], dtype=bool)
     keep = np.ones(len(references), dtype=bool)

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.rejection import take_largest_novelty
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
@@ -42,8 +41,8 @@ class ScoreTable:
         Degrees by which the query's diver is turned from the camera, positive to the diver's own
         left; None where not known.
     novelty_by_view
-        ``(K, G)``: novelty for each gesture in each of `rejection.CUE_GROUPS` alone; NaN where a
-        group has no thresholds or cannot compare, all of profile ``paper``.
+        ``(2, G)``: novelty for each gesture by each of `rejection.NOVELTIES` alone; NaN where it
+        is not compared, all of profile ``paper``.
 
     """
 
@@ -71,16 +70,13 @@ class ScoreTable:
         return shown.turn(int(self.views[gesture]))
 
     def with_idle_voters(self, names: Sequence[str]) -> ScoreTable:
-        """Return the table with rows of a further cue group's voters, which compare nothing."""
+        """Return the table with rows of further voters, which compare nothing."""
         nothing = np.full((len(names), self.distances.shape[1]), np.inf)
         return replace(
             self,
             voters=(*self.voters, *names),
             distances=np.concatenate([self.distances, nothing]),
             contributions=np.concatenate([self.contributions, np.zeros(nothing.shape)]),
-            novelty_by_view=np.concatenate(
-                [self.novelty_by_view, np.full_like(nothing[:1], np.nan)]
-            ),
         )
 
     @property
@@ -94,8 +90,8 @@ class ScoreTable:
 
     @property
     def novelty(self) -> FloatArray:
-        """``(G,)``: the largest of the cue groups' novelties, above 1: rejected (`rejection`).
+        """``(G,)``: the larger of both novelties, above 1: rejected (`rejection`).
 
-        NaN for a gesture without thresholds, all of profile ``paper``.
+        NaN for all gestures in profile ``paper``.
         """
-        return take_largest_novelty(self.novelty_by_view)
+        return np.asarray(np.fmax.reduce(self.novelty_by_view, axis=0))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.trajectory_image import SIMPLIFICATION, draw, is_drawable
+from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -36,14 +35,6 @@ class _DrawingGroup:
     members: npt.NDArray[np.intp]
     references: dict[str, FloatArray]
 
-    def take(self, gestures: npt.NDArray[np.intp]) -> _DrawingGroup:
-        """Return the members among `gestures`, with their indices in these."""
-        _, own, others = np.intersect1d(
-            self.members, gestures, assume_unique=True, return_indices=True
-        )
-        references = {name: values[own] for name, values in self.references.items()}
-        return _DrawingGroup(self.salient, others, references)
-
 
 class ShapeReferences:
     """Shape references of a language for the paper's seven voters.
@@ -64,23 +55,10 @@ class ShapeReferences:
             gestures = [gesture.redraw(simplification) for gesture in gestures]
         self._groups = _group_by_landmarks(gestures, PAPER_VOTERS)
 
-    def take(self, gestures: npt.NDArray[np.intp]) -> ShapeReferences:
-        """Return the references of some of the gestures, given in ascending order."""
-        other = copy(self)
-        other._count = len(gestures)
-        taken = (group.take(gestures) for group in self._groups)
-        other._groups = tuple(group for group in taken if len(group.members))
-        return other
-
     @property
     def needed(self) -> tuple[str, ...]:
         """The landmarks that any gesture needs, in alphabetical order."""
         return tuple(sorted({name for group in self._groups for name in group.salient}))
-
-    @property
-    def members(self) -> frozenset[int]:
-        """Indices of the gestures that have a drawing."""
-        return frozenset(index for group in self._groups for index in group.members.tolist())
 
     def distances(self, trajectory: Trajectory) -> FloatArray:
         """Compute the distances of a query to all gestures.
@@ -97,32 +75,6 @@ class ShapeReferences:
         for group in self._groups:
             _fill_distances(trajectory, group, self._simplification, distances)
         return distances
-
-    def find_comparable(self, trajectory: Trajectory) -> npt.NDArray[np.bool_]:
-        """Return ``(G,)``: where `distances` of a query would be finite, without drawing it."""
-        comparable = np.zeros(self._count, dtype=bool)
-        for group in self._groups:
-            if set(group.salient) <= set(trajectory.landmarks):
-                seen = trajectory.select(group.salient)
-                comparable[group.members] = _all_seen(seen) and is_drawable(seen)
-        return comparable
-
-    def own_distances(self, most: int) -> list[FloatArray]:
-        """Compute, per voter, the distances between gestures with the same salient landmarks.
-
-        Parameters
-        ----------
-        most
-            Largest number of gestures with the same salient landmarks; the first ones are used.
-
-        """
-        own: list[list[FloatArray]] = [[np.empty(0)] for _ in PAPER_VOTERS]
-        for group in self._groups:
-            for row, voter in enumerate(PAPER_VOTERS):
-                references = group.references[voter.name][:most]
-                for index, reference in enumerate(references[:-1]):
-                    own[row].append(voter.distances(reference, references[index + 1 :]))
-        return [np.concatenate(parts) for parts in own]
 
 
 def _fill_distances(

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.recognition.features.motion import (
+    SHARES,
     Movement,
     build_movement,
     find_hands,
@@ -86,7 +87,8 @@ def describe_traversals(
 ) -> dict[str, FloatArray]:
     """Return the descriptors of R traversals of a movement, ``(R, ...)`` by voter's name."""
     movements = [each.of(shown, landmarks) for each in traversals]
-    return {
+    described = {
         voter.name: np.array([voter.describe(each) for each in movements])
         for voter in MOTION_VOTERS
     }
+    return described | {SHARES: np.array([each.shares for each in movements])}

@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.motion_references import MotionReferences
-from app.recognition.decision.shape_references import ShapeReferences
 from app.recognition.gestures.gesture import Gesture
 
 STEP = 30
@@ -47,13 +46,12 @@ class View:
     ----------
     turns
         ``(S,)`` degrees by which each reference is turned, positive to the body's own left.
-    shapes, motions
-        The turned references; shapes are None where drawings are not compared.
+    motions
+        The turned references.
 
     """
 
     turns: npt.NDArray[np.intp]
-    shapes: ShapeReferences | None
     motions: MotionReferences
 
 
@@ -64,27 +62,17 @@ class Views:
     ----------
     gestures
         S gestures of one demonstration each.
-    shapes, motions
-        Their references as demonstrated; shapes are None where drawings are not compared, which
-        spares drawing all gestures for each view.
-    simplification
-        Tolerance in pixels with which turned gestures are drawn.
+    motions
+        Their references as demonstrated.
 
     """
 
-    def __init__(
-        self,
-        gestures: Sequence[Gesture],
-        shapes: ShapeReferences | None,
-        motions: MotionReferences,
-        simplification: float,
-    ) -> None:
+    def __init__(self, gestures: Sequence[Gesture], motions: MotionReferences) -> None:
         self._gestures = tuple(gestures)
         self._facings = tuple(
             None if each.trajectory is None else each.trajectory.facing for each in gestures
         )
-        self._simplification = simplification
-        self._as_shown = View(np.zeros(len(self._gestures), dtype=np.intp), shapes, motions)
+        self._as_shown = View(np.zeros(len(self._gestures), dtype=np.intp), motions)
         self._made: dict[Turns, View] = {}
 
     def list_for(self, facing: float | None) -> list[View]:
@@ -111,14 +99,8 @@ class Views:
         if not any(turns):
             return self._as_shown
         if (made := self._made.get(turns)) is None:
-            shapes = None
-            if self._as_shown.shapes is not None:
-                turned = [each.turn(turn) for each, turn in zip(self._gestures, turns, strict=True)]
-                shapes = ShapeReferences(turned, self._simplification)
             made = View(
-                np.array(turns, dtype=np.intp),
-                shapes,
-                self._as_shown.motions.turn(self._gestures, turns),
+                np.array(turns, dtype=np.intp), self._as_shown.motions.turn(self._gestures, turns)
             )
             # Replaced, never changed: several threads may recognise with one recogniser.
             kept = list(self._made.items())[-(CACHED - 1) :]

@@ -4,26 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.motion import Movement, build_movement, find_hands, list_limbs
+from app.recognition.features.motion import (
+    Movement,
+    build_movement,
+    find_hands,
+    list_limbs,
+    normalize_size,
+)
 from app.recognition.features.traversals import AS_SHOWN, Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import BAND, dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.direction import Direction
-from app.recognition.voters.motion.hand_attitude import HandAttitude
 from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.posture import Posture
 
 DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond."""
 
-AlignedVoter = Path | Direction | Posture | HandAttitude
+RESTING_WEIGHT = 0.3
+"""Weight of a posture where the movement starts; at the farthest step it is greater by 1."""
+
+AlignedBy = Literal["path", "posture"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -83,9 +89,9 @@ class Alignment:
     label
         The gesture's.
     voter
-        The voter's name.
+        ``path``, the voter, or ``posture``: where the arms' bones point.
     parts
-        P landmarks; for voters that compare limbs, the limbs' outer ends.
+        P landmarks; of postures the limbs' outer ends.
     pairs
         ``(S, 2)``: corresponding steps of the query and of the gesture.
     time
@@ -95,8 +101,8 @@ class Alignment:
     query, gesture
         ``(N, P, 2)``: the voter's descriptors, step by step and part by part, x right and y down,
         in its own unit; NaN where not seen. For `Path` each landmark's position relative to its
-        mean, in sizes of the gesture: the costs are the squared distances between corresponding
-        positions, divided by N.
+        mean, in sizes of the gesture: the costs are the distances between corresponding positions,
+        divided by N.
     costs
         ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
         their sum.
@@ -157,7 +163,7 @@ def align(
     landmarks: Sequence[str],
     *,
     start: float = 0.0,
-    voter: AlignedVoter | None = None,
+    by: AlignedBy = "path",
 ) -> Alignment | None:
     """Align a query with a gesture's example.
 
@@ -171,17 +177,19 @@ def align(
         Names of the landmarks.
     start
         Second of the query's clock at which its movement begins.
-    voter
-        One of the DTW voters; `Path` when not given.
+    by
+        What is aligned.
 
     Returns
     -------
-    None where the voter cannot compare the two.
+    None where the two cannot be compared.
 
     """
-    voter = voter or Path()
-    parts = _parts(voter, landmarks)
-    left, right = voter.describe(query), voter.describe(example.movement)
+    if by == "path":
+        describe, parts = Path().describe, tuple(landmarks)
+    else:
+        describe, parts = describe_posture, tuple(outer for _, outer in list_limbs(landmarks))
+    left, right = describe(query), describe(example.movement)
     known = np.asarray(np.isfinite(left).any(axis=0) & np.isfinite(right).any(axis=0))
     if not known.any():
         return None
@@ -194,9 +202,11 @@ def align(
     # The known components stand for the whole vector, as in `dtw_distances`.
     costs = np.zeros((len(pairs), len(known)))
     costs[:, known] = np.nan_to_num(squares) * known.sum() / np.maximum(compared, 1)
+    # A step's distance is the root of its squares, of which each part has its share.
+    costs /= np.sqrt(np.maximum(costs.sum(axis=1, keepdims=True), 1e-12))
     return Alignment(
         label=example.label,
-        voter=voter.name,
+        voter=by,
         parts=parts,
         pairs=pairs,
         time=start + query.reached,
@@ -207,6 +217,18 @@ def align(
         backward=example.traversal.backward,
         mirrored=example.mirrored,
     )
+
+
+def describe_posture(movement: Movement) -> FloatArray:
+    """Describe where the arms' bones point at each step: ``(N, 2 B)``, NaN where not seen.
+
+    Vectors along upper arm, forearm, hand and thumb, divided by one size. Unlike a path they
+    distinguish a raised hand from a lowered one. Steps weigh more the farther they are from the
+    start, because a gesture's meaning lies in its stroke, not in the arm at rest (Kendon 2004).
+    ``(N, 0)`` without limbs.
+    """
+    weight = RESTING_WEIGHT + movement.under_way
+    return (normalize_size(movement.limbs) * weight[:, None, None]).reshape(len(weight), -1)
 
 
 def find_nearest_example(
@@ -233,12 +255,3 @@ def _places(shown: FloatArray) -> list[list[list[float] | None]]:
         [place if np.isfinite(place).all() else None for place in step]
         for step in np.round(shown, DIGITS).tolist()
     ]
-
-
-def _parts(voter: AlignedVoter, landmarks: Sequence[str]) -> tuple[str, ...]:
-    if isinstance(voter, Path | Direction):
-        return tuple(landmarks)
-    bones = list_limbs(landmarks)
-    if isinstance(voter, HandAttitude):
-        bones = tuple(bone for bone in bones if bone[0].endswith("wrist"))
-    return tuple(outer for _, outer in bones)

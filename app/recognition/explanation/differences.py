@@ -34,9 +34,8 @@ a part missing or added; another shape; slower or quicker; another place beside 
 smaller; another bend of the wrist; not seen for a while; a finger, or the turn of a held
 hand."""
 
-DIFFERENT = 2 * ALIKE
-"""Least path distance of a difference: twice that of two people's takes of one figure. A third of
-simulated takes by another person exceed it."""
+DIFFERENT = 1.4 * ALIKE
+"""Least path distance of a difference: clearly beyond that of two people's takes of one figure."""
 
 LEAST_SHARE = 0.5
 """Least share of the distance that a difference must explain to be reported."""
@@ -45,9 +44,8 @@ CUTS = tuple(range(STEPS // 8, STEPS // 2 + 1, 2))
 """Steps of 32 that may be missing or added at either end: from an eighth, the shortest stroke, to a
 half, beyond which the rest is no longer most of the gesture."""
 
-AS_GOOD = 1.15
-"""Factor on the least distance up to which a smaller cut is preferred: a little less than a fifth,
-the least difference that people notice in a figure."""
+AS_GOOD = 1.07
+"""Factor on the least distance up to which a smaller cut is preferred."""
 
 ELSEWHERE = 0.5
 """Torso lengths between the mean positions from which the place differs: half a forearm, twice the

@@ -13,7 +13,13 @@ import numpy as np
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
-from app.recognition.explanation.alignment import Alignment, Example, align, find_nearest_example
+from app.recognition.explanation.alignment import (
+    AlignedBy,
+    Alignment,
+    Example,
+    align,
+    find_nearest_example,
+)
 from app.recognition.explanation.analysis import Analysis
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactual_search import (
@@ -31,8 +37,6 @@ from app.recognition.explanation.vote_breakdown import break_down_votes
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.posture import Posture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -119,9 +123,7 @@ def explain(
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
         support=result.support,
-        verdicts=break_down_votes(
-            table, result, context.language.gestures[at].thresholds, at, other
-        ),
+        verdicts=break_down_votes(table, result, at, other),
         facing=table.facing,
         view=int(table.views[at]),
         turned=_difference(table, at, other),
@@ -171,8 +173,9 @@ class _Pairings:
         if example is None or len(self._query) < 2:
             return
         query = build_movement(self._query, self._landmarks)
-        for voter in (Path(), Posture()) if self._full else (Path(),):
-            aligned = align(query, example, self._landmarks, start=self._start, voter=voter)
+        kinds: tuple[AlignedBy, ...] = ("path", "posture") if self._full else ("path",)
+        for kind in kinds:
+            aligned = align(query, example, self._landmarks, start=self._start, by=kind)
             if aligned is not None:
                 yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
 

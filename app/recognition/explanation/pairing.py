@@ -17,7 +17,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.motion.path import Path
 
-ALIKE = 0.08
+ALIKE = 0.2
 """Mean path distance between two people's takes of one figure."""
 
 

@@ -51,7 +51,7 @@ def _outcome(analysis: Analysis) -> str:
         return f"Nothing was recognised; {analysis.nearest!r} was nearest"
     return (
         f"Nothing was recognised: {analysis.expected!r} was nearest, but the take is "
-        f"{analysis.novelty:.1f} times as far from it as its thresholds allow"
+        f"{analysis.novelty:.1f} times as far from it as the limit allows"
     )
 
 
@@ -82,22 +82,18 @@ def _describe_opposition(analysis: Analysis) -> str:
 def _opposing_voters(analysis: Analysis) -> list[str]:
     """Return the voters against the expected gesture, those with the largest contribution first.
 
-    If it was nearest but rejected, the voters farthest beyond their thresholds.
+    If it was nearest but rejected, the voters with the largest shares of its score.
     """
     if analysis.nearest != analysis.expected:
         return [verdict.voter for verdict in analysis.verdicts if verdict.against > 0]
-    beyond = {
-        verdict.voter: verdict.distance / verdict.limit
-        for verdict in analysis.verdicts
-        if verdict.limit and verdict.distance > verdict.limit
-    }
-    return sorted(beyond, key=lambda voter: -beyond[voter])
+    beyond = [verdict for verdict in analysis.verdicts if verdict.share > 0]
+    return [each.voter for each in sorted(beyond, key=lambda verdict: -verdict.share)]
 
 
 def _cause(analysis: Analysis) -> Difference | None:
     """Return the difference that explains most, if any does."""
     strongest = analysis.verdicts[0].voter if analysis.verdicts else ""
-    kinds = {"tempo": "tempo", "posture": "place"} | dict.fromkeys(HAND_VOTER_NAMES, "hand_shape")
+    kinds = {"tempo": "tempo", "place": "place"} | dict.fromkeys(HAND_VOTER_NAMES, "hand_shape")
     causes = [each for each in analysis.differences if each.kind == kinds.get(strongest)]
     # A hand shape does not explain a decision by the movement.
     shaped = (

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.voters.registry import HAND_VOTERS, VOTERS
+from app.recognition.voters.registry import HAND_VOTERS, MOTION_VOTERS, PAPER_VOTERS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,8 +29,8 @@ class VoterBreakdown:
         Whether it has weight and votes for another gesture than the expected one.
     distance, other_distance
         To the expected gesture and to the other, in its unit; infinite where not comparable.
-    limit
-        Its threshold for the expected gesture, in its unit (`rejection`); None where it has none.
+    share
+        Its share of the expected gesture's score, in [0, 1]; 0 where it compares nothing.
     against
         Its contribution to the expected gesture's score minus that to the other's: positive if it
         is against the expected one. Summed over all voters, with `Explanation.turned`, this is the
@@ -44,7 +45,7 @@ class VoterBreakdown:
     wrong: bool
     distance: float
     other_distance: float
-    limit: float | None
+    share: float
     against: float
 
     def to_dict(self) -> dict[str, Any]:
@@ -58,7 +59,6 @@ class VoterBreakdown:
 def break_down_votes(
     table: ScoreTable,
     result: Recognition,
-    thresholds: Mapping[str, float],
     expected: int,
     other: int | None,
 ) -> tuple[VoterBreakdown, ...]:
@@ -68,15 +68,14 @@ def break_down_votes(
     ----------
     table, result
         Score table and result of the recognition.
-    thresholds
-        Of the expected gesture, see `Gesture.thresholds`.
     expected, other
         Indices of the two gestures; without another one `against` is 0.
 
     """
-    units = {voter.name: voter.unit for voter in (*VOTERS, *HAND_VOTERS)}
+    units = {voter.name: voter.unit for voter in (*PAPER_VOTERS, *MOTION_VOTERS, *HAND_VOTERS)}
     label = result.gestures[expected]
     given = []
+    whole = max(float(table.contributions[:, expected].sum()), 1e-12)
     for row, voter in enumerate(result.voters):
         distances, shares = table.distances[row], table.contributions[row]
         vote = result.votes.get(voter)
@@ -90,7 +89,7 @@ def break_down_votes(
                 wrong=voter in result.counted and vote != label,
                 distance=float(distances[expected]),
                 other_distance=math.inf if other is None else float(distances[other]),
-                limit=thresholds.get(voter),
+                share=float(np.nan_to_num(shares[expected] / whole, posinf=0.0)),
                 against=0.0 if math.isnan(against) else against,
             )
         )

@@ -58,17 +58,18 @@ SIDES = ("left_", "right_")
 ARM_JOINTS = ("elbow", "wrist")
 """Joints of an arm whose places in time are compared, of both arms."""
 
-RESTING_SPEED = 0.15
-"""Speed below which the arms rest before and after a gesture, as a share of the gesture's speed.
+RESTING_SHARE = 0.04
+"""Share of the joint path that is cut at either end, with the rests before and after a gesture.
 
-Recordings begin and end with hanging arms for any length of time; the gesture's speed is the 95th
-percentile, because a single frame may jump."""
+Recordings begin and end with hanging arms for any length of time, and with a part of the way from
+and to them. A share of the path needs no speed of rest; shares from 0.02 to 0.07 give the same
+accuracy (`benchmarks/studies/people.md`)."""
 
-SPEED_SHARE = 0.95
-"""Share of the moments that are slower than the gesture's speed."""
+SHARES = "shares"
+"""Name of `Movement.shares` among a movement's descriptors."""
 
-LEAST_MOVING = 4
-"""Least moments between the rests at both ends; with fewer, nothing is cut."""
+LEAST_MOVING = 8
+"""Least moments that are kept; a movement of fewer is not cut."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -113,6 +114,16 @@ class Movement:
         way = (self.paths - self.paths[0]).reshape(len(self.paths), -1)
         away = np.sqrt(np.vecdot(way, way))
         return np.asarray(away / max(away.max(), 1e-9))
+
+    @cached_property
+    def shares(self) -> FloatArray:
+        """``(2, 2 A)``: how much each coordinate of `places` moves, by its path and its extent.
+
+        Both are unit vectors; 0 for landmarks that were not seen (`measure_other_joints`).
+        """
+        flat = np.nan_to_num(self.places).reshape(len(self.places), -1)
+        moved = np.stack([np.abs(np.diff(flat, axis=0)).sum(axis=0), np.ptp(flat, axis=0)])
+        return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=1, keepdims=True), 1e-9))
 
     @property
     def duration(self) -> float:
@@ -291,7 +302,7 @@ class _Columns:
     arms
         Number of all landmarks of the arms.
     moving
-        Indices in `needed` of the landmarks whose speed shows rests.
+        Indices in `needed` of the landmarks whose path shows rests.
     torso
         Index of the torso's path in `needed`; None where the trajectory has none.
 
@@ -346,19 +357,17 @@ def _find_columns(names: tuple[str, ...], landmarks: tuple[str, ...]) -> _Column
 
 
 def _cut_rests(trajectory: Trajectory, moving: npt.NDArray[np.intp]) -> Trajectory:
-    """Cut the rests before and after a movement; `moving` are the landmarks whose speed counts."""
-    time = trajectory.time
-    if len(time) <= LEAST_MOVING:
+    """Cut the rests before and after a movement; `moving` are the landmarks whose path counts."""
+    count = len(trajectory.time)
+    if count <= LEAST_MOVING:
         return trajectory
-    paths = np.nan_to_num(trajectory.xy.take(moving, axis=1)).reshape(len(time), -1)
-    velocity = central_differences(paths) / central_differences(time)[:, None]
-    speed = np.sqrt(np.vecdot(velocity, velocity))
-    usual = np.sort(speed)[int(SPEED_SHARE * (len(speed) - 1))]
-    under_way = np.flatnonzero(speed > RESTING_SPEED * usual)
-    if len(under_way) < LEAST_MOVING:
+    steps = np.diff(np.nan_to_num(trajectory.xy.take(moving, axis=1)).reshape(count, -1), axis=0)
+    way = np.cumsum(np.sqrt(np.vecdot(steps, steps)))
+    if not way[-1] > 0:
         return trajectory
-    inside = slice(under_way[0], under_way[-1] + 1)
-    return replace(trajectory, xy=trajectory.xy[inside], time=time[inside])
+    first, last = np.searchsorted(way / way[-1], (RESTING_SHARE, 1 - RESTING_SHARE))
+    inside = slice(int(first), max(int(last) + 2, int(first) + LEAST_MOVING))
+    return replace(trajectory, xy=trajectory.xy[inside], time=trajectory.time[inside])
 
 
 def _smooth(trajectory: Trajectory) -> Trajectory:

@@ -7,7 +7,7 @@ from typing import Final, Literal
 
 from app.recognition.errors import OsgError
 from app.recognition.text.wording import join_words
-from app.recognition.voters.registry import PAPER_VOTERS, VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS, PAPER_VOTERS
 from app.recognition.voters.voter import Voter
 
 ProfileName = Literal["paper", "full"]
@@ -24,7 +24,7 @@ class Profile:
     voters
         Voters in the order of results.
     rejects
-        Whether it rejects movements that are no gesture, by thresholds of the language.
+        Whether it rejects movements that are no gesture, by a limit of the language.
     compares_motion
         Whether it compares movements, not drawings alone.
     repairs_keypoints
@@ -43,10 +43,12 @@ PROFILES: Final[dict[str, Profile]] = {
     "paper": Profile(
         "paper", PAPER_VOTERS, rejects=False, compares_motion=False, repairs_keypoints=False
     ),
-    "full": Profile("full", VOTERS, rejects=True, compares_motion=True, repairs_keypoints=True),
+    "full": Profile(
+        "full", MOTION_VOTERS, rejects=True, compares_motion=True, repairs_keypoints=True
+    ),
 }
-"""Profiles by name. ``paper``: the seven voters of the paper, majority vote. ``full``: all voters,
-fused."""
+"""Profiles by name. ``paper``: the seven voters of the paper, majority vote. ``full``: a few
+distances of movements and hands, fused."""
 
 DEFAULT_PROFILE: Final[ProfileName] = "full"
 """Profile of a language whose author chose none: it rejects movements that are no gesture."""

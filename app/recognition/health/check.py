@@ -21,7 +21,7 @@ from app.recognition.health.known_signs import find_known_signs
 from app.recognition.health.neighbours import (
     MOST_TOGETHER,
     find_neighbours,
-    measure_path_distances,
+    measure_step_distances,
 )
 from app.recognition.health.remedy import Remedy, TrialRunner, find_pair_remedies
 from app.recognition.health.report import (
@@ -52,7 +52,7 @@ MOST_ALARMS = 0.1
 """Share of background motion from which a note is given. It is no error, because background
 motion is rare between two salutes."""
 
-DUPLICATE = 0.05
+DUPLICATE = 0.12
 """Fused distance of two demonstrations below which they are duplicates: less than between two takes
 of one gesture by the same person; 1 is two typical gestures."""
 
@@ -217,7 +217,7 @@ def _estimate_far_distances(recognizer: Recognizer, distances: FloatArray) -> Fl
     """Return the distances with those of far pairs estimated from their paths, for the map."""
     if len(distances) <= MOST_TOGETHER:
         return distances
-    paths = measure_path_distances(recognizer)
+    paths = measure_step_distances(recognizer)
     known = np.isfinite(distances) & np.isfinite(paths) & (paths > 0)
     scale = float(np.median(distances[known] / paths[known])) if known.any() else 1.0
     return np.where(np.isfinite(distances), distances, scale * paths)

@@ -100,7 +100,7 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
             "too_small",
             label,
             f"{gesture.label} spans only {size:.2f} torso lengths, and even an idle hand moves up "
-            f"to 0.2{_predict_misses(gesture)}: show it larger",
+            f"to 0.2: show it larger",
         )
     for name in gesture.salient:
         if (seen := measure_visible_share(shown, name)) < LEAST_SEEN:
@@ -138,13 +138,6 @@ def _check_held_shape(gesture: Gesture, shown: Trajectory) -> Iterator[Finding]:
                 f"{which} looks like the salute, which ends the take: choose a shape whose middle "
                 "and ring finger are not spread apart",
             )
-
-
-def _predict_misses(gesture: Gesture) -> str:
-    """Return the estimated rate of misses as a clause, empty where it is not known."""
-    if gesture.rates is None:
-        return ""
-    return f"; about {gesture.rates.miss:.0%} of other people's takes will be missed"
 
 
 def measure_visible_share(shown: Trajectory, landmark: str) -> float:

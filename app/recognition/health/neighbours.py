@@ -13,7 +13,7 @@ from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.motion_references import MAX_GESTURES_TRAVERSED
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
-from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.velocity import Velocity
 
 MOST_TOGETHER = MAX_GESTURES_TRAVERSED
 """Most gestures that are all compared with each other; the recogniser itself changes there too."""
@@ -25,7 +25,7 @@ NEIGHBOURS = 24
 def find_neighbours(recognizer: Recognizer) -> npt.NDArray[np.intp]:
     """Return the gestures that the takes of each one are compared with.
 
-    The nearest are found by their paths, step by step; the comparison itself uses all voters.
+    The nearest are found by their velocities, step by step; the comparison itself uses all voters.
 
     Parameters
     ----------
@@ -41,23 +41,23 @@ def find_neighbours(recognizer: Recognizer) -> npt.NDArray[np.intp]:
     count = len(recognizer.language.gestures)
     if count <= MOST_TOGETHER:
         return np.tile(np.arange(count), (count, 1))
-    apart = measure_path_distances(recognizer)
+    apart = measure_step_distances(recognizer)
     np.fill_diagonal(apart, -1.0)
     nearest = np.argpartition(apart, NEIGHBOURS, axis=1)[:, : NEIGHBOURS + 1]
     return np.sort(nearest, axis=1)
 
 
-def measure_path_distances(recognizer: Recognizer) -> FloatArray:
-    """Return the distances of the gestures' paths, ``(G, G)``; infinite without demonstration."""
+def measure_step_distances(recognizer: Recognizer) -> FloatArray:
+    """Return the distances of the gestures' velocities, ``(G, G)``; infinite without any."""
     vote = recognizer.vote
     assert isinstance(vote, FusedVote)  # profile `full`
     count = len(recognizer.language.gestures)
     references, rows = vote.references, vote.references.as_shown
     # References beyond the language's gestures are further demonstrations and mirror images.
     rows = rows[references.gestures[rows] < count]
-    paths = np.nan_to_num(references.descriptors[Path.name][rows].reshape(len(rows), -1))
-    squares = np.vecdot(paths, paths)
-    between = squares[:, None] + squares - 2.0 * (paths @ paths.T)
+    steps = np.nan_to_num(references.descriptors[Velocity.name][rows].reshape(len(rows), -1))
+    squares = np.vecdot(steps, steps)
+    between = squares[:, None] + squares - 2.0 * (steps @ steps.T)
     apart = np.full((count, count), np.inf)
     known = references.gestures[rows]
     apart[np.ix_(known, known)] = np.sqrt(np.maximum(between, 0.0))

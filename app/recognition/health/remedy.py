@@ -164,9 +164,7 @@ def _apply_edits(
 
 def _try_edit(two: list[Gesture], run_trials: TrialRunner) -> RateEstimate:
     language = Language("two", two)
-    # Only scores are compared, so thresholds are not calibrated.
-    uncalibrated = replace(language, thresholds_for=language.fingerprint)
-    trials = run_trials(Recognizer(uncalibrated, "full"), takes=TRIAL_TAKES)
+    trials = run_trials(Recognizer(language, "full"), takes=TRIAL_TAKES)
     confused = _confusion_between(trials, (0, 1), (0, 1))
     assert confused is not None  # in a language of two, both are rivals
     return confused

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
@@ -211,8 +212,8 @@ class GestureEntry(_Model):
     thresholds: Annotated[
         dict[str, FiniteFloat],
         Field(
-            description="Per voter the distance at which the gesture is rejected, the others being "
-            "as far beyond theirs; empty until calibrated."
+            description="Per voter the distance at which versions up to 0.2 reject the gesture; "
+            "not used since, and computed anew by these versions where empty."
         ),
     ]
     rates: Annotated[
@@ -312,8 +313,8 @@ class LanguageDocument(_Model):
         str,
         Field(
             pattern="^([0-9a-f]{8})?$",
-            description="Fingerprint of the gestures that the thresholds were made for; where it "
-            "is not theirs, recognition makes them anew. Left out when there are none.",
+            description="Fingerprint of the gestures that the thresholds were made for, in files "
+            "of version 0.2 and before.",
         ),
     ] = ""
     grammar: Annotated[
@@ -331,6 +332,14 @@ class LanguageDocument(_Model):
     trigger: Annotated[
         TriggerEntry | None,
         Field(description="What begins and ends a take. Left out when a salute does."),
+    ] = None
+    most_refused: Annotated[
+        float | None,
+        Field(
+            gt=0,
+            le=MOST_REFUSED_AT_ALL,
+            description="Share of right takes that may be refused. Left out when 0.05.",
+        ),
     ] = None
     gestures: Annotated[list[GestureEntry], Field(max_length=MAX_GESTURES)]
     sha256: Annotated[

@@ -9,13 +9,11 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
-from zlib import crc32
 
-from app.recognition.decision.calibration import HAND_RULE, MOVING_HAND_RULE, RULE, calibrate
+from app.recognition.decision.rejection import MOST_REFUSED, MOST_REFUSED_AT_ALL
 from app.recognition.errors import LanguageError, OsgError
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
-from app.recognition.gestures.switches import Switches
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.language.file import name_file, read_content, read_document, write_document
 from app.recognition.language.file_schema import (
@@ -66,15 +64,19 @@ class Language:
     skeleton
         Pairs of landmarks joined by a bone, for drawing.
     thresholds_for
-        The `fingerprint` of the gestures that the thresholds were calibrated for; empty: none.
+        Fingerprint of the gestures' thresholds in files of version 0.2 and before; kept for robots
+        of these versions, and not used.
     grammar
         Its phrases; None if every gesture is a command of its own.
     profile
         The profile that recognises it, one of `profile.PROFILES`.
     tuning
-        The author's changes to that profile. Thresholds do not depend on it.
+        The author's changes to that profile.
     trigger
         What begins and ends a take; by default a salute.
+    most_refused
+        Share of right takes that may be rejected, above 0 and at most `MOST_REFUSED_AT_ALL`; used
+        where several people have shown the gestures (`decision.rejection`).
 
     Raises
     ------
@@ -94,6 +96,7 @@ class Language:
     profile: ProfileName = DEFAULT_PROFILE
     tuning: Tuning = AS_THE_PROFILE
     trigger: Trigger = SALUTE
+    most_refused: float = MOST_REFUSED
 
     def __post_init__(self) -> None:
         """Validate and normalise the fields."""
@@ -103,6 +106,12 @@ class Language:
         _check_text(self.author, MAX_AUTHOR_LENGTH, "/author")
         if self.revision < 1:
             raise LanguageError(f"revisions count from 1, got {self.revision}", "/revision")
+        if not 0 < self.most_refused <= MOST_REFUSED_AT_ALL:
+            raise LanguageError(
+                f"the share of right takes that may be refused is above 0 and at most "
+                f"{MOST_REFUSED_AT_ALL}, got {self.most_refused}",
+                "/most_refused",
+            )
         object.__setattr__(self, "gestures", tuple(self.gestures))
         if len(self.gestures) > MAX_GESTURES:
             raise LanguageError(
@@ -151,41 +160,6 @@ class Language:
             if gesture.label == label:
                 return gesture
         raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {self.labels}")
-
-    @property
-    def fingerprint(self) -> str:
-        """CRC-32 of everything that the thresholds depend on, in eight hexadecimal digits."""
-        checksum = crc32(RULE.encode())
-        for gesture in self.gestures:
-            for each in gesture.single_demonstrations():
-                relevant = (
-                    f"({each.salient!r}, {_describe_switches(each.switches)}, {each.image.any()!r})"
-                )
-                checksum = crc32(relevant.encode("utf-8", "surrogatepass"), checksum)
-                if (shown := each.trajectory) is not None:
-                    checksum = crc32(repr((shown.landmarks, shown.unit)).encode(), checksum)
-                    checksum = crc32(shown.xy.tobytes() + shown.time.tobytes(), checksum)
-                    for hand in shown.hands:
-                        checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
-                        checksum = crc32(HAND_RULE.encode(), checksum)
-                    for hand in shown.then_hands:
-                        checksum = crc32(b"then" + hand.side.encode() + hand.xy.tobytes(), checksum)
-                    for hand in shown.moving_hands:
-                        checksum = crc32(hand.side.encode() + hand.xy.tobytes(), checksum)
-                        checksum = crc32(MOVING_HAND_RULE.encode(), checksum)
-            if gesture.further:
-                checksum = crc32(repr(len(gesture.further)).encode(), checksum)
-        return f"{checksum:08x}"
-
-    def calibrated(self) -> Language:
-        """Return the same revision with thresholds for its gestures.
-
-        Returns the language itself if it has them. Takes about as long as a dozen recognitions.
-        """
-        fingerprint = self.fingerprint
-        if not self.gestures or self.thresholds_for == fingerprint:
-            return self
-        return replace(self, gestures=calibrate(self.gestures), thresholds_for=fingerprint)
 
     def tuning_with(self, profile: str) -> Tuning:
         """Return the tuning for a profile; weight factors apply to the language's own only."""
@@ -270,6 +244,7 @@ class Language:
             profile=self.profile,
             tuning=tuning_to_entry(self.tuning),
             trigger=trigger_to_entry(self.trigger),
+            most_refused=None if self.most_refused == MOST_REFUSED else self.most_refused,
             gestures=[gesture_to_entry(gesture) for gesture in self.gestures],
         )
         return write_document(document)
@@ -301,8 +276,9 @@ class Language:
             thresholds_for=document.thresholds_for,
             grammar=None if document.grammar is None else entry_to_grammar(document.grammar),
             profile=document.profile,
-            tuning=entry_to_tuning(document.tuning),
+            tuning=entry_to_tuning(document.tuning, document.profile),
             trigger=entry_to_trigger(document.trigger),
+            most_refused=MOST_REFUSED if document.most_refused is None else document.most_refused,
         )
 
     def save(self, path: str | Path) -> None:
@@ -390,12 +366,3 @@ def _moment(timestamp: str) -> datetime:
         return datetime.strptime(timestamp, TIMESTAMP).replace(tzinfo=timezone.utc)
     except ValueError as error:
         raise LanguageError(f"no such date and time: {timestamp!r}", "/created") from error
-
-
-def _describe_switches(switches: Switches) -> str:
-    """Describe the switches as for fingerprints of languages before `hand_shape` existed."""
-    positions = {**vars(switches)}
-    if positions["hand_shape"] == "auto":
-        del positions["hand_shape"]
-    words = ", ".join(f"{name}={position!r}" for name, position in positions.items())
-    return f"Switches({words})"

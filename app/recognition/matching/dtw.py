@@ -18,7 +18,8 @@ from app.recognition.matching.step_distances import (
     Precision,
     for_query,
     for_references,
-    squared_distances,
+    step_distances,
+    take_root,
 )
 from app.recognition.poses.sequence import FloatArray
 
@@ -42,12 +43,12 @@ def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> Float
 
     Returns
     -------
-    ``(M,)``: squared Euclidean distances summed along the alignment, divided by N, so that they
-    do not grow with the number of steps; infinite where nothing can be compared.
+    ``(M,)``: Euclidean distances of the steps summed along the alignment, divided by N, so that
+    they do not grow with the number of steps; infinite where nothing can be compared.
 
     """
     count = count_half_steps(len(query), band)
-    costs = squared_distances(_from_both_ends(query, count), _from_both_ends(references, count))
+    costs = step_distances(_from_both_ends(query, count), _from_both_ends(references, count))
     return compute_alignment_costs(costs, len(query), band)
 
 
@@ -93,7 +94,7 @@ class DtwReferences:
 
         Returns
         -------
-        ``(2, H, H, M)``: squared distances of the first H steps, and of the last H in reverse
+        ``(2, H, H, M)``: distances of the first H steps, and of the last H in reverse
         order, for `compute_alignment_costs`; infinite where nothing is comparable.
 
         """
@@ -106,10 +107,11 @@ class DtwReferences:
             left = for_query(_from_both_ends(known_steps, count))
             right = self._sides_of(rows).reshape(2, -1, count * pairs)
             np.matmul(left, right, out=out.reshape(2, count, count * pairs))
+            take_root(out)
             return out
         references = self.sequences if rows is None else self.sequences[rows]
         known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
-        squared_distances(
+        step_distances(
             _from_both_ends(query[:, known], count),
             _from_both_ends(references[..., known], count),
             out,
@@ -209,6 +211,7 @@ class DtwBatch:
                 right[:, part].reshape(2, -1, count * pairs),
                 out=costs[:, index].reshape(2, count, count * pairs),
             )
+            take_root(costs[:, index])
 
     @cached_property
     def _known(self) -> npt.NDArray[np.intp]:
@@ -276,7 +279,7 @@ def dtw_pairs(query: FloatArray, reference: FloatArray, band: int) -> npt.NDArra
     of equally good alignments the one in which both advance is chosen.
 
     """
-    costs = squared_distances(query, reference[None])[..., 0]
+    costs = step_distances(query, reference[None])[..., 0]
     steps = len(query)
     # Row and column 0 are before the first steps.
     total = np.full((steps + 1, steps + 1), np.inf)

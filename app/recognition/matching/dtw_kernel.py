@@ -16,7 +16,6 @@ from typing import Any, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.matching.step_distances import ROUNDING
 from app.recognition.poses.sequence import FloatArray
 
 StepCosts: TypeAlias = npt.NDArray[np.float32]
@@ -24,10 +23,6 @@ StepCosts: TypeAlias = npt.NDArray[np.float32]
 square of about 1, and distances are exact to a millionth of it."""
 
 Totals: TypeAlias = npt.NDArray[np.float32 | np.float64]
-
-ROUNDING_OF_STEP_COSTS = 4e-6
-"""Distances below it are set to 0 in single precision: rounding errors are about a millionth of the
-mean square, and two takes of a gesture differ by ten thousand times as much."""
 
 
 def count_half_steps(steps: int, band: int) -> int:
@@ -67,9 +62,8 @@ def compute_alignment_costs(
     if sweep.meets_in_cells:
         own[:, :views] = before[:, :views]  # where the halves meet, a cell counts once
     met = [(each[:, :views] + each[::-1, views:]).min(axis=0) for each in sweep.totals]
-    found = np.asarray(np.minimum(*met), dtype=np.float64).reshape(*points_of_view, pairs) / steps
-    found[found < (ROUNDING if costs.dtype == np.float64 else ROUNDING_OF_STEP_COSTS)] = 0.0
-    return np.asarray(found)
+    least = np.asarray(np.minimum(*met), dtype=np.float64)
+    return np.asarray(least.reshape(*points_of_view, pairs) / steps)
 
 
 @dataclass(frozen=True, eq=False)

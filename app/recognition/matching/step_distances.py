@@ -1,4 +1,4 @@
-"""Step distances: squared distances of all steps of sequences to each other, as matrix products.
+"""Step distances: distances of all steps of sequences to each other, as roots of matrix products.
 
 ``|q - r|^2 = |q|^2 - 2 q . r + |r|^2`` is the product of ``(-2 q, |q|^2, 1)`` and
 ``(r, 1, |r|^2)``, so that one multiplication of matrices compares a query with many references.
@@ -15,16 +15,17 @@ from app.recognition.poses.sequence import FloatArray
 
 Precision = TypeVar("Precision", np.float32, np.float64)
 
-ROUNDING = 1e-12
-"""Squared distances below it are rounding errors of nearly equal sums and set to 0."""
+ROUNDING = {"float64": 1e-12, "float32": 4e-6}
+"""Squared distances below it are rounding errors of nearly equal sums and set to 0, by precision:
+descriptors have a mean square of about 1, and steps of two takes are much farther apart."""
 
 
-def squared_distances(
+def step_distances(
     query: FloatArray,
     references: FloatArray,
     out: npt.NDArray[np.float32 | np.float64] | None = None,
 ) -> npt.NDArray[np.float32 | np.float64]:
-    """Compute the squared distance of every step of the query to every step of the references.
+    """Compute the distance of every step of the query to every step of the references.
 
     Parameters
     ----------
@@ -48,8 +49,14 @@ def squared_distances(
         np.matmul(for_query(query), _flatten(for_references(references)), out=squares)
     else:
         _compute_partial(query, references, squares)
-    squares[squares < ROUNDING] = 0.0
+    take_root(squares)
     return out
+
+
+def take_root(squares: npt.NDArray[np.float32 | np.float64]) -> None:
+    """Replace squared distances by distances, in their own precision; rounding errors become 0."""
+    squares[squares < ROUNDING[squares.dtype.name]] = 0.0
+    np.sqrt(squares, out=squares)
 
 
 def for_query(query: npt.NDArray[Precision]) -> npt.NDArray[Precision]:

@@ -7,13 +7,9 @@ from typing import Final
 from app.recognition.voters.hand.finger_directions import FingerDirections
 from app.recognition.voters.hand.hand_landmarks import HandLandmarks
 from app.recognition.voters.hand.hand_voter import HandVoter
-from app.recognition.voters.motion.arm_path import ArmPath
-from app.recognition.voters.motion.direction import Direction
-from app.recognition.voters.motion.hand_attitude import HandAttitude
 from app.recognition.voters.motion.motion_voter import MotionVoter
 from app.recognition.voters.motion.path import Path
 from app.recognition.voters.motion.place import Place
-from app.recognition.voters.motion.posture import Posture
 from app.recognition.voters.motion.tempo import Tempo
 from app.recognition.voters.motion.velocity import Velocity
 from app.recognition.voters.motion.wrist_bend import WristBend
@@ -25,7 +21,6 @@ from app.recognition.voters.shape.path_complexity import PathComplexity
 from app.recognition.voters.shape.shape_voter import ShapeVoter
 from app.recognition.voters.shape.solidity import Solidity
 from app.recognition.voters.shape.zernike import ZernikeMoments
-from app.recognition.voters.voter import Voter
 
 PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
     HuMoments(),
@@ -39,27 +34,25 @@ PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
 """The paper's seven (Sec. IV-D): three primary voters, then four secondary ones."""
 
 MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
-    Path(),
-    Direction(),
     Velocity(),
-    ArmPath(),
     Place(),
-    Posture(),
-    HandAttitude(),
+    Path(),
     WristBend(),
     Tempo(),
 )
-"""The additional voters of profile ``full``."""
-
-VOTERS: Final[tuple[Voter, ...]] = (*PAPER_VOTERS, *MOTION_VOTERS)
 """The voters of profile ``full`` that compare movements."""
 
 HAND_VOTERS: Final[tuple[HandVoter, ...]] = (HandLandmarks(), FingerDirections())
 """The voters of profile ``full`` that compare held hand shapes, in languages that have any."""
 
-FORMER_VOTERS: Final = frozenset({"cloud", "stroke_direction", "which_hand", "path_length"})
+FORMER_VOTERS: Final = frozenset(
+    {
+        *("cloud", "stroke_direction", "which_hand", "path_length"),
+        *("direction", "arm_path", "posture", "hand_attitude"),
+    }
+)
 """Voters of earlier versions: leaving them out changed no accuracy. Weight factors for them in
 language files are ignored."""
 
-VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in VOTERS)
+VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in MOTION_VOTERS)
 HAND_VOTER_NAMES: Final[tuple[str, ...]] = tuple(voter.name for voter in HAND_VOTERS)

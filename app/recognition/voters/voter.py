@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
-
-CueGroup = Literal["movement", "place", "hand"]
-"""Cue groups: voters that measure the same property (`app.recognition.decision.rejection`)."""
 
 
 class Voter(ABC):
@@ -27,13 +24,11 @@ class Voter(ABC):
     unit
         What a distance of 1 means, in words.
     prior
-        Importance before it is adapted to a language; `path` has 1.
+        Importance before it is adapted to a language; `velocity` has 1.
     within
         Within-class distance: mean between two people's takes of one gesture.
     between
         Between-class distance: median between two gestures; stands in where a language has one.
-    cue
-        The cue group that it belongs to in rejection; None: not used.
 
     """
 
@@ -42,10 +37,9 @@ class Voter(ABC):
     prior: ClassVar[float]
     within: ClassVar[float]
     between: ClassVar[float]
-    cue: ClassVar[CueGroup | None] = None
 
-    def prior_for(self, landmarks: int) -> float:
-        """Return the prior in a language that follows `landmarks` landmarks."""
+    def prior_for(self, *, arms: bool) -> float:
+        """Return the prior in a language in which the elbows are seen, or hands alone."""
         return self.prior
 
     @abstractmethod

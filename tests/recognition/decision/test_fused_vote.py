@@ -123,7 +123,7 @@ def test_any_stroke_gets_a_label_a_confidence_and_plain_json(
 
 def test_each_voter_with_a_say_votes_for_its_nearest(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(wedge, jitter=0.01))
-    assert {"velocity", "arm_path", "direction"} <= set(result.counted)
+    assert {"velocity", "path"} <= set(result.counted)
     assert "tempo" not in result.counted  # no gesture differs by its tempo alone
     assert sum(result.weights.values()) == pytest.approx(1.0)
     for voter, label in result.votes.items():
@@ -158,15 +158,17 @@ def test_a_language_of_one_gesture_recognises_it() -> None:
     assert taught(circle=circle).recognize(recording(circle, jitter=0.01)).label == "circle"
 
 
-def test_an_imported_gesture_is_judged_by_its_image() -> None:
+def test_an_imported_image_matches_nothing_and_alone_is_read_by_paper() -> None:
     shown = [
         Gesture.from_demonstration(name, recording(SHAPES[name])) for name in ("line", "wedge")
     ]
     drawn = Gesture.from_demonstration("circle", recording(circle))
     imported = Gesture(label="circle", salient=drawn.salient, image=drawn.image)
-    for gestures in ([*shown, imported], [imported]):
-        mixed = Recognizer(Language("mixed", gestures), profile="full")
-        assert mixed.recognize(recording(circle, jitter=0.01)).label == "circle"
+    query = recording(circle, jitter=0.01)
+    mixed = Recognizer(Language("mixed", [*shown, imported]), profile="full").recognize(query)
+    assert np.isinf(mixed.scores[mixed.gestures.index("circle")])
+    alone = Recognizer(Language("alone", [imported]), profile="full").recognize(query)
+    assert (alone.profile, alone.label) == ("paper", "circle")
 
 
 def test_a_recording_in_which_nothing_moves_is_refused(recognizer: Recognizer) -> None:

@@ -4,40 +4,40 @@ import numpy as np
 import pytest
 
 from app.recognition.decision.fusion import fuse, weigh_voters
-from app.recognition.voters.motion.arm_path import ArmPath
-from app.recognition.voters.motion.direction import Direction
-from app.recognition.voters.registry import VOTERS
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.place import Place
+from app.recognition.voters.registry import MOTION_VOTERS
 from app.recognition.voters.voter import Voter
 
 
-def weight_of(voter: Voter, between: float, landmarks: int = 1, pairs: int = 10) -> float:
-    weights, _ = weigh_voters([voter], [np.full(pairs, between)], landmarks)
+def weight_of(voter: Voter, between: float, arms: bool = False, pairs: int = 10) -> float:
+    weights, _ = weigh_voters([voter], [np.full(pairs, between)], arms=arms)
     return float(weights[0])
 
 
 def test_a_voter_that_cannot_tell_the_gestures_apart_gets_no_weight() -> None:
-    for voter in VOTERS:
-        assert weight_of(voter, between=voter.within) == 0.0
-        assert weight_of(voter, between=0.0) == 0.0
+    for voter in MOTION_VOTERS:
+        if voter.within:
+            assert weight_of(voter, between=voter.within) == 0.0
+            assert weight_of(voter, between=0.0) == 0.0
 
 
 def test_the_farther_apart_the_gestures_the_more_weight() -> None:
-    within = ArmPath.within
-    grown = [weight_of(ArmPath(), within * factor) for factor in (1.5, 3, 10, 100)]
+    within = Place.within
+    grown = [weight_of(Place(), within * factor) for factor in (1.5, 3, 10, 100)]
     assert grown == sorted(grown)
-    assert grown[-1] < ArmPath.prior
+    assert grown[-1] < Place.prior
 
 
 def test_a_single_gesture_is_judged_by_what_is_typical() -> None:
-    weights, between = weigh_voters([ArmPath()], [np.empty(0)], 1)
-    assert between[0] == ArmPath.between
-    assert weights[0] > 0.7 * ArmPath.prior
+    weights, between = weigh_voters([Place()], [np.empty(0)], arms=True)
+    assert between[0] == Place.between
+    assert weights[0] > 0.4 * Place.prior
 
 
-def test_direction_shares_its_weight_among_the_landmarks() -> None:
-    assert weight_of(Direction(), 1.3, landmarks=4) == pytest.approx(
-        weight_of(Direction(), 1.3) / 4
-    )
+def test_the_path_has_weight_where_hands_alone_are_seen() -> None:
+    assert weight_of(Path(), 0.8) == pytest.approx(Path.prior)
+    assert weight_of(Path(), 0.8, arms=True) == 0.0
 
 
 def test_scores_do_not_depend_on_the_voters_units() -> None:

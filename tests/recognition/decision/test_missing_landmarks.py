@@ -53,7 +53,7 @@ def recognizer(request: pytest.FixtureRequest) -> Recognizer:
         Gesture.from_demonstration(label, request.param(with_fingers(shape)))
         for label, shape in SHAPES.items()
     ]
-    return Recognizer(Language("pool", gestures).calibrated())
+    return Recognizer(Language("pool", gestures))
 
 
 @pytest.mark.parametrize("label", SHAPES)

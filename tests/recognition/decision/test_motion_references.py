@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,7 +18,9 @@ from tests.recognition.strategies import Shape, circle, line, recording, square,
 
 GESTURES = [shown(s.__name__, s) for s in (circle, square, wedge, line)]
 REFERENCES = MotionReferences.of(GESTURES)
-PATH = [voter.name for voter in MOTION_VOTERS].index("path")
+PATH, VELOCITY = (
+    [voter.name for voter in MOTION_VOTERS].index(name) for name in ("path", "velocity")
+)
 
 
 def begun_at(share: float, shape: Shape, *, backward: bool) -> Shape:
@@ -30,6 +33,15 @@ def described(shape: Shape) -> dict[str, FloatArray]:
     return describe_movement(condense(Trajectory.from_poses(poses)), REFERENCES.landmarks)
 
 
+def measure(query: dict[str, FloatArray], rows: npt.NDArray[np.intp]) -> FloatArray:
+    return np.array(
+        [
+            voter.distances(query[voter.name], REFERENCES.descriptors[voter.name][rows])
+            for voter in MOTION_VOTERS
+        ]
+    )
+
+
 @given(
     share=st.floats(0, 1, exclude_max=True),
     shape=st.sampled_from([circle, square]),
@@ -38,11 +50,13 @@ def described(shape: Shape) -> dict[str, FloatArray]:
 def test_a_closed_figure_is_found_wherever_it_begins_and_whichever_way_it_goes(
     share: float, shape: Shape, backward: bool
 ) -> None:
-    distances = REFERENCES.distances(described(begun_at(share, shape, backward=backward)))[PATH]
-    nearest = int(distances.argmin())
+    query = described(begun_at(share, shape, backward=backward))
+    rows = REFERENCES.find_promising(query["path"])
+    distances = measure(query, rows)[[PATH, VELOCITY]].mean(axis=0)
+    nearest = int(rows[distances.argmin()])
     assert GESTURES[REFERENCES.gestures[nearest]].label == shape.__name__
     assert REFERENCES.traversals[nearest].backward is backward
-    assert distances[nearest] < 0.05
+    assert distances.min() < 0.35
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.6])
@@ -51,18 +65,25 @@ def test_most_readings_are_spared_and_never_the_one_as_shown(share: float) -> No
     rows = REFERENCES.find_promising(query["path"])
     assert set(REFERENCES.as_shown) <= set(rows)
     assert len(rows) < len(REFERENCES) / 2
-    compared = np.isfinite(REFERENCES.distances(query)[PATH])
-    np.testing.assert_array_equal(np.flatnonzero(compared), rows)
 
 
-def test_voters_asked_together_measure_what_each_measures_alone() -> None:
-    query = described(wedge)
-    rows = REFERENCES.find_promising(query["path"])
-    together = REFERENCES.distances(query)[:, rows]
-    for voter, row in zip(MOTION_VOTERS, together, strict=True):
-        alone = voter.distances(query[voter.name], REFERENCES.descriptors[voter.name][rows])
-        # Step costs are in single precision.
-        np.testing.assert_allclose(row, alone, rtol=1e-5, atol=1e-6)
+def test_the_nearest_traversals_are_measured_as_each_voter_measures_alone() -> None:
+    query, count = described(wedge), len(GESTURES)
+    weights = np.ones(len(MOTION_VOTERS))
+    nearest = REFERENCES.find_nearest(query, weights, weights, count)
+    alone = measure(query, nearest.rows)
+    # Step costs are roots of numbers in single precision.
+    np.testing.assert_allclose(nearest.distances, alone, rtol=1e-4, atol=3e-3)
+
+
+def test_the_correction_is_one_for_the_same_movement_and_grows_with_other_joints() -> None:
+    query = described(circle)
+    factors = REFERENCES.correct(query["shares"])
+    own = REFERENCES.gestures == 0
+    assert factors[own].max() < 1.1
+    moved = query["shares"].copy()
+    moved[:, -2:] = moved[:, ::-1][:, -2:] + 1.0
+    assert (REFERENCES.correct(moved / np.linalg.norm(moved, axis=1, keepdims=True)) >= 1).all()
 
 
 def test_references_are_remembered_until_what_they_depend_on_changes() -> None:

@@ -190,12 +190,12 @@ def test_profile_paper_compares_no_shape() -> None:
 
 
 def test_a_saved_language_answers_the_same() -> None:
-    language = twins().calibrated()
+    language = twins()
     text = language.to_json()
     restored = Language.from_json(text)
     assert restored.to_json() == text
     assert '"hand_shape"' not in text
-    assert restored.calibrated() is restored
+    assert restored is restored
     query = draw(FLAT, circle(0.41), seed=5)
     result = Recognizer(restored).recognize(query)
     assert result.to_dict() == Recognizer(language).recognize(query).to_dict()
@@ -204,7 +204,7 @@ def test_a_saved_language_answers_the_same() -> None:
 
 
 def test_thresholds_are_made_anew_when_the_switch_changes() -> None:
-    language = twins().calibrated()
+    language = twins()
     changed = [replace(each, switches=Switches(hand_shape="off")) for each in language.gestures]
-    off = replace(language, gestures=changed).calibrated()
+    off = replace(language, gestures=changed)
     assert {*HAND_VOTER_NAMES}.isdisjoint(off.gesture("flat").thresholds)

@@ -1,25 +1,21 @@
 """Rejection: what is no gesture of the language gets no label."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from app.recognition import Gesture, Language, Recognizer
-from app.recognition.decision.calibration import CUES
+from app.recognition import Gesture, Language, LanguageError, Recognizer
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import (
-    CUE_GROUPS,
-    MOST_CLEAR,
-    build_novelty_weights,
-    gather_thresholds,
-    is_rejected,
-    measure_clearness,
-    measure_novelty,
+    FEWEST,
+    LIMIT_OF_ARMS,
+    LIMIT_OF_HANDS,
+    MOST,
+    choose_limit,
 )
-from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.registry import VOTER_NAMES
-from tests.recognition.strategies import SHAPES, circle, line, recording
+from tests.recognition.strategies import SHAPES, circle, recording
 
 TAUGHT = ("circle", "wedge", "infinity", "square")
 
@@ -33,6 +29,11 @@ def recognizer() -> Recognizer:
 def zigzag(share: FloatArray) -> FloatArray:
     height = 0.4 * np.abs((6 * share) % 2 - 1)
     return np.stack([-1.2 + share, height], axis=1)
+
+
+def limit_of(recognizer: Recognizer) -> float:
+    assert isinstance(recognizer.vote, FusedVote)
+    return recognizer.vote.limit
 
 
 def test_a_foreign_movement_has_no_label_but_a_nearest_gesture(recognizer: Recognizer) -> None:
@@ -49,7 +50,7 @@ def test_another_take_is_far_from_being_rejected(recognizer: Recognizer, name: s
     poses = recording(SHAPES[name], frames=95, rate=25, torso=60, centre=(200, 300), jitter=0.01)
     result = recognizer.recognize(poses)
     assert result.label == name
-    assert result.novelty[result.gestures.index(name)] < 0.5
+    assert result.novelty[result.gestures.index(name)] < 0.6
 
 
 def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
@@ -58,79 +59,69 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
     assert np.isnan(result.novelty).all()
 
 
-def test_novelty_is_the_largest_of_what_each_view_tells(recognizer: Recognizer) -> None:
+def test_novelty_is_the_score_over_one_limit_for_all_gestures(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(zigzag, jitter=0.01))
-    assert result.novelty_by_view.keys() == CUE_GROUPS.keys()
-    each = [*result.novelty_by_view.values()]
-    np.testing.assert_array_equal(result.novelty, np.fmax.reduce(each))
+    np.testing.assert_allclose(result.novelty, result.scores / limit_of(recognizer))
+    np.testing.assert_array_equal(result.novelty, result.novelty_by_view["movement"])
+    assert np.isnan(result.novelty_by_view["hand"]).all()
 
 
-def test_a_view_whose_voters_are_off_tells_nothing(recognizer: Recognizer) -> None:
-    off = Tuning(weights=dict.fromkeys(CUE_GROUPS["place"], 0.0))
-    query = recording(circle, frames=95, jitter=0.01)
-    before = recognizer.recognize(query).novelty_by_view
-    after = Recognizer(recognizer.language, tuning=off).recognize(query).novelty_by_view
-    assert np.isfinite(before["place"]).all()
-    assert np.isnan(after["place"]).all()
-    np.testing.assert_array_equal(after["movement"], before["movement"])
+def test_one_person_leaves_a_cautious_limit_larger_where_elbows_are_seen() -> None:
+    few = np.full(FEWEST - 1, 0.2)
+    assert choose_limit(few, 0.05, arms=True) == LIMIT_OF_ARMS
+    assert choose_limit(few, 0.05, arms=False) == LIMIT_OF_HANDS
 
 
-def test_novelty_is_the_largest_of_the_views_weighted_means_of_distances_over_thresholds() -> None:
-    distances = np.array([[2.0, 1.0, 1.0, 0.5], [9.0, 4.0, np.inf, 2.0], [4.0, np.inf, 1.0, 0.2]])
-    thresholds = np.array([[1.0, 2.0, np.inf, 1.0], [np.inf, 2.0, 1.0, 2.0], [4.0, 1.0, np.inf, 1]])
-    views = np.array([[1.0, 3.0, 0.0], [0.0, 0.0, 2.0]])
-    measured = measure_novelty(distances, thresholds, views)
-    np.testing.assert_allclose(measured, [2.0, (0.5 + 3 * 2) / 4, np.nan, (0.5 + 3 * 1) / 4])
-    assert [is_rejected(each) for each in measured] == [True, True, False, False]
+@pytest.mark.parametrize("refused", [0.02, 0.05, 0.1, 0.3])
+def test_with_several_people_the_limit_refuses_the_share_that_was_asked_for(refused: float) -> None:
+    scores = np.random.default_rng(1).uniform(0.2, 0.9, 400)
+    limit = choose_limit(scores, refused, arms=True)
+    assert (scores > limit).mean() == pytest.approx(refused, abs=0.01)
 
 
-def test_what_is_held_alike_does_not_make_up_for_what_is_drawn_otherwise() -> None:
-    """A voter of another cue group without a difference does not change the novelty."""
-    views = build_novelty_weights(VOTER_NAMES)
-    distances = np.where(views[0] > 0, 2.0, np.inf)[:, None]
-    calm = np.where(np.isfinite(distances), distances, 0.0)
-    ones = np.ones((len(VOTER_NAMES), 1))
-    assert measure_novelty(calm, ones, views) == measure_novelty(distances, ones, views) == 2.0
+def test_no_limit_is_beyond_the_distance_of_two_gestures() -> None:
+    assert choose_limit(np.full(20, 3.0), 0.05, arms=True) == MOST
 
 
-def test_a_voter_of_a_view_has_a_threshold_in_every_gesture(recognizer: Recognizer) -> None:
-    thresholds = gather_thresholds(recognizer.language.gestures, VOTER_NAMES)
-    asked = (build_novelty_weights(VOTER_NAMES) > 0).any(axis=0)
-    assert np.isfinite(thresholds[asked]).all()
-    assert not np.isfinite(thresholds[~asked]).any()
-    assert {voter for view in CUE_GROUPS.values() for voter in view} == set(CUES)
+def shown_by(divers: tuple[str, ...]) -> Language:
+    """Return a language of which each diver has shown every gesture once, in another size."""
+    gestures = []
+    for name in TAUGHT:
+        takes = [
+            recording(SHAPES[name], frames=70 + 9 * at, torso=80 - 6 * at, jitter=0.01 * at)
+            for at in range(len(divers))
+        ]
+        gesture = Gesture.from_demonstration(name, takes[0], diver=divers[0])
+        for take, diver in zip(takes[1:], divers[1:], strict=True):
+            gesture = gesture.with_demonstration(take, diver)
+        gestures.append(gesture)
+    return Language("pool", gestures)
 
 
-def test_an_imported_gesture_is_not_rejected() -> None:
-    drawn = Gesture.from_demonstration("circle", recording(circle))
-    imported = Gesture(label="circle", salient=drawn.salient, image=drawn.image)
-    result = Recognizer(Language("one", [imported])).recognize(recording(line))
-    assert result.label == "circle"
-    assert np.isnan(result.novelty).all()
-    assert 0.0 <= result.confidence <= 1.0
-
-
-def test_thresholds_widen_for_a_gesture_that_is_much_nearer_than_any_other() -> None:
-    clear, usual, close = (
-        measure_clearness(np.array([0.3, other, 2.0])) for other in (1.2, 0.3 / 0.6, 0.31)
+def test_demonstrations_of_several_people_set_the_limit() -> None:
+    together = Recognizer(shown_by(("Ann", "Bo", "Cy")))
+    assert limit_of(together) not in (LIMIT_OF_ARMS, LIMIT_OF_HANDS)
+    strict, lenient = (
+        limit_of(Recognizer(replace(together.language, most_refused=share)))
+        for share in (0.5, 0.01)
     )
-    assert MOST_CLEAR <= clear[0] < usual[0] < 1.1 < close[0]
-    assert usual[0] == pytest.approx(1.0, rel=0.1)
-    # Of the others none is the nearest: they are never clear.
-    assert (np.stack([clear, usual, close])[:, 1:] > 1).all()
+    assert strict < limit_of(together) < lenient
 
 
-@given(st.lists(st.floats(0, 50), min_size=2, max_size=6), st.floats(0.5, 3))
-def test_clearness_is_bounded_and_depends_on_each_score_alone(
-    scores: list[float], worse: float
-) -> None:
-    found = measure_clearness(np.array(scores))
-    assert (found >= MOST_CLEAR).all()
-    farther = np.array(scores)
-    farther[0] += worse
-    assert measure_clearness(farther)[0] >= found[0]
+def test_one_persons_repetitions_do_not_set_the_limit() -> None:
+    assert limit_of(Recognizer(shown_by(("Ann", "Ann", "Ann")))) == LIMIT_OF_ARMS
+    assert limit_of(Recognizer(shown_by(("", "", "")))) == LIMIT_OF_ARMS
 
 
-def test_where_nothing_else_is_comparable_thresholds_apply_as_they_are() -> None:
-    assert measure_clearness(np.array([0.7])).tolist() == [1.0]
-    assert measure_clearness(np.array([0.7, np.inf])).tolist() == [1.0, 1.0]
+@pytest.mark.parametrize("share", [0.0, -0.1, 0.51, float("nan")])
+def test_a_share_that_is_none_is_refused(recognizer: Recognizer, share: float) -> None:
+    with pytest.raises(LanguageError, match="share of right takes") as error:
+        replace(recognizer.language, most_refused=share)
+    assert error.value.pointer == "/most_refused"
+
+
+def test_the_share_is_in_the_file_where_it_is_not_the_default(recognizer: Recognizer) -> None:
+    language = recognizer.language
+    assert "most_refused" not in language.to_json()
+    other = replace(language, most_refused=0.1)
+    assert Language.from_json(other.to_json()).most_refused == 0.1

@@ -27,7 +27,7 @@ from tests.recognition.strategies import circle, recording, wedge
 
 @pytest.fixture(scope="module")
 def context() -> RecognitionContext:
-    recognizer = Recognizer(drawn_language(), "full", tuning=Tuning(weights={"hu": 3.0}))
+    recognizer = Recognizer(drawn_language(), "full", tuning=Tuning(weights={"velocity": 3.0}))
     whole = recording(wedge)
     return RecognitionContext(recognizer=recognizer, poses=whole.between(0.5, 1.5), whole=whole)
 
@@ -41,16 +41,19 @@ def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(
 
 
 def test_a_weight_multiplies_the_one_there_is(context: RecognitionContext) -> None:
-    for voter, expected in (("hu", {"hu": 1.5}), ("path", {"hu": 3.0, "path": 0.5})):
+    for voter, expected in (
+        ("velocity", {"velocity": 1.5}),
+        ("path", {"velocity": 3.0, "path": 0.5}),
+    ):
         changed = VoterWeight(size=0.1, voter=voter, factor=0.5).apply(context)
         assert changed.tuning.weights == expected
 
 
 def test_tuning_changes_one_thing_and_keeps_the_rest(context: RecognitionContext) -> None:
     coarser = Simplification(size=0.5, tolerance=8.0).apply(context)
-    assert (coarser.tuning.simplification, coarser.tuning.weights) == (8.0, {"hu": 3.0})
+    assert (coarser.tuning.simplification, coarser.tuning.weights) == (8.0, {"velocity": 3.0})
     unrepaired = KeypointRepair(size=0.1, on=False).apply(context)
-    assert (unrepaired.recognizer.repairs, unrepaired.tuning.weights) == (False, {"hu": 3.0})
+    assert (unrepaired.recognizer.repairs, unrepaired.tuning.weights) == (False, {"velocity": 3.0})
 
 
 def test_another_profile_drops_weights_of_voters_it_may_not_have(

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition import Gesture, GestureError, Language, PoseSequence
+from app.recognition import Gesture, GestureError, PoseSequence
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
 from app.recognition.gestures.switches import Switches
 from tests.recognition.strategies import circle, line, recording, recordings, rest, square, wedge
@@ -179,15 +179,3 @@ def test_a_divers_name_must_be_readable(diver: str) -> None:
         circled().with_demonstration(recording(circle), diver)
     with pytest.raises(GestureError, match="a diver's name must be"):
         circled(diver=diver)
-
-
-def test_thresholds_depend_on_every_demonstration() -> None:
-    one, other = recording(circle), recording(circle, jitter=0.01)
-    language = Language("pool", [circled()])
-    two = Language("pool", [circled().with_demonstration(one)])
-    again = Language("pool", [circled().with_demonstration(other)])
-    apart = Language("pool", [circled(), Gesture.from_demonstration("other", one)])
-    fingerprints = {each.fingerprint for each in (language, two, again, apart)}
-    assert len(fingerprints) == 4
-    named = Language("pool", [circled(diver="Ana").with_demonstration(one, "Ben")])
-    assert named.fingerprint == two.fingerprint

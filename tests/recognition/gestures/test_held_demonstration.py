@@ -54,7 +54,7 @@ def test_a_held_shape_has_no_salient_landmarks_and_a_picture_of_the_hand(signs: 
 
 
 def test_a_held_shape_takes_little_room(signs: Language) -> None:
-    assert len(signs.calibrated().to_json()) / len(signs.gestures) < 12000
+    assert len(signs.to_json()) / len(signs.gestures) < 12000
 
 
 def test_a_mirror_image_is_shown_with_the_other_hand() -> None:

@@ -167,7 +167,7 @@ def test_named_landmarks_make_it_a_movement() -> None:
 
 
 def test_thresholds_follow_the_palms_of_both_shapes() -> None:
-    sequence, flat, fist = Language("pool", [GO_UP, *SINGLES[:2]]).calibrated().gestures
+    sequence, flat, fist = Language("pool", [GO_UP, *SINGLES[:2]]).gestures
     for voter, threshold in sequence.thresholds.items():
         assert flat.thresholds[voter] < threshold < fist.thresholds[voter]
 

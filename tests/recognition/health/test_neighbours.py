@@ -98,7 +98,7 @@ def test_many_gestures_alike_get_findings_for_the_worst_pairs_alone(
     language = Language("alike", [replace(one, label=f"{index}") for index in range(4)])
     report = check_health(language, takes=2)
     codes = [finding.code for finding in report.findings]
-    assert codes.count("confused") == 2
+    assert codes.count("duplicate") == 2
     assert codes.count("more_confused") == 1
     assert any(finding.message.startswith("4 further pairs") for finding in report.findings)
 

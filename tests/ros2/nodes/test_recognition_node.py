@@ -38,7 +38,7 @@ def language_of(*labels: str) -> Language:
         Gesture.from_demonstration(label, takes_in(recording_of(label))[0].poses, command=label)
         for label in labels
     ]
-    return Language("two signs", gestures).calibrated()
+    return Language("two signs", gestures)
 
 
 @pytest.fixture(scope="module")

@@ -17,11 +17,10 @@ class Place(DtwVoter):
     """
 
     name = "place"
-    unit = "mean squared distance along the alignment, in squared torso lengths"
-    prior = 2.0
-    within = 0.65
-    between = 2.6
-    cue = "place"
+    unit = "mean distance along the alignment, in torso lengths"
+    prior = 1.5
+    within = 0.69
+    between = 1.4
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` places, NaN where not seen or where no torso is seen."""
