@@ -1,4 +1,4 @@
-"""Held signs: takes of divers' signs that are hand shapes, as pose sequences of one hand."""
+"""Held signs: takes of divers' signs and of letters, as pose sequences of one hand."""
 
 from __future__ import annotations
 
@@ -12,6 +12,11 @@ from app.recognition import PoseSequence
 from app.recognition.poses.sequence import HANDS_SHAPE
 
 FILE = "scuba_hands.npz"
+LETTERS_FILE = "hand_letters.npz"
+SHARED_LETTERS = "BCILOUVWY"
+"""Letters that all seven alphabets show with the same hand shape."""
+COPY = "fsl"
+"""An alphabet whose clips are those of another one (`ase`) under a second name: left out."""
 FRAME = (640, 480)
 """Picture size: the file gives fractions of a picture of unknown size; with sides of 4 to 3 a flat
 hand has realistic proportions."""
@@ -51,18 +56,56 @@ def read_held_signs(folder: Path) -> HeldSigns:
     return HeldSigns([_read(each) for each in places], labels, runs)
 
 
+@dataclass(frozen=True)
+class HandLetters:
+    """Takes of the letters of finger alphabets, one of each letter by each signer.
+
+    Attributes
+    ----------
+    takes
+        N pose sequences: a hand, and the wrist as the only landmark of a body.
+    letters, signers
+        ``(N,)`` letter and signer of each.
+
+    """
+
+    takes: list[PoseSequence]
+    letters: npt.NDArray[np.str_]
+    signers: npt.NDArray[np.str_]
+
+
+def read_hand_letters(folder: Path, letters: str = SHARED_LETTERS) -> HandLetters:
+    """Read the takes of some letters of `LETTERS_FILE` in a folder, without the `COPY`."""
+    with np.load(folder / LETTERS_FILE, allow_pickle=True) as file:
+        content = {name: file[name] for name in ("x", "t", "label", "subject", "frame_size")}
+    shown, signers = content["label"].astype(str), content["subject"].astype(str)
+    chosen = np.flatnonzero(np.isin(shown, list(letters)) & (signers != COPY))
+    takes = [
+        make_take(
+            content["x"][index].astype(np.float64),
+            content["t"][index].astype(np.float64),
+            tuple(content["frame_size"][index].tolist()),
+        )
+        for index in chosen.tolist()
+    ]
+    return HandLetters(takes, shown[chosen], signers[chosen])
+
+
 def _read(places: npt.NDArray[np.float32]) -> PoseSequence:
     """Return the hand that is seen longer, as the right one: the file does not name the sides."""
     count = HANDS_SHAPE[1]
     hands = places.astype(np.float64).reshape(len(places), 2, count, 3)[..., :2] * FRAME
     seen = np.isfinite(hands).all(axis=(2, 3)).mean(axis=0)
     shown = hands[:, 0 if seen[0] > 0.5 else int(seen.argmax())]
-    both = np.full((len(places), *HANDS_SHAPE), np.nan)
-    both[:, 1] = shown
+    return make_take(shown, np.arange(len(places)) / RATE, FRAME)
+
+
+def make_take(
+    hand: npt.NDArray[np.float64], time: npt.NDArray[np.float64], frame_size: tuple[int, int]
+) -> PoseSequence:
+    """Return a take of one hand ``(T, 21, 2)`` in pixels, as the right one, at times in seconds."""
+    both = np.full((len(hand), *HANDS_SHAPE), np.nan)
+    both[:, 1] = hand
     return PoseSequence(
-        landmarks=("right_wrist",),
-        xy=shown[:, :1],
-        time=np.arange(len(places)) / RATE,
-        frame_size=FRAME,
-        hands=both,
+        landmarks=("right_wrist",), xy=hand[:, :1], time=time, frame_size=frame_size, hands=both
     )

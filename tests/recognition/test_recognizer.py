@@ -284,7 +284,7 @@ def test_a_held_hand_shape_is_recognised_from_one_demonstration(
 ) -> None:
     result = Recognizer(moving_and_held()).recognize(hold(shape, roll=8, yaw=10, seed=3, left=left))
     assert result.label == label
-    assert set(result.votes) == {"hand_landmarks", "finger_directions"}
+    assert set(result.votes) == {"hand_landmarks", "finger_directions", "fingertip_distances"}
     assert sum(result.weights.values()) == pytest.approx(1)
     assert Recognition.from_dict(result.to_dict()).votes == dict(result.votes)
 

@@ -13,7 +13,12 @@ import numpy.typing as npt
 
 from app.recognition.decision.confidence import estimate_confidence
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
-from app.recognition.decision.hand_references import HAND_LIMIT, HandReferences, score_hands
+from app.recognition.decision.hand_references import (
+    HAND_LIMIT,
+    HandReferences,
+    score_hands,
+    weigh_hands,
+)
 from app.recognition.decision.motion_references import (
     MAX_GESTURES_TRAVERSED,
     MotionReferences,
@@ -32,7 +37,6 @@ from app.recognition.features.trajectory_image import is_drawable
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
-from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
@@ -88,7 +92,10 @@ class FusedVote:
         # Weight factors must not change which directions and tempos the language needs.
         self._weights, self._between = self._weigh()
         self._limit = self._calibrate(sides, refused)
-        self._weights = self._weights * tuning.weights_of(VOTER_NAMES)
+        factors = tuning.weights_of(VOTER_NAMES)
+        weighed: FloatArray = self._weights * factors
+        # Voters that have no weight in this language decide where the author leaves no others.
+        self._weights = weighed if weighed.any() or not tuning.weights else factors
         self._views = Views(sides, self._motions)
 
     def _weigh(self) -> tuple[FloatArray, FloatArray]:
@@ -164,15 +171,6 @@ class FusedVote:
         """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
         return self._moving_shapes.twins
 
-    def find_counting_hands(self, gesture: int) -> tuple[HandShape, ...]:
-        """Return the hands whose shape counts in a gesture's movement, of one demonstration.
-
-        It is the first one in which they are known. Empty where their shape does not count.
-        """
-        counting = self._moving_shapes.counting & (self._owners == gesture)
-        first = np.flatnonzero(counting)[:1].tolist()
-        return tuple(hand for row in first for hand in self._moving_shapes.shapes[row].values())
-
     @property
     def landmarks(self) -> tuple[str, ...]:
         """The salient landmarks of all gestures, in alphabetical order."""
@@ -205,7 +203,7 @@ class FusedVote:
         names = VOTER_NAMES
         if self._moving_shapes.any_counts:
             names = _ALL_NAMES
-            weights = np.append(weights, np.full(len(HAND_VOTER_NAMES), WEIGHT / 2))
+            weights = np.append(weights, [WEIGHT / len(HAND_VOTER_NAMES)] * len(HAND_VOTER_NAMES))
         normalized = (weights / weights.sum()).tolist()
         return MappingProxyType(dict(zip(names, normalized, strict=True)))
 
@@ -277,7 +275,7 @@ class FusedVote:
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a held hand shape with those of the language."""
         sides = self._hands.distances(trajectory.held_shapes)
-        shares = weigh_distances(sides, self._hands.weights, self._hands.between)
+        shares = weigh_hands(sides)
         chosen = self._shown.find_nearest(shares.sum(axis=0))
         distances = np.full((len(_ALL_NAMES), len(chosen)), np.inf)
         contributions = np.zeros(distances.shape)
@@ -418,9 +416,8 @@ class FusedVote:
         if not len(self._hands):
             return self.weights
         by_hand = not np.isfinite(compared.distances[: len(VOTER_NAMES)]).any()
-        shares = (self._hands.weights / self._hands.weights.sum()).tolist()
-        of_hand = dict(zip(HAND_VOTER_NAMES, shares, strict=True))
         if by_hand:
+            of_hand = dict.fromkeys(HAND_VOTER_NAMES, 1 / len(HAND_VOTER_NAMES))
             return MappingProxyType(dict.fromkeys(VOTER_NAMES, 0.0) | of_hand)
         return MappingProxyType(dict.fromkeys(HAND_VOTER_NAMES, 0.0) | {**self.weights})
 

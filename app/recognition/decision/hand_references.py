@@ -5,30 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.fusion import fuse, weigh_voters
+from app.recognition.decision.fusion import weigh_distances
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.frame import SIDES
 from app.recognition.poses.hand_shape import HandShape, mirror_hands
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.registry import HAND_VOTERS
 
-PALM_EXPONENT = 1.5
-"""Exponent of the palm's length in thresholds. A landmark's error is a share of the palm: relative
-to a small fist it is larger (exponent 1), and it is larger still for hidden fingers. At equally
-many accepted out-of-vocabulary takes, 76 % of takes from other views are accepted with exponent 0,
-84 % with 1, 90 to 91 % with 1.5 and 2, 83 % with 2.5."""
+BETWEEN: Final = np.array([voter.between for voter in HAND_VOTERS])
+"""The hand voters' distances between two shapes: a language has too few shapes to measure its own.
+"""
 
-HAND_LIMIT = 0.44
+HAND_LIMIT = 0.45
 """Largest share of the distance between two hand shapes that is accepted as the same one, for every
 shape and language (`benchmarks/studies/hand-shapes.md`)."""
 
-SAME_SHAPE = 0.25
-"""Score below which two held shapes are the same one: that of most takes from another view."""
+SAME_SHAPE = 0.3
+"""Score below which two held shapes are the same one: that of half of the takes from another view.
+"""
 
 Described = list[FloatArray]
 """Per voter the descriptors of M hands, ``(M, D)``."""
@@ -52,8 +51,6 @@ class HandReferences:
     mirrored
         ``(M,)``: whether the mirror image, shown with the other hand or the back of the hand, is
         the same gesture.
-    weights, between
-        ``(2,)`` of the hand voters, see `fusion.weigh_voters`.
 
     """
 
@@ -61,8 +58,6 @@ class HandReferences:
     rows: npt.NDArray[np.intp]
     shapes: tuple[HeldShapes, ...]
     mirrored: npt.NDArray[np.bool_]
-    weights: FloatArray
-    between: FloatArray
 
     @classmethod
     def of(cls, gestures: Sequence[Gesture], owners: npt.NDArray[np.intp]) -> HandReferences:
@@ -88,22 +83,15 @@ class HandReferences:
             rows=rows,
             shapes=shapes,
             mirrored=np.array([switch != "off" for switch in switches], dtype=bool),
-            weights=np.ones(len(HAND_VOTERS)),
-            between=np.array([voter.between for voter in HAND_VOTERS]),
         )
         if not held:
             return made
         apart = owners[rows][:, None] != owners[rows]
         shown = replace(made, mirrored=np.zeros(len(rows), dtype=bool))
-        own = np.array([shown.distances(each)[:, rows] for each in shapes])
-        pairs = [own[:, voter][apart] for voter in range(len(HAND_VOTERS))]
-        weights, between = weigh_voters(
-            HAND_VOTERS, [pair[np.isfinite(pair)] for pair in pairs], hands=1
-        )
         turned = np.array([shown.distances(_mirror(each))[:, rows] for each in shapes])
-        alike = (fuse(turned.transpose(1, 0, 2), weights, between) < SAME_SHAPE) & apart
+        alike = (score_hands(turned.transpose(1, 0, 2)) < SAME_SHAPE) & apart
         other = np.array([switch == "auto" for switch in switches]) & alike.any(axis=1)
-        return replace(made, mirrored=made.mirrored & ~other, weights=weights, between=between)
+        return replace(made, mirrored=made.mirrored & ~other)
 
     def __len__(self) -> int:
         """Return M, the number of references that hold a shape."""
@@ -125,12 +113,11 @@ class HandReferences:
 
         A reference with one hand is compared with each hand of the query, a reference with two
         hands with both; the nearest arrangement counts. Two shapes in sequence are compared in
-        their order and with the same hand; the farther one counts, so that both must fit. Each
-        shape is measured by its own palm, because its landmarks' errors are a share of the palm.
+        their order and with the same hand; the farther one counts, so that both must fit.
 
         Returns
         -------
-        ``(2, S)`` by voter; infinite for references that hold no shape, another number of shapes,
+        ``(3, S)`` by voter; infinite for references that hold no shape, another number of shapes,
         or more hands than the query.
 
         """
@@ -149,12 +136,9 @@ class HandReferences:
         return nearest
 
     def _compare_parts(self, shapes: HeldShapes, group: _Group) -> tuple[FloatArray, FloatArray]:
-        """Return the distances ``(2, M)`` and scores ``(M,)`` of the farther parts."""
-        found = [
-            _compare(hands, part) * factors
-            for hands, part, factors in zip(shapes, group.parts, group.factors, strict=True)
-        ]
-        scores = [fuse(each, self.weights, self.between) for each in found]
+        """Return the distances ``(3, M)`` and scores ``(M,)`` of the farther parts."""
+        found = [_compare(*part) for part in zip(shapes, group.parts, strict=True)]
+        scores = [score_hands(each) for each in found]
         nearest, score = found[0], scores[0]
         for other, farther in zip(found[1:], scores[1:], strict=True):
             nearest = np.where(farther > score, other, nearest)
@@ -190,24 +174,17 @@ class _Group:
         ``(M,)``: their places in `HandReferences.shapes`.
     parts
         By shape and hand their descriptors.
-    factors
-        For each shape, ``(M,)`` factors on distances: 1 where there is one shape; otherwise greater
-        where the palm is smaller than the mean of the reference's hands, on which its thresholds
-        depend.
 
     """
 
     members: npt.NDArray[np.intp]
     parts: list[list[Described]]
-    factors: list[FloatArray]
 
     @classmethod
     def of(
         cls, members: npt.NDArray[np.intp], shapes: Sequence[HeldShapes], number: _Number
     ) -> _Group:
         chosen = [shapes[index] for index in members.tolist()]
-        palms = np.array([[measure_mean_palm([part]) for part in each] for each in chosen])
-        means = np.array([measure_mean_palm(each) for each in chosen])
         return cls(
             members,
             [
@@ -220,19 +197,20 @@ class _Group:
                 ]
                 for part in range(number.shapes)
             ],
-            [*((means[:, None] / palms) ** PALM_EXPONENT).T],
         )
 
 
+def weigh_hands(distances: FloatArray) -> FloatArray:
+    """Return what each voter's distances ``(3, ...)`` contribute to the score, in that shape.
+
+    A third of the distance over the voter's `between`; infinite where nothing can be compared.
+    """
+    return weigh_distances(distances, np.ones(len(HAND_VOTERS)), BETWEEN)
+
+
 def score_hands(distances: FloatArray) -> FloatArray:
-    """Return the scores of hand voters' distances ``(2, ...)``: 1 for two shapes, typically."""
-    between = np.array([voter.between for voter in HAND_VOTERS])
-    return fuse(distances, np.ones(len(HAND_VOTERS)), between)
-
-
-def measure_mean_palm(shapes: HeldShapes) -> float:
-    """Return the mean palm of all hands of some shapes, in sizes of the hand."""
-    return float(np.mean([hand.palm for hands in shapes for hand in hands]))
+    """Return the scores of hand voters' distances ``(3, ...)``: 1 for two shapes, typically."""
+    return np.asarray(weigh_hands(distances).sum(axis=0))
 
 
 def _mirror(shapes: HeldShapes) -> HeldShapes:
@@ -250,7 +228,7 @@ def _arrange(shapes: HeldShapes, count: int) -> list[HeldShapes]:
 
 
 def _compare(hands: Sequence[HandShape], described: Sequence[Described]) -> FloatArray:
-    """Return the voters' mean distances of some hands to those of M references, ``(2, M)``."""
+    """Return the voters' mean distances of some hands to those of M references, ``(3, M)``."""
     apart = [
         [
             voter.distances(voter.describe(hand), others)

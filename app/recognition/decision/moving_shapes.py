@@ -11,6 +11,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.decision.hand_references import score_hands, weigh_hands
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.hand_shape import HandShape
@@ -23,21 +24,19 @@ MOST_TURNED: Final = 45.0
 turns with the arm, whose elbow is elsewhere in another take (`benchmarks/studies/hand-shapes.md`).
 """
 
-SAME_MOVEMENT: Final = 0.15
-"""Score below which two gestures may be the same movement with two hand shapes: 93 % of one
-person's pairs of takes are below it, and fewer than 1 % of the pairs of different movements
-(`benchmarks/studies/hand-shapes.md`)."""
+SAME_MOVEMENT: Final = 0.3
+"""Score below which two gestures may be the same movement with two hand shapes: most of one
+person's pairs of takes are below it, and few pairs of different movements
+(`benchmarks/studies/people.md`)."""
 
-OTHER_SHAPE: Final = 0.4
+OTHER_SHAPE: Final = 0.5
 """Mean relative distance of the hand voters from which two shapes are clearly different: beyond
-takes of one shape from one view (up to 0.36), below 95 % of the pairs of signs."""
+99 % of the pairs of takes of one shape and view (0.45), below 99 % of those of two signs (0.61)."""
 
 WEIGHT: Final = 0.5
 """Amount added to the score of a gesture whose hand shape counts, for a shape as different as that
 of another sign: more than the score between two takes of one movement, less than that between two
 movements."""
-
-_BETWEEN = np.array([voter.between for voter in HAND_VOTERS])
 
 Shapes = dict[Side, HandShape]
 
@@ -137,7 +136,7 @@ class MovingShapes:
 
         Returns
         -------
-        ``(2, S)`` by voter; infinite where the shape does not count or is not known.
+        ``(3, S)`` by voter; infinite where the shape does not count or is not known.
 
         """
         seen: Shapes = {hand.side: hand for hand in hands}
@@ -161,11 +160,11 @@ class MovingShapes:
 
 def measure_shapes(seen: Shapes, shown: Shapes) -> float:
     """Return the mean relative distance of the hand voters; infinite without a common side."""
-    return float(np.mean(compare_shapes(seen, shown) / _BETWEEN))
+    return float(score_hands(compare_shapes(seen, shown)))
 
 
 def weigh_shapes(distances: FloatArray) -> FloatArray:
-    """Return what distances ``(2, S)`` add to the scores, by voter; 0 where not comparable.
+    """Return what distances ``(3, S)`` add to the scores, by voter; 0 where not comparable.
 
     The nearest shape adds nothing, so that a gesture whose shape counts is not farther than one
     whose shape does not; the others add the distance by which they exceed it. A take whose shape
@@ -174,14 +173,14 @@ def weigh_shapes(distances: FloatArray) -> FloatArray:
     known = np.isfinite(distances).all(axis=0)
     if not known.any():
         return np.zeros(distances.shape)
-    relative = np.where(known, distances, 0.0) / _BETWEEN[:, None] / len(HAND_VOTERS)
+    relative = weigh_hands(np.where(known, distances, 0.0))
     whole = relative.sum(axis=0)
     beyond = np.where(known, whole - whole[known].min(), 0.0)
     return np.asarray(WEIGHT * relative * (beyond / np.maximum(whole, 1e-12)))
 
 
 def compare_shapes(seen: Shapes, shown: Shapes) -> FloatArray:
-    """Return the voters' mean distances over the hands of the same sides: ``(2,)``.
+    """Return the voters' mean distances over the hands of the same sides: ``(3,)``.
 
     Of each hand and its mirror image, the palm or the back, the nearer one counts. Infinite without
     a common side.
@@ -204,7 +203,7 @@ def _compare(seen: HandShape, shown: HandShape) -> FloatArray:
         )
         for hand in (seen, seen.mirror())
     ]
-    return min(either, key=lambda found: float(np.sum(found / _BETWEEN)))
+    return min(either, key=lambda found: float(score_hands(found)))
 
 
 def _find_shapes(gesture: Gesture) -> Shapes:

@@ -16,7 +16,8 @@ from app.recognition.explanation.differences import Difference
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.registry import HAND_VOTERS
+from app.recognition.voters.hand.finger_directions import FingerDirections
+from app.recognition.voters.hand.hand_landmarks import HandLandmarks
 
 FINGERS = ("thumb", "index finger", "middle finger", "ring finger", "little finger")
 
@@ -26,8 +27,8 @@ MOST_BENT = 200.0
 CLEARLY_BENT = 30.0
 """Least difference of a finger's bend in degrees: the landmarks' errors make up to 20."""
 
-CLEARLY_TURNED = 25.0
-"""Least turn of the hand in degrees that is reported; the voters tolerate 20."""
+CLEARLY_TURNED = 35.0
+"""Least turn of the hand in degrees that is reported; the voters tolerate 30."""
 
 ROUNDED = 10
 """Degrees to which a bend or a turn is rounded: as precisely as the image shows it."""
@@ -42,6 +43,9 @@ FINGER_LENGTHS = (0.94, 1.04, 0.98, 0.77)
 
 BONE_SHARES = np.array([0.48, 0.29, 0.23])
 """Shares of a finger's length, from the knuckle on (Buryanov and Kotiuk 2010)."""
+
+_LOCAL = (HandLandmarks(), FingerDirections())
+"""Hand voters to which each finger adds its own share: distances of tips depend on two fingers."""
 
 _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_finger_mcp")
 
@@ -205,12 +209,12 @@ def _difference(share: float, words: str) -> Difference:
 
 
 def measure_distance(one: HandShape, other: HandShape) -> float:
-    """Return the mean of the hand voters' distances, each over its between-class distance."""
+    """Return the mean distance of the voters in `_LOCAL`, each over its between-class distance."""
     return float(
         np.mean(
             [
                 voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
-                for voter in HAND_VOTERS
+                for voter in _LOCAL
             ]
         )
     )

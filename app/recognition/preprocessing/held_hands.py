@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import ceil
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.poses.frame import SIDES
-from app.recognition.poses.hand_shape import HandShape, measure_palms, normalize_hands
+from app.recognition.poses.hand_shape import (
+    HandShape,
+    choose_frames,
+    measure_palms,
+    normalize_hands,
+)
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -23,8 +29,17 @@ HOLD_PERCENTILES = (20.0, 80.0)
 """The percentiles of a held hand's path taken as peak to peak: the hand may come and go in a fifth
 of the time at either end, in which no stroke of a gesture is complete."""
 
-PALMS_PER_TORSO = 5.2
-"""Torso length over palm length (wrist to middle knuckle), 52 against 10 cm (Winter 2009)."""
+REST = 0.5
+"""Least share of a hand's frames in which it rests while it shows its shape: a signer lifts the
+hand for each letter and lowers it again, which takes up to half of the time."""
+
+MOST_APART = 0.8
+"""Palms from the place where a hand rests at which it is still there: a wobbling flat hand
+("something is wrong") moves by up to 0.6 to either side."""
+
+MOST_WAY = 4.0
+"""Palms by which it may come or go between `HOLD_PERCENTILES`: a lifted hand moves by up to 3.1, a
+hand that pauses in a drawn figure by more than 4."""
 
 LEAST_SEEN = 0.4
 """Least share of the frames in which a held hand is seen: the hand model loses a still hand under
@@ -93,9 +108,11 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
         seen: npt.NDArray[np.bool_] = np.asarray(np.isfinite(hands).all(axis=(1, 2)))
         if seen.mean() < LEAST_SEEN or _hangs(poses, hands, seen):
             continue
-        shown = hands[seen]
-        if _measure_travel(shown) >= MIN_DISPLACEMENT * PALMS_PER_TORSO:
+        shown = hands[seen][choose_frames(int(seen.sum()))]
+        resting = _find_rest(shown)
+        if resting.mean() < REST or _measure_travel(shown) >= MOST_WAY:
             continue
+        shown = shown[resting]
         shape = HandShape.of_frames(side, shown)
         if np.median(measure_distances(normalize_hands(shown), shape.xy)) <= MOST_CHANGE:
             held.append(shape)
@@ -105,6 +122,19 @@ def find_held_hands(poses: PoseSequence, trajectory: Trajectory) -> tuple[HandSh
 def measure_distances(hands: FloatArray, shape: FloatArray) -> FloatArray:
     """Return how far hands ``(T, 21, 2)`` are from a shape, ``(T,)`` in sizes of the hand."""
     return np.asarray(np.sqrt(((hands - shape) ** 2).sum(axis=2).mean(axis=1)))
+
+
+def _find_rest(hands: FloatArray) -> npt.NDArray[np.bool_]:
+    """Return the frames of ``(T, 21, 2)`` in which the hand is where it rests, ``(T,)``.
+
+    That is the place of the `REST` of its frames, in a row, in which the wrist moves least, up to
+    `MOST_APART`: a wobble belongs to it, the way there and back does not.
+    """
+    wrist = hands[:, _WRIST]
+    windows = np.lib.stride_tricks.sliding_window_view(wrist, ceil(REST * len(hands)), axis=0)
+    rest = windows[np.linalg.norm(np.ptp(windows, axis=2), axis=1).argmin()]
+    away = np.linalg.norm(wrist - np.median(rest, axis=1), axis=1)
+    return np.asarray(away <= MOST_APART * np.median(measure_palms(hands)))
 
 
 def rests_between_ends(trajectory: Trajectory) -> bool:

@@ -50,6 +50,13 @@ CLEARLY: Final = 2.0
 """Factor by which a hand that holds a shape is nearer to it than to the next one; in between, the
 hand is changing."""
 
+LEAST_HELD: Final = 0.3
+"""Least seconds for which each of several shapes is held: a signer who shakes a letter, or draws
+it, shows other shapes for up to 0.2 s."""
+
+MOST_SHAKEN: Final = 20.0
+"""Degrees by which one shape may turn in the image, as between two takes: a shaken hand turns."""
+
 MOST_DRIFT: Final = 0.4
 """Largest distance between the first and the last third of a shape that lies between two others, in
 sizes of the hand: a hand that slowly changes from one to the other drifts by 0.6, a hand that holds
@@ -153,7 +160,8 @@ def _find_stretches(side: Side, poses: PoseSequence) -> list[tuple[float, float]
         return []
     moments: FloatArray = poses.time[every]
     held = _leave_out_changes(shown, starts)
-    return [(float(moments[start]), float(moments[end])) for start, end in held]
+    found = [(float(moments[start]), float(moments[end])) for start, end in held]
+    return found if all(end - start >= LEAST_HELD for start, end in found) else []
 
 
 def _leave_out_changes(shown: FloatArray, starts: tuple[int, ...]) -> list[tuple[int, int]]:
@@ -245,7 +253,7 @@ def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
     """
     agreeing, nearest = 0, np.inf
     for one, other in pairwise(parts):
-        apart = float(measure_distances(one.shape[None], other.shape)[0])
+        apart = _measure_turned(one.shape, other.shape)
         if apart < TWO_STILL_SHAPES:
             return None
         if apart < TWO_SHAPES and max(one.spread, other.spread) > STILL * apart:
@@ -261,6 +269,16 @@ def _judge(parts: Sequence[_Part]) -> tuple[int, float] | None:
     if any(part.drift > MOST_DRIFT for part in parts[1:-1]):
         return None
     return agreeing, nearest
+
+
+def _measure_turned(one: FloatArray, other: FloatArray) -> float:
+    """Return how far two shapes ``(21, 2)`` are apart, in sizes of the hand.
+
+    A turn in the image by up to `MOST_SHAKEN` does not count: a signer shakes a letter.
+    """
+    product = np.vdot(one @ (1, 1j), other @ (1, 1j))
+    beyond = max(abs(np.angle(product)) - np.radians(MOST_SHAKEN), 0.0)
+    return float(np.sqrt(max(2 - 2 * abs(product) * np.cos(beyond) / len(one), 0.0)))
 
 
 def _take_median(shown: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from app.recognition.voters.hand.finger_directions import FingerDirections
+from app.recognition.voters.hand.fingertip_distances import FingertipDistances
 from app.recognition.voters.hand.hand_landmarks import HandLandmarks
 from app.recognition.voters.hand.hand_voter import HandVoter
 from app.recognition.voters.motion.motion_voter import MotionVoter
@@ -42,7 +43,11 @@ MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
 )
 """The voters of profile ``full`` that compare movements."""
 
-HAND_VOTERS: Final[tuple[HandVoter, ...]] = (HandLandmarks(), FingerDirections())
+HAND_VOTERS: Final[tuple[HandVoter, ...]] = (
+    HandLandmarks(),
+    FingerDirections(),
+    FingertipDistances(),
+)
 """The voters of profile ``full`` that compare held hand shapes, in languages that have any."""
 
 FORMER_VOTERS: Final = frozenset(

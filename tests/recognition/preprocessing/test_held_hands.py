@@ -68,3 +68,21 @@ def test_a_hand_seen_in_a_few_frames_is_not_held() -> None:
     rare[10:] = np.nan
     assert found(replace(poses, hands=rare)) == ()
     assert found(replace(poses, hands=None)) == ()
+
+
+def without_body(poses: PoseSequence) -> PoseSequence:
+    """Return a take of which the right wrist and hand alone are seen."""
+    return poses.select(["right_wrist"])
+
+
+def test_a_hand_that_is_lifted_and_lowered_again_is_held() -> None:
+    way = np.concatenate([np.linspace(0.7, 0, 10), np.zeros(20), np.linspace(0, 0.7, 10)])
+    lifted = without_body(hold(FIST, moving=np.column_stack([0 * way, way])))
+    (shape,) = found(lifted)
+    (still,) = found(without_body(hold(FIST)))
+    assert np.abs(shape.xy - still.xy).max() < 0.05
+
+
+def test_a_hand_that_pauses_in_a_figure_is_not_held() -> None:
+    way = np.concatenate([np.linspace(2.5, 0, 10), np.zeros(20), np.linspace(0, 2.5, 10)])
+    assert found(without_body(hold(FIST, moving=np.column_stack([way, 0 * way])))) == ()

@@ -70,6 +70,20 @@ def test_a_shape_held_throughout_is_one_however_it_wobbles() -> None:
     assert len(found(follow(*takes))) == 1
 
 
+def test_a_shake_is_no_sequence() -> None:
+    shaken = [hold(FLAT, roll=roll, frames=20) for roll in (-22, 22)]
+    assert len(found(follow(*shaken, transition=0))) == 1
+    turned = [hold(FLAT, roll=roll, frames=20) for roll in (-40, 40)]
+    assert len(found(follow(*turned, transition=0))) == 2
+
+
+def test_a_shape_that_is_shown_for_a_fifth_of_a_second_is_not_held() -> None:
+    quick = follow(hold(FLAT, frames=6), hold(FIST, frames=6), transition=0)
+    assert len(found(quick)) < 2
+    slow = follow(hold(FLAT, frames=10), hold(FIST, frames=10), transition=0)
+    assert len(found(slow)) == 2
+
+
 def test_two_shapes_that_are_near_are_two_where_both_are_held_still() -> None:
     assert len(found(follow(hold(TWO), hold(FLAT)))) == 2
     wobbling = [hold(shape, roll=roll, frames=5) for shape in (TWO, FLAT) for roll in 4 * (-20, 20)]

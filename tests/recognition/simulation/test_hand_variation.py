@@ -26,7 +26,7 @@ def distances(person: Person, voter: HandVoter) -> FloatArray:
 def test_another_person_varies_more_but_shows_the_same_shape(voter: HandVoter) -> None:
     same = float(np.median(distances("same", voter)))
     another = float(np.median(distances("another", voter)))
-    assert 0.3 * voter.within < same < 2 * voter.within
+    assert 0.3 * voter.within < another < 2 * voter.within
     assert same < another < voter.between / 2
 
 

@@ -22,11 +22,12 @@ class FingerDirections(HandVoter):
     name = "finger_directions"
     unit = "root mean squared difference of unit vectors"
     prior = 1.0
-    within = 0.14
-    between = 1.25
+    within = 0.2
+    between = 0.57
     cue = "hand"
 
     def describe(self, hand: HandShape) -> FloatArray:
         """Return the bones' directions, ``(40,)``."""
         bones = hand.xy[_ENDS] - hand.xy[_STARTS]
-        return describe_vectors(bones / np.maximum(np.linalg.norm(bones, axis=1), 1e-9)[:, None])
+        lengths = np.maximum(np.linalg.norm(bones, axis=1), 1e-9)
+        return describe_vectors(bones / lengths[:, None], hand.palm)

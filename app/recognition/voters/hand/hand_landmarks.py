@@ -17,10 +17,10 @@ class HandLandmarks(HandVoter):
     name = "hand_landmarks"
     unit = "distance between landmarks, in sizes of the hand"
     prior = 1.0
-    within = 0.1
-    between = 1.18
+    within = 0.15
+    between = 0.51
     cue = "hand"
 
     def describe(self, hand: HandShape) -> FloatArray:
         """Return the landmarks' places, ``(42,)``."""
-        return describe_vectors(hand.xy - hand.xy.mean(axis=0))
+        return describe_vectors(hand.xy - hand.xy.mean(axis=0), hand.palm)
