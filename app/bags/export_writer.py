@@ -25,6 +25,7 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Take, TakeMachine, takes_in
 from app.recognition.recording.video import read_frames
+from app.recognition.text.wording import ask_which
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 Progress = Callable[[int, int], None]
@@ -247,8 +248,9 @@ def _recognition_events(recognitions: Sequence[NamedRecognition]) -> Iterator[_E
                 "revision": each.revision,
                 "profile": result.profile,
                 "label": result.label or "",
+                "pair": list(result.pair or ()),
                 "nearest": result.nearest,
-                "rejected": result.label is None,
+                "rejected": result.outcome == "rejected",
                 "reason": result.fault or "",
                 "confidence": result.confidence,
                 "expected": each.expected or "",
@@ -263,6 +265,8 @@ def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
     events = []
     for each in recognitions:
         shown = each.result.label or f"no gesture, nearest {each.result.nearest}"
+        if each.result.pair is not None:
+            shown = ask_which(each.result.pair)
         text = f"{shown}  {each.result.confidence:.2f}"
         events.append(
             _Event(each.start, "/label", foxglove_overlay.label("", stamp_of(each.start)))

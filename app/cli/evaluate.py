@@ -53,7 +53,9 @@ class Evaluation:
         correct, refused = self.matrix.correct, self.matrix.refused
         head = f"profile {self.profile}, {self.asked}: {correct} of {correct.asked} correct"
         if refused.correct:
-            head += f", {refused.correct} without a label"
+            head += f", {refused.correct} rejected"
+        if (asked := self.matrix.asked_back).asked:
+            head += f", {asked.asked} asked back, {asked.correct} of them with the right gesture"
         return f"{head}\n\n{self.matrix.to_text()}\n"
 
     def to_dict(self) -> dict[str, Any]:
@@ -63,6 +65,7 @@ class Evaluation:
             "asked": self.asked,
             "correct": self.matrix.correct.to_dict(),
             "refused": self.matrix.refused.to_dict(),
+            "asked_back": self.matrix.asked_back.to_dict(),
             "confusion": self.matrix.to_dict(),
         }
 

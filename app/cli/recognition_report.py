@@ -39,7 +39,16 @@ class TakeEntry(_Entry):
     end: Seconds
     closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
     profile: ProfileName
-    label: Annotated[str | None, Field(description="The gesture; null where it was rejected.")]
+    label: Annotated[
+        str | None, Field(description="The gesture; null for a pair and where it was rejected.")
+    ]
+    pair: Annotated[
+        tuple[str, str] | None,
+        Field(
+            description="The two gestures between which the take lies, nearest first; null: it "
+            "lies between no two."
+        ),
+    ] = None
     nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]
     confidence: Share
     votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]

@@ -17,6 +17,7 @@ from rich.text import Text
 from app.recognition import Recognition, Take
 from app.recognition.explanation.differences import Difference
 from app.recognition.explanation.explanation import Explanation
+from app.recognition.text.wording import ask_which, join_words
 from app.recognition.triggers.trigger import Trigger
 
 people = Console(stderr=True)
@@ -24,8 +25,9 @@ people = Console(stderr=True)
 
 
 def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
-    """Print the label on stdout and the vote table on stderr; `trigger` ends the takes."""
-    typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{result.label}\t{result.confidence:.2f}")
+    """Print the label or the question on stdout, the votes on stderr; `trigger` ends the takes."""
+    answer = result.label if result.pair is None else ask_which(result.pair)
+    typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{answer}\t{result.confidence:.2f}")
     if not take.closed:
         people.print(
             f"the take from {take.start:.2f} s has no second {trigger.noun}: its end is set "
@@ -33,6 +35,11 @@ def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
         )
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")
+    if len(result.between) > 2:
+        people.print(
+            f"the take from {take.start:.2f} s lies between {join_words(result.between)}",
+            markup=False,
+        )
     if result.fault:
         people.print(f"the take from {take.start:.2f} s cannot be recognised: {result.fault}")
     table = build_vote_table(result)

@@ -11,6 +11,9 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 
+Answer = str | tuple[str, str] | None
+"""The label recognised, the pair that was asked back, or None when rejected."""
+
 REFUSED = "(none)"
 """Heading of the column for queries without a label. A gesture with the same label would only be
 printed ambiguously, not counted so."""
@@ -26,16 +29,19 @@ class ConfusionMatrix:
         L labels in the order of the rows.
     counts
         ``(L, L + 1)``: row shown, column recognised; the last column counts queries without a
-        label, because they were rejected or could not be compared.
+        label, because they lie between two gestures, were rejected or could not be compared.
+    pairs
+        ``(L, 2)``: of these the pairs that were asked back, with and without the gesture shown.
 
     """
 
     labels: tuple[str, ...]
     counts: npt.NDArray[np.int64]
+    pairs: npt.NDArray[np.int64]
 
     @classmethod
     def of(
-        cls, labels: Sequence[str], shown: Sequence[str], read: Sequence[str | None]
+        cls, labels: Sequence[str], shown: Sequence[str], read: Sequence[Answer]
     ) -> ConfusionMatrix:
         """Count pairs of labels shown and recognised.
 
@@ -44,14 +50,18 @@ class ConfusionMatrix:
         labels
             All labels that occur in `shown` or in `read`.
         shown, read
-            Label shown and label recognised of each query; None when rejected.
+            Label shown and answer of each query.
 
         """
         position = {label: index for index, label in enumerate(labels)}
         counts = np.zeros((len(labels), len(labels) + 1), dtype=np.int64)
+        pairs = np.zeros((len(labels), 2), dtype=np.int64)
         for truth, answer in zip(shown, read, strict=True):
-            counts[position[truth], len(labels) if answer is None else position[answer]] += 1
-        return cls(tuple(labels), counts)
+            column = position[answer] if isinstance(answer, str) else len(labels)
+            counts[position[truth], column] += 1
+            if isinstance(answer, tuple):
+                pairs[position[truth], int(truth not in answer)] += 1
+        return cls(tuple(labels), counts, pairs)
 
     @property
     def correct(self) -> Share:
@@ -60,8 +70,14 @@ class ConfusionMatrix:
 
     @property
     def refused(self) -> Share:
-        """Queries without a label."""
-        return Share(int(self.counts[:, -1].sum()), int(self.counts.sum()))
+        """Queries with neither a label nor a pair."""
+        without = int(self.counts[:, -1].sum()) - self.asked_back.asked
+        return Share(without, int(self.counts.sum()))
+
+    @property
+    def asked_back(self) -> Share:
+        """Queries answered with a pair, and in how many of these the gesture shown is in it."""
+        return Share(int(self.pairs[:, 0].sum()), int(self.pairs.sum()))
 
     def to_text(self) -> str:
         """Format the counts as a table, one row per gesture shown; zeros are dots."""
@@ -85,4 +101,8 @@ class ConfusionMatrix:
 
     def to_dict(self) -> dict[str, Any]:
         """Convert to plain JSON types; the last column counts queries without a label."""
-        return {"labels": list(self.labels), "counts": self.counts.tolist()}
+        return {
+            "labels": list(self.labels),
+            "counts": self.counts.tolist(),
+            "pairs": self.pairs.tolist(),
+        }

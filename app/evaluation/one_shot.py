@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from app.evaluation.confusion import ConfusionMatrix
-from app.evaluation.protocols import recognize_label
+from app.evaluation.confusion import Answer, ConfusionMatrix
+from app.evaluation.protocols import recognize_answer
 from app.recognition import (
     Gesture,
     GestureError,
@@ -99,8 +99,8 @@ def one_shot(
             f"{len(takes)} usable takes of {len(labels)} gestures, and no person shows two of "
             "them: record at least two gestures by the same person"
         )
-    same: list[tuple[str, str | None]] = []
-    others: list[tuple[str, str | None]] = []
+    same: list[tuple[str, Answer]] = []
+    others: list[tuple[str, Answer]] = []
     for done, templates in enumerate(chosen, start=1):
         person = takes[templates[0]].person
         language = Language("one take a gesture", [gestures[index] for index in templates])
@@ -108,7 +108,7 @@ def one_shot(
         for index, take in enumerate(takes):
             if take.label in language.labels and index not in templates:
                 asked = same if take.person == person else others
-                asked.append((take.label, recognize_label(recognizer, take.poses)))
+                asked.append((take.label, recognize_answer(recognizer, take.poses)))
         if progress is not None:
             progress(done, len(chosen))
     if not same and not others:
@@ -137,9 +137,9 @@ def recognize_takes(
 
     """
     recognizer = Recognizer(language, profile)
-    read: list[str | None] = []
+    read: list[Answer] = []
     for take in takes:
-        read.append(recognize_label(recognizer, take.poses))
+        read.append(recognize_answer(recognizer, take.poses))
         if progress is not None:
             progress(len(read), len(takes))
     unknown = sorted({take.label for take in takes} - set(language.labels))
@@ -170,5 +170,5 @@ def _choices(
             yield tuple(indices[round_number % len(indices)] for indices in own.values())
 
 
-def _matrix(labels: Sequence[str], pairs: Sequence[tuple[str, str | None]]) -> ConfusionMatrix:
-    return ConfusionMatrix.of(labels, [shown for shown, _ in pairs], [read for _, read in pairs])
+def _matrix(labels: Sequence[str], asked: Sequence[tuple[str, Answer]]) -> ConfusionMatrix:
+    return ConfusionMatrix.of(labels, [shown for shown, _ in asked], [read for _, read in asked])

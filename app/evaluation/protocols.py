@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.evaluation.confusion import ConfusionMatrix
+from app.evaluation.confusion import Answer, ConfusionMatrix
 from app.recognition import Language, OsgError, PoseError, PoseSequence, Recognizer
 from app.recognition.gestures.demonstration import condense
 from app.recognition.language.file_schema import MAX_GESTURES
@@ -53,7 +53,7 @@ def recognize_variants(
     """
     recognizer = Recognizer(language, profile)
     shown: list[str] = []
-    read: list[str | None] = []
+    read: list[Answer] = []
     for number, gesture in enumerate(language.gestures):
         if gesture.trajectory is None:
             raise OsgError(
@@ -67,17 +67,19 @@ def recognize_variants(
         ]
         for variant in take_turns(drawn):
             shown.append(gesture.label)
-            read.append(recognize_label(recognizer, variant))
+            read.append(recognize_answer(recognizer, variant))
             if progress is not None:
                 progress(len(read), count * len(language.gestures))
     return ConfusionMatrix.of(language.labels, shown, read)
 
 
-def recognize_label(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> str | None:
-    """Return the label of a recognition; None when rejected or not comparable."""
+def recognize_answer(recognizer: Recognizer, shown: PoseSequence | Trajectory) -> Answer:
+    """Return the label or the pair of a recognition; None when rejected or not comparable."""
     try:
         if isinstance(shown, Trajectory):
-            return recognizer.recognize_trajectory(condense(shown)).label
-        return recognizer.recognize(shown).label
+            result = recognizer.recognize_trajectory(condense(shown))
+        else:
+            result = recognizer.recognize(shown)
     except PoseError:
         return None
+    return result.label or result.pair

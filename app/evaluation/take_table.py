@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from app.recognition import Recognition, Recognizer, Recording, Take
+from app.recognition.text.wording import join_words
 
 COLUMNS: Final[dict[str, type]] = {
     "clip": str,
@@ -27,10 +28,12 @@ COLUMNS: Final[dict[str, type]] = {
     "language": str,
     "revision": int,
     "profile": str,
+    "pair": str,
 }
-"""Columns in order. ``start`` and ``end`` are seconds of the clip; ``label`` is empty for a
-rejected take, and all values of a take for a clip without takes; ``expected`` is empty if no test
-set has the take; ``faults`` are sentences separated by ``; ``."""
+"""Columns in order. ``start`` and ``end`` are seconds of the clip; ``label`` is empty for a take
+that is rejected or lies between two gestures, which ``pair`` then has as "circle or square"; all
+values of a take are empty for a clip without takes; ``expected`` is empty if no test set has the
+take; ``faults`` are sentences separated by ``; ``."""
 
 NO_TAKE: Final = "no take found"
 
@@ -78,6 +81,7 @@ def rows_of_clip(
             "margin": round(result.margin, 4) if abs(result.margin) < 1e300 else None,
             "expected": known.get(number),
             "faults": "; ".join(_list_faults(recording, take, result, recognizer)),
+            "pair": None if result.pair is None else join_words(result.pair, last="or"),
         }
         for number, (take, result) in enumerate(results, start=1)
     ]

@@ -94,7 +94,8 @@ class Recognizer:
         wins; among equals the one with the smallest mean relative distance (a voter's distance
         over its mean distance to all gestures), among those the first in the language.
         Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`, and is
-        rejected where it is beyond the limit, see `rejection`.
+        rejected where it is beyond the limit, see `rejection`. A take that lies between two
+        gestures is answered with the pair, see `asking`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are
         still of insufficient quality get no label, and `fault` gives the reason. The same applies
@@ -135,8 +136,8 @@ class Recognizer:
         poor = self._fault(repair, table, result.nearest) if repair else None
         poor = poor or self._find_unseen_shape(table, result.nearest)
         if poor or findings:
-            label = None if poor else result.label
-            result = replace(result, label=label, findings=findings, fault=poor)
+            label, pair = (None, None) if poor else (result.label, result.pair)
+            result = replace(result, label=label, pair=pair, findings=findings, fault=poor)
         return Trace(query=query, score_table=table, result=result)
 
     def _describe_others(self, holds: Sequence[Hold]) -> str:

@@ -59,14 +59,21 @@ class PhraseHeardMessage(Message):
         PhraseEventKind,
         Field(
             description="complete: obey the mission. continues: more is needed or may come. "
-            "repeat: a gesture was not recognised. ambiguous, cancelled, timed_out, unexpected: "
-            "the message is dropped. outside: none has begun."
+            "repeat: a gesture was not recognised, or a pair is asked. ambiguous, cancelled, "
+            "timed_out, unexpected: the message is dropped. outside: none has begun."
         ),
     ]
     start: Annotated[float, Field(description="Seconds, of the message's first gesture.")]
     end: Annotated[float, Field(description="Seconds, of its last gesture.")]
     gestures: Annotated[tuple[str, ...], Field(description="Of the message so far.")]
     label: Annotated[str | None, Field(description="Of this gesture.")]
+    pair: Annotated[
+        tuple[str, str] | None,
+        Field(
+            description="The two gestures between which this one lies; null: no two. The diver is "
+            "asked to show the gesture after `gestures` again."
+        ),
+    ] = None
     expected: Annotated[tuple[str, ...], Field(description="What may come next.")]
     mission: Annotated[
         tuple[MeaningMessage, ...] | None, Field(description="What to do; only when complete.")

@@ -264,6 +264,9 @@ class TakeRejected:
         Seconds of the take.
     label
         Always None.
+    pair
+        The two gestures between which the take lies, nearest first: `reason` asks which one was
+        meant. None where it lies between no two, or is not closed.
     nearest, confidence, margin
         Of the nearest gesture, as in `TakeRecognized`; None without a recognition.
     sha256, revision
@@ -284,6 +287,13 @@ class TakeRejected:
     margin: Margin = field(init=False)
     sha256: Sha256
     revision: Revision
+    pair: Annotated[
+        tuple[str, str] | None,
+        Field(
+            description="The two gestures between which the take lies, nearest first; null: it "
+            "lies between no two. The diver is asked to show it again."
+        ),
+    ] = None
     recognition: Recognition | None = field(default=None, metadata={JSON_TYPE: None})
 
     def __post_init__(self) -> None:

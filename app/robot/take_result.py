@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from app.recognition import PoseError, Recognition, Take
+from app.recognition.text.wording import ask_which, join_words
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import TakeRecognized, TakeRejected
 
@@ -37,7 +38,7 @@ def judge_take(
 def judge_recognition(
     language: ActiveLanguage, recognition: Recognition, time: float, start: float, end: float
 ) -> TakeRecognized | TakeRejected:
-    """Build the event of a recognition from `start` to `end`: recognised, or rejected."""
+    """Build the event of a recognition from `start` to `end`: recognised, a pair, or rejected."""
     if recognition.label is None:
         return TakeRejected(
             time=time,
@@ -47,6 +48,7 @@ def judge_recognition(
             reason=explain_rejection(language, recognition),
             sha256=language.sha256,
             revision=language.revision,
+            pair=recognition.pair,
             recognition=recognition,
         )
     return TakeRecognized(
@@ -88,8 +90,11 @@ def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str
     """Return why a recognition has no label, in words."""
     if recognition.fault:
         return f"insufficient recording quality: {recognition.fault}"
-    novelty = recognition.novelty[recognition.gestures.index(recognition.nearest)]
+    if recognition.pair:
+        return f"{ask_which(recognition.pair)} show it again"
+    if recognition.between:
+        return f"it lies between {join_words(recognition.between)}"
     return (
-        f"no gesture of {language.name!r}: the nearest, {recognition.nearest!r}, is {novelty:.1f} "
-        "times as far away as it may be"
+        f"no gesture of {language.name!r}: the nearest, {recognition.nearest!r}, is "
+        f"{recognition.nearest_novelty:.1f} times as far away as it may be"
     )

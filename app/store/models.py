@@ -247,6 +247,8 @@ class LabelledResult(SQLModel, table=True):
     recognition_id: str | None = Field(default=None, max_length=32)
     """The recognition; ``None`` if there is none, for the reason in `fault`."""
     label: str | None = Field(default=None, max_length=200)
+    pair: str | None = Field(default=None, sa_column=Column(Text))
+    """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
     nearest: str | None = Field(default=None, max_length=200)
     confidence: float = 0.0
     fault: str | None = Field(default=None, sa_column=Column(Text))
@@ -268,7 +270,9 @@ class PracticeTake(SQLModel, table=True):
     diver: str = Field(max_length=80)
     expected: str = Field(max_length=200)
     label: str | None = Field(default=None, max_length=200)
-    """The label recognised; ``None``: rejected."""
+    """The label recognised; ``None``: a pair, or rejected."""
+    pair: str | None = Field(default=None, sa_column=Column(Text))
+    """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
     revision: int
     recognition_id: str = Field(max_length=32)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)

@@ -29,7 +29,11 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
     support = (
         f"confidence {percent(recognition.confidence)}, voters with {percent(share)} of the weight"
     )
-    if label is None:
+    if recognition.pair is not None:
+        one, other = (f"<b class='chosen'>{escape(each)}</b>" for each in recognition.pair)
+        badge, kind = "?", "chosen"
+        text = f"Between two: {one} or {other}?"
+    elif label is None:
         badge, kind = "?", "expected"
         text = f"Not recognised. Nearest is <b>{escape(recognition.nearest)}</b>"
     elif expected is None:
@@ -102,11 +106,13 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
 
 def _gesture_head(recognition: Recognition, column: int, expected: str | None) -> str:
     gesture = recognition.gestures[column]
-    kind = "chosen" if gesture == recognition.label else "expected" if gesture == expected else ""
+    is_chosen = gesture in (recognition.pair or (recognition.label,))
+    kind = "chosen" if is_chosen else "expected" if gesture == expected else ""
     tags = ""
-    if gesture == recognition.label:
+    if is_chosen:
         # Two tags side by side would lie over the next column.
-        word = "chosen, expected" if gesture == expected else "chosen"
+        answer = "one of two" if recognition.pair else "chosen"
+        word = f"{answer}, expected" if gesture == expected else answer
         tags = f"<span class='tag chosen'>{word}</span>"
     elif gesture == expected:
         tags = "<span class='tag expected'>expected</span>"

@@ -18,6 +18,7 @@ from app.recognition.poses.landmarks import SKELETON
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.video import read_frames
+from app.recognition.text.wording import ask_which
 from app.resources import static_dir
 from app.ui import charts
 from app.ui.palette import read_tokens
@@ -80,7 +81,8 @@ def analysis_page(
         (read_tokens(), alias_chart_colours(), (folder / "recognition-page.css").read_text("utf-8"))
     )
     script = (folder / "recognition-page.js").read_text("utf-8")
-    title = f"{view.title}: {recognition.label or 'not recognised'}"
+    answer = recognition.label or "not recognised"
+    title = f"{view.title}: {ask_which(recognition.pair) if recognition.pair else answer}"
     return (
         "<!doctype html><html lang='en'><head><meta charset='utf-8'>"
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'

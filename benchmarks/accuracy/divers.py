@@ -96,7 +96,7 @@ def draw_outcomes(
             yield Outcome(
                 kind,
                 right=result is not None and result.nearest == shown.label,
-                labelled=result is not None and result.label is not None,
+                labelled=result is not None and result.outcome != "rejected",
             )
 
 

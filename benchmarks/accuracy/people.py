@@ -45,6 +45,7 @@ from app.recognition import (
     Recognition,
     Recognizer,
 )
+from app.recognition.decision.asking import ASK_RATIO
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -83,9 +84,6 @@ MEASURES = (
     SIZE,
 )
 """Rows of the table."""
-
-RATIO = 1.14
-"""A gesture belongs to the answer if its score is at most this times the best one."""
 
 STEPS, BAND = 32, 8
 """Steps that a recording is resampled to in time, and the band of DTW in steps."""
@@ -170,7 +168,7 @@ def judge(result: Recognition | None, label: str, ratio: float) -> Found:
     if result is None:
         return
     if right:
-        yield "right rejected", result.label is None
+        yield "right rejected", result.outcome == "rejected"
     bound = ratio * float(result.scores.min())
     answer = [
         name for name, score in zip(result.gestures, result.scores, strict=True) if score <= bound
@@ -183,7 +181,7 @@ def judge(result: Recognition | None, label: str, ratio: float) -> Found:
 
 def judge_half(result: Recognition | None, label: str, language: Language) -> Found:
     """Yield what a take tells whose gesture the language may lack."""
-    accepted = result is not None and result.label is not None
+    accepted = result is not None and result.outcome != "rejected"
     if label not in language.labels:
         yield "half: near accepted", accepted
     elif result is not None and result.nearest == label:
@@ -221,7 +219,7 @@ def score(
     queries
         Indices of recordings.
     ratio
-        See `RATIO`.
+        Largest ratio to the best score in an answer, see `ASK_RATIO`.
 
     """
     for result, label in recognize(recognizer, recorded, queries):
@@ -243,7 +241,7 @@ def score_half(
     if is_of_bodies(recorded):
         order = np.random.default_rng(several.queries).permutation(len(far.recordings))
         for result, _ in recognize(recognizer, far, order[: len(several.queries)]):
-            yield "half: far accepted", result is not None and result.label is not None
+            yield "half: far accepted", result is not None and result.outcome != "rejected"
 
 
 def is_of_bodies(recorded: RecordedSet) -> bool:
@@ -318,7 +316,7 @@ def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]
 def main() -> None:
     """Print the table of every set, and write the JSON file after each."""
     parser = set_arguments(__doc__, draws=8, queries=60)
-    parser.add_argument("--ratio", type=float, default=RATIO, help="of scores in one answer")
+    parser.add_argument("--ratio", type=float, default=ASK_RATIO, help="of scores in one answer")
     parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
     given = parser.parse_args()
     folder = given.data / "trajectories"

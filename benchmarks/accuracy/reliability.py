@@ -188,7 +188,7 @@ def answers(
                 novelty=float(result.novelty[result.gestures.index(result.nearest)]),
                 known=label in language.labels,
                 correct=result.nearest == label,
-                refused=result.label is None,
+                refused=result.outcome == "rejected",
             )
 
 

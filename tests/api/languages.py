@@ -6,6 +6,7 @@ import httpx
 
 from app.recognition import Gesture, Language, takes_in
 from tests.api.recordings import recording_of
+from tests.robot.languages import ambiguous
 
 LANGUAGES = "/api/v1/languages"
 
@@ -16,6 +17,12 @@ def add_gesture(
     return client.post(
         f"{LANGUAGES}/{language_id}/gestures", json={"label": label, "clip_id": clip_id}
     )
+
+
+def add_ambiguous_language(client: httpx.Client) -> str:
+    """Add a language in which a circle lies between two gestures, and return its address."""
+    content = ambiguous().recognizer.language.to_json()
+    return f"{LANGUAGES}/{client.post(f'{LANGUAGES}/import', content=content).json()['id']}"
 
 
 def listed(client: httpx.Client) -> dict[str, dict[str, object]]:

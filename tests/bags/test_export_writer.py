@@ -82,6 +82,22 @@ def test_everything_of_the_session_is_in_it_at_its_time(
     assert texts[1][0].startswith("circle  ")
 
 
+def test_a_pair_is_a_question_and_no_rejection(
+    tmp_path: Path, recording: Recording, recognitions: list[NamedRecognition]
+) -> None:
+    result = replace(recognitions[0].result, label=None, pair=("circle", "ring"))
+    path = tmp_path / "session.mcap"
+    write_bag(path, recording, [replace(recognitions[0], result=result)])
+    found = checked(path)
+    ((_, content),) = found["/recognitions"]
+    assert (content["label"], content["pair"], content["rejected"]) == (
+        "",
+        ["circle", "ring"],
+        False,
+    )
+    assert found["/label"][-1][1]["texts"][0]["text"].startswith("circle or ring?  ")
+
+
 def test_the_video_is_a_stream_of_single_frames_that_any_decoder_reads(
     tmp_path: Path, recording: Recording
 ) -> None:

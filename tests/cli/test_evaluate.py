@@ -9,6 +9,8 @@ import pytest
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.evaluation.test_labelled_takes import save_swipes
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle
 
 TABLE_1 = ROOT / "languages" / "osg-table-1.json"
 
@@ -24,6 +26,17 @@ def test_a_language_names_variants_of_its_own_gestures(
     assert "of 9 correct" in ended.out
     assert [line.split()[0] for line in ended.out.splitlines()[3:6]] == ["circle", "wedge", "three"]
     ElementTree.parse(picture)
+
+
+def test_what_is_asked_back_is_counted_on_its_own(osg_studio: OsgStudio, tmp_path: Path) -> None:
+    pool(circle=circle, ring=circle).save(tmp_path / "pool.json")
+    arguments = ("evaluate", tmp_path / "pool.json", "--variants", 3, "--profile", "full")
+    (finding,) = json.loads(osg_studio(*arguments, "--json").out)["findings"]
+    asked = finding["asked_back"]
+    assert asked["asked"] == asked["correct"] > 3
+    assert sum(map(sum, finding["confusion"]["pairs"])) == asked["asked"]
+    told = f"{asked['asked']} asked back, {asked['asked']} of them with the right gesture"
+    assert told in osg_studio(*arguments).out
 
 
 def test_json_has_a_finding_for_each_profile(osg_studio: OsgStudio) -> None:

@@ -7,14 +7,16 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
+import jsonschema
 import numpy as np
 import pytest
 
+from app.cli.recognition_report import RecognitionReport, read_schema
 from app.recognition import Gesture, Language
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.skeletons import BODY_25, COCO_18
-from tests.command_line import OsgStudio
+from tests.command_line import OsgStudio, Outcome
 from tests.documented import documented
 from tests.keypoint_files.files import (
     renamed,
@@ -26,7 +28,7 @@ from tests.keypoint_files.files import (
 )
 from tests.recognition.demonstrations import pool
 from tests.recognition.parametric_hand import hand_xy, salute
-from tests.recognition.strategies import BODY, circle, line, recording
+from tests.recognition.strategies import BODY, Shape, circle, line, recording
 
 ARMS = tuple(BODY)
 
@@ -36,6 +38,41 @@ def language(tmp_path: Path) -> Path:
     """Return the file of a language of a circle and a line."""
     pool(circle=circle, line=line).save(tmp_path / "pool.json")
     return tmp_path / "pool.json"
+
+
+def recognize_circle(
+    osg_studio: OsgStudio, folder: Path, *options: str, **shapes: Shape
+) -> Outcome:
+    """Recognise a take of a circle by a language of these shapes."""
+    pool(**shapes).save(folder / "pool.json")
+    write_named(folder / "dive.csv", recording(circle, frames=50, jitter=0.005))
+    return osg_studio(
+        "recognize", folder / "dive.csv", "--language", folder / "pool.json", *options
+    )
+
+
+def test_a_take_between_two_gestures_is_a_question_and_nothing_is_recognised(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    shapes = {"circle": circle, "ring": circle, "line": line}
+    ended = recognize_circle(osg_studio, tmp_path, **shapes)
+    assert ended.code == 1
+    assert ended.out.split("\t")[2] == "circle or ring?"
+    ended = recognize_circle(osg_studio, tmp_path, "--json", **shapes)
+    assert ended.code == 1
+    (take,) = json.loads(ended.out)["takes"]
+    assert (take["label"], take["pair"]) == (None, ["circle", "ring"])
+    jsonschema.validate(json.loads(ended.out), json.loads(read_schema()))
+    assert RecognitionReport.model_validate_json(ended.out).takes[0].pair == ("circle", "ring")
+
+
+def test_a_take_between_three_gestures_is_rejected_with_their_names(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    ended = recognize_circle(osg_studio, tmp_path, circle=circle, ring=circle, loop=circle)
+    assert ended.code == 1
+    assert ended.out.split("\t")[2] == "None"
+    assert "lies between circle, ring and loop" in " ".join(ended.error.split())
 
 
 def test_a_language_is_defined_from_a_folder_of_openpose_and_understands_another(

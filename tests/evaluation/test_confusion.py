@@ -1,18 +1,25 @@
 """The confusion matrix: its counts, as text and as a picture."""
 
 import xml.etree.ElementTree as ElementTree
+from itertools import permutations
 
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.confusion import REFUSED, ConfusionMatrix
+from app.evaluation.confusion import REFUSED, Answer, ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
 
 LABELS = ("circle", "wedge", "<three & more>")
-pairs = st.lists(st.tuples(st.sampled_from(LABELS), st.sampled_from([*LABELS, None])), min_size=1)
+pairs = st.lists(
+    st.tuples(
+        st.sampled_from(LABELS),
+        st.sampled_from([*LABELS, None, *permutations(LABELS, 2)]),
+    ),
+    min_size=1,
+)
 
 
-def matrix_of(answers: list[tuple[str, str | None]]) -> ConfusionMatrix:
+def matrix_of(answers: list[tuple[str, Answer]]) -> ConfusionMatrix:
     return ConfusionMatrix.of(
         LABELS, [shown for shown, _ in answers], [read for _, read in answers]
     )
@@ -20,7 +27,7 @@ def matrix_of(answers: list[tuple[str, str | None]]) -> ConfusionMatrix:
 
 @given(pairs)
 def test_every_query_is_counted_once_in_the_row_of_what_was_shown(
-    answers: list[tuple[str, str | None]],
+    answers: list[tuple[str, Answer]],
 ) -> None:
     matrix = matrix_of(answers)
     rows = [sum(shown == label for shown, _ in answers) for label in LABELS]
@@ -28,6 +35,21 @@ def test_every_query_is_counted_once_in_the_row_of_what_was_shown(
     assert matrix.correct.correct == sum(shown == read for shown, read in answers)
     assert matrix.refused.correct == sum(read is None for _, read in answers)
     assert matrix.correct.asked == matrix.refused.asked == len(answers)
+
+
+@given(pairs)
+def test_a_pair_is_neither_right_nor_rejected_nor_a_wrong_label(
+    answers: list[tuple[str, Answer]],
+) -> None:
+    matrix = matrix_of(answers)
+    asked = [(shown, read) for shown, read in answers if isinstance(read, tuple)]
+    assert matrix.asked_back.asked == len(asked)
+    assert matrix.asked_back.correct == sum(shown in read for shown, read in asked)
+    wrong = int(matrix.counts[:, :-1].sum()) - matrix.correct.correct
+    parts = (matrix.correct.correct, wrong, matrix.refused.correct, matrix.asked_back.asked)
+    assert sum(parts) == len(answers)
+    rows = [[shown for shown, _ in asked].count(label) for label in LABELS]
+    assert [sum(row) for row in matrix.to_dict()["pairs"]] == rows
 
 
 def test_text_has_a_row_for_each_gesture_and_a_column_for_refusals_only_where_there_are_any() -> (
@@ -43,7 +65,7 @@ def test_text_has_a_row_for_each_gesture_and_a_column_for_refusals_only_where_th
 
 @given(pairs)
 def test_the_picture_is_valid_xml_that_holds_every_count_and_label(
-    answers: list[tuple[str, str | None]],
+    answers: list[tuple[str, Answer]],
 ) -> None:
     matrix = matrix_of(answers)
     root = ElementTree.fromstring(confusion_svg(matrix, "Profile full & more"))

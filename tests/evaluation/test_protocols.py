@@ -7,6 +7,8 @@ from app.evaluation.protocols import recognize_variants
 from app.recognition import Language, OsgError
 from app.recognition.language.osg_reference import from_reference, to_reference
 from tests.conftest import ROOT
+from tests.recognition.demonstrations import pool
+from tests.recognition.strategies import circle, line
 
 
 @pytest.fixture(scope="module")
@@ -19,6 +21,15 @@ def test_variants_of_three_gestures_are_nearly_all_named(table_1: Language) -> N
     assert matrix.labels == table_1.labels
     assert matrix.counts.sum(axis=1).tolist() == [10, 10, 10]
     assert matrix.correct.correct >= 27
+
+
+def test_variants_between_two_gestures_are_asked_back() -> None:
+    matrix = recognize_variants(pool(circle=circle, ring=circle, line=line), 4, profile="full")
+    assert matrix.asked_back.asked >= 7
+    assert matrix.asked_back.correct == matrix.asked_back.asked
+    assert matrix.counts[:2, :2].sum() <= 1
+    assert matrix.counts[2, :2].tolist() == [0, 0]
+    assert matrix.counts[2, 2] >= 3
 
 
 def test_the_same_seed_gives_the_same_matrix_and_progress_counts_every_query(

@@ -31,6 +31,15 @@ def test_a_take_is_a_row_with_its_runner_up_and_what_was_expected(recognizer: Re
     assert [row["expected"] for row in rows] == [None, "line"]
 
 
+def test_a_take_between_two_gestures_has_no_label_but_a_pair() -> None:
+    recording = recording_of("circle", "line")
+    asking = Recognizer(pool(circle=circle, ring=circle, line=line))
+    results = [(take, asking.recognize(take.poses)) for take in takes_in(recording)]
+    first, second = rows_of_clip("dive.mp4", asking, recording, results)
+    assert (first["label"], first["pair"]) == (None, "circle or ring")
+    assert (second["label"], second["pair"]) == ("line", None)
+
+
 def test_a_language_of_one_gesture_has_no_runner_up() -> None:
     recording, lone = recording_of("circle"), Recognizer(pool(circle=circle))
     results = [(take, lone.recognize(take.poses)) for take in takes_in(recording)]

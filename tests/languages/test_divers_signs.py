@@ -64,6 +64,8 @@ def test_signs_of_other_divers_are_told_apart(results: Mapping[str, Recognition]
 def test_no_sign_is_taken_for_another(results: Mapping[str, Recognition]) -> None:
     mistaken = {sign: r.label for sign, r in results.items() if r.label not in (sign, None)}
     assert not mistaken
+    asked = {sign: r.pair for sign, r in results.items() if r.pair is not None}
+    assert all(sign in pair for sign, pair in asked.items()), asked
 
 
 @pytest.mark.parametrize("kind", ["test-1", "test-2"])

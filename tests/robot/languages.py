@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime, timezone
 from functools import cache
 
 from app.recognition import Gesture, Language, PoseSequence, Recording, takes_in
+from app.recognition.phrases.grammar import Grammar
 from app.robot import ActiveLanguage, Event, LandmarkListener
 from tests.api.recordings import recording_of
 
@@ -25,6 +27,17 @@ def language_of(*labels: str, revision: int = 1) -> Language:
 def spoken(*labels: str, revision: int = 1) -> ActiveLanguage:
     """Return a language of shapes made ready."""
     return ActiveLanguage.from_json(language_of(*labels, revision=revision).to_json())
+
+
+@cache
+def ambiguous(grammar: Grammar | None = None) -> ActiveLanguage:
+    """Return a language in which a circle lies between two gestures, and a line is one."""
+    shapes = {"circle": "circle", "ring": "circle", "line": "line"}
+    gestures = [
+        replace(language_of(shape).gestures[0], label=label) for label, shape in shapes.items()
+    ]
+    made = replace(language_of("circle"), gestures=gestures, grammar=grammar)
+    return ActiveLanguage.from_json(made.to_json())
 
 
 def moments_of(recording: Recording) -> list[tuple[PoseSequence, float]]:

@@ -11,26 +11,35 @@ from dataclasses import replace
 
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
-from app.robot import ActiveLanguage, Event, Listener, PhraseListener
+from app.robot import ActiveLanguage, Event, Listener, PhraseListener, TakeRejected
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
-from tests.robot.languages import language_of, run_listener
+from tests.robot.languages import ambiguous, language_of, run_listener
 
 PAUSE = 0.2
 """Seconds between two rounds: a subscriber may join at any time."""
+
+LATER = 60.0
+"""Seconds of the take between two gestures after the others."""
 
 PHOTO = Phrase("photo", (OneOf(("circle",)),), {"do": "photo"}, "take a photo")
 
 
 def list_round_events() -> list[Event]:
-    """Return the events of a round: a gesture that is a phrase, and an unknown gesture."""
+    """Return the events of a round: a phrase, an unknown gesture, and one between two."""
     made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line")
+    between = run_listener(Listener(ambiguous()), recording_of("circle"))
     return [
         build_language_changed(0.0, language),
         *run_listener(PhraseListener(Listener(language)), shown),
+        *(
+            replace(event, start=event.start + LATER, end=event.end + LATER)
+            for event in between
+            if isinstance(event, TakeRejected)
+        ),
     ]
 
 

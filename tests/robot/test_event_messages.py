@@ -67,7 +67,16 @@ def phrases(*shown: str) -> list[Event]:
     return [PhraseHeard(3.0, event, 0.9, SEAL, 3) for event in events]
 
 
+def asked() -> list[Event]:
+    pair = ("three", "two")
+    parser = PhraseParser(MISSIONS)
+    parser.feed("start", 1.0, 2.0)
+    (phrase,) = parser.feed(None, 3.0, 4.0, pair)
+    return [replace(rejected(), pair=pair), PhraseHeard(3.0, phrase, 0.9, SEAL, 3)]
+
+
 EVENTS: list[Event] = [
+    *asked(),
     *phrases("start", "photo", "three", "end"),
     SourceOpened(0.0, "reef", True, (640, 480), datetime(2026, 11, 21, 13, 0, tzinfo=timezone.utc)),
     SourceOpened(0.0, "dive.mp4", False, (640, 480), None),
@@ -125,6 +134,15 @@ def test_a_recognition_tells_what_was_said_when_and_in_which_language() -> None:
         "sha256": event.sha256,
         "revision": 1,
     }
+
+
+def test_a_pair_is_named_and_lines_written_before_have_none() -> None:
+    for event in asked():
+        content = json.loads(format_line(event))
+        assert (content["label"], content["pair"]) == (None, ["three", "two"])
+        del content["pair"]
+        jsonschema.Draft202012Validator(SCHEMA).validate(content)
+        assert MESSAGES.validate_python(content).model_dump()["pair"] is None
 
 
 def test_a_margin_to_no_other_gesture_is_null() -> None:

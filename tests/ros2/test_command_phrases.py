@@ -17,8 +17,8 @@ from app.robot.commands.dialogue import (
     Decision,
     RecognizedGesture,
     RecognizedPhrase,
-    Rules,
 )
+from app.robot.commands.rules import Rules
 from osg_ros.commands.table import read_commands
 from tests.robot.commands.test_dialogue import RULES, TABLE, gestures, shown
 from tests.ros2.workspace import ROOT

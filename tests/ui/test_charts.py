@@ -84,6 +84,17 @@ def test_the_verdict_says_in_words_what_came_out(
     assert "confidence 62 %, voters with 67 % of the weight" in text
 
 
+def test_a_pair_is_a_question_and_both_gestures_are_marked() -> None:
+    asked = replace(recognition(label=None), pair=("wedge", MARKUP))
+    words = Elements(charts.verdict(asked, "circle"))
+    assert f"Between two: wedge or {MARKUP}?" in words.text
+    assert "img" not in [tag for tag, _ in words.tags]
+    asked = replace(asked, pair=("wedge", "line"))
+    table = Elements(charts.vote_table(asked, "line"))
+    tagged = [cell for cell in table.rows[0] if "one of two" in cell]
+    assert sorted(tagged) == ["lineone of two, expected", "wedgeone of two"]
+
+
 def test_the_vote_table_has_a_row_per_voter_and_the_largest_weight_comes_first() -> None:
     head, *rows = Elements(charts.vote_table(recognition(), "circle")).rows
     assert head == ["voter", "weight", "wedgechosen", "circleexpected", "line"]

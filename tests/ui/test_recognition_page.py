@@ -42,6 +42,13 @@ def test_the_file_needs_nothing_from_anywhere(view: WorkspaceView) -> None:
     assert "http" not in page.replace("http-equiv", "")
 
 
+def test_the_title_of_a_pair_is_the_question(view: WorkspaceView) -> None:
+    assert view.recognition is not None
+    asked = replace(view.recognition, label=None, pair=("circle", "<ring>"))
+    page = analysis_page(view, asked, None)
+    assert "circle or &lt;ring&gt;?</title>" in page
+
+
 def test_every_picture_has_its_moment_and_pose(view: WorkspaceView) -> None:
     recording = recording_in(page_of(view))
     shown = Range.of(view)

@@ -93,7 +93,7 @@ class Recognized(BaseModel):
         Whether a stop salute ended it.
     language
         Name of the language that was used; None if there was none.
-    label, nearest, confidence
+    label, pair, nearest, confidence
         As in `app.recognition.Recognition`; None if nothing was recognised.
     voters, agreeing
         Number of votes that counted, and of those for `nearest`.
@@ -108,6 +108,7 @@ class Recognized(BaseModel):
     closed: bool
     language: str | None = None
     label: str | None = None
+    pair: tuple[str, str] | None = None
     nearest: str | None = None
     confidence: float | None = None
     voters: int = 0
@@ -295,6 +296,7 @@ def _view_answer(
         closed=closed,
         language=recognizer.language.name,
         label=result.label,
+        pair=result.pair,
         nearest=result.nearest,
         confidence=round(result.confidence, 4),
         voters=len(votes),

@@ -145,6 +145,17 @@ def load_language(record: RecognitionRecord, studio: Studio) -> Language:
     return studio.language(state) if trial is None else try_gesture(studio, state, trial)
 
 
+def write_pair(answer: dict[str, Any]) -> str | None:
+    """Return the pair of an answer in plain JSON types as the store keeps it; None without one."""
+    return None if answer["pair"] is None else json.dumps(answer["pair"])
+
+
+def read_pair(stored: str | None) -> list[str] | None:
+    """Return a pair that `write_pair` has written."""
+    pair: list[str] | None = None if stored is None else json.loads(stored)
+    return pair
+
+
 def load_recognition(record: RecognitionRecord) -> Recognition:
     """Return the recogniser's answer as it was when `record` was made."""
     result: dict[str, Any] = json.loads(record.result)

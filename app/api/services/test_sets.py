@@ -21,6 +21,7 @@ from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import Studio
+from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.test_takes import RecognizedTake, TakeToRecognize, TestRunRequest
 from app.evaluation.proportion import Share
 from app.store import (
@@ -117,7 +118,7 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
     gestures = [
         GestureRateView(
             label=label,
-            **_rate([result for take, result in counted if take.expected == label]),
+            **_rate([each for each in counted if each[0].expected == label]),
         )
         for label in labels
     ]
@@ -126,10 +127,14 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
-        overall=RateView(**_rate([result for _, result in counted])),
+        overall=RateView(**_rate(counted)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
-        better=[take.id for take, now, before in compared if now.right and not before.right],
-        worse=[take.id for take, now, before in compared if before.right and not now.right],
+        better=[
+            take.id for take, now, before in compared if _worth(take, now) > _worth(take, before)
+        ],
+        worse=[
+            take.id for take, now, before in compared if _worth(take, now) < _worth(take, before)
+        ],
         waiting=sum(
             take.result is None or take.result.revision != state.revision.revision for take in takes
         ),
@@ -162,6 +167,7 @@ def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: Recog
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
+        result.pair = write_pair(answer)
         result.confidence = answer["confidence"]
     studio.labelled.keep(result, take.expected)
 
@@ -185,12 +191,19 @@ def _ranges(
     )
 
 
-def _rate(results: Sequence[LabelledResultView]) -> dict[str, Any]:
-    share = Share(sum(result.right for result in results), len(results))
+def _worth(take: LabelledTakeView, result: LabelledResultView) -> int:
+    """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer."""
+    return 2 * result.right or int(take.expected in (result.pair or ()))
+
+
+def _rate(counted: Sequence[tuple[LabelledTakeView, LabelledResultView]]) -> dict[str, Any]:
+    share = Share(sum(result.right for _, result in counted), len(counted))
     low, high = share.interval() or (None, None)
     return {
         "right": share.correct,
         "asked": share.asked,
+        "pairs": sum(result.pair is not None for _, result in counted),
+        "pairs_right": sum(_worth(take, result) == 1 for take, result in counted),
         "rate": share.value,
         "low": low,
         "high": high,
@@ -222,7 +235,8 @@ def _view(tested: TestedTake, shown: _Demonstrations) -> LabelledTakeView:
     take = tested.take
     results = [
         LabelledResultView(
-            **result.model_dump(exclude={"take_id", "created"}),
+            **result.model_dump(exclude={"take_id", "created", "pair"}),
+            pair=read_pair(result.pair),
             right=result.label == take.expected,
         )
         for result in tested.results

@@ -40,6 +40,8 @@ def _describe_take(event: TakeRecognized | TakeRejected) -> str:
     span = f"{event.start:.2f} - {event.end:.2f} s"
     if isinstance(event, TakeRecognized):
         return f"{span}: {event.label} ({event.confidence:.2f})"
+    if event.pair is not None:
+        return f"{span}: {event.reason}"
     return f"{span}: rejected, {event.reason}"
 
 

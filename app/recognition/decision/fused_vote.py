@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.decision.asking import find_answer
 from app.recognition.decision.confidence import estimate_confidence
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
 from app.recognition.decision.hand_references import (
@@ -381,7 +382,7 @@ class FusedVote:
         return bool(comparable[gesture] and scores[gesture] < scores.min() + CLOSE_SCORES)
 
     def decide(self, compared: ScoreTable) -> Recognition:
-        """Return the gesture with the smallest score, or a rejection if its novelty is above 1.
+        """Return the gesture with the smallest score, a pair or a rejection; see `find_answer`.
 
         One of the scores must be finite.
         """
@@ -389,10 +390,11 @@ class FusedVote:
         winner = int(scores.argmin())
         able = np.flatnonzero(np.isfinite(distances).any(axis=1)).tolist()
         nearest_by_voter = distances.argmin(axis=1)
-        nearest = self._labels[winner]
+        answer = [self._labels[index] for index in find_answer(scores, novelty)]
         return Recognition(
-            label=None if is_rejected(float(novelty[winner])) else nearest,
-            nearest=nearest,
+            label=answer[0] if len(answer) == 1 else None,
+            pair=(answer[0], answer[1]) if len(answer) == 2 else None,
+            nearest=self._labels[winner],
             confidence=estimate_confidence(
                 float(novelty[winner]),
                 float(scores[winner]),

@@ -6,11 +6,15 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from app.recognition.decision.asking import find_answer
 from app.recognition.poses.sequence import FloatArray
+
+Outcome = Literal["recognized", "pair", "rejected"]
+"""What a recognition answers: a label, a pair that the diver decides between, or neither."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -20,8 +24,11 @@ class Recognition:
     Attributes
     ----------
     label
-        The recognised gesture, or None when rejected (profile ``paper`` never rejects) or when the
-        poses are too poor to recognise.
+        The recognised gesture, or None for a pair, when rejected (profile ``paper`` never rejects)
+        or when the poses are too poor to recognise; `outcome` tells these apart.
+    pair
+        The two gestures between which the take lies, nearest first: the diver is asked to show it
+        again. None otherwise, for profile ``paper``, and in results of earlier versions.
     nearest
         The best gesture even when rejected.
     confidence
@@ -56,7 +63,7 @@ class Recognition:
         the mean relative distance. Empty in results of earlier versions.
     novelty
         ``(G,)``: distance relative to each gesture's thresholds; if that of `nearest` is above 1,
-        `label` is None (`rejection`). NaN for a gesture without thresholds, all of profile
+        the take is rejected (`rejection`). NaN for a gesture without thresholds, all of profile
         ``paper``.
     novelty_by_view
         By cue group's name (`rejection.CUE_GROUPS`) the novelties ``(G,)`` in that group alone, of
@@ -72,6 +79,7 @@ class Recognition:
     """
 
     label: str | None
+    pair: tuple[str, str] | None = None
     nearest: str
     confidence: float
     profile: str
@@ -97,6 +105,33 @@ class Recognition:
             object.__setattr__(self, name, _freeze(getattr(self, name)))
         by_view = {view: _freeze(values) for view, values in self.novelty_by_view.items()}
         object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
+
+    @property
+    def outcome(self) -> Outcome:
+        """Whether a gesture was recognised, the diver is asked back, or the take is rejected."""
+        if self.pair is not None:
+            return "pair"
+        return "rejected" if self.label is None else "recognized"
+
+    @property
+    def between(self) -> tuple[str, ...]:
+        """The gestures between which the take lies, nearest first: the pair, or three or more.
+
+        Three or more are the reason of a rejection. Empty for any other reason, and for a label.
+        """
+        if self.outcome != "rejected" or self.fault or not self.scores.size:
+            return self.pair or ()
+        answer = find_answer(self.scores, self.novelty)
+        return tuple(self.gestures[index] for index in answer) if len(answer) > 2 else ()
+
+    @property
+    def nearest_novelty(self) -> float:
+        """The novelty of `nearest`; NaN without thresholds, and in results of earlier versions."""
+        return (
+            float(self.novelty[self.gestures.index(self.nearest)])
+            if self.novelty.size
+            else math.nan
+        )
 
     @property
     def counted(self) -> dict[str, str]:
@@ -137,6 +172,7 @@ class Recognition:
         ]
         return cls(
             label=content["label"],
+            pair=None if (pair := content.get("pair")) is None else (pair[0], pair[1]),
             nearest=content["nearest"],
             confidence=content["confidence"],
             profile=content["profile"],
@@ -162,6 +198,7 @@ class Recognition:
         return {
             "profile": self.profile,
             "label": self.label,
+            "pair": None if self.pair is None else list(self.pair),
             "nearest": self.nearest,
             "confidence": self.confidence,
             "votes": dict(self.votes),

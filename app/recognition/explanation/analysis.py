@@ -21,8 +21,8 @@ class Analysis:
         The recogniser's.
     expected
         The gesture that should have been recognised.
-    label, nearest, confidence
-        The recognition.
+    label, nearest, confidence, between
+        The recognition, see `Recognition`.
     other
         The gesture that the expected one is compared with: the nearest one, or the runner-up where
         the expected one is nearest; None in a language of one gesture.
@@ -63,6 +63,7 @@ class Analysis:
     label: str | None
     nearest: str
     confidence: float
+    between: tuple[str, ...]
     other: str | None
     score: float
     other_score: float

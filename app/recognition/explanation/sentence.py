@@ -47,6 +47,10 @@ def _outcome(analysis: Analysis) -> str:
     if analysis.label is not None:
         wrong = _voters(analysis, analysis.nearest)
         return f"{wrong} chose {analysis.nearest!r} instead of {analysis.expected!r}"
+    if analysis.between:
+        between = f"take lies between {join_words([repr(each) for each in analysis.between])}"
+        asked = len(analysis.between) == 2
+        return f"The {between}" if asked else f"Nothing was recognised: the {between}"
     if analysis.nearest != analysis.expected:
         return f"Nothing was recognised; {analysis.nearest!r} was nearest"
     return (

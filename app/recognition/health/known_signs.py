@@ -37,7 +37,8 @@ def find_known_signs(
     meanings = {gesture.label: gesture.description for gesture in known.gestures}
     for gesture in language.gestures:
         read = [_recognize(recognizer, shown) for shown in gesture.trajectories]
-        signs = [result.label for result in read if result is not None and result.label is not None]
+        # A pair looks like a sign too, though the robot would ask.
+        signs = [each.nearest for each in read if each is not None and each.outcome != "rejected"]
         sign = next((each for each in signs if not _same_word(each, gesture.label)), None)
         if sign is not None:
             meaning = f' ("{meanings[sign]}")' if meanings[sign] else ""

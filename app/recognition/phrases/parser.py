@@ -1,8 +1,8 @@
 """Phrase parser: parses messages gesture by gesture and lists what may come next.
 
-Errors are handled as in CADDIAN (Chiarella et al. 2018): a gesture that was not recognised is
-repeated and the sequence kept; one that cannot follow ends the message; and a message is read back,
-so that the diver can cancel it.
+Errors are handled as in CADDIAN (Chiarella et al. 2018): a gesture that was not recognised, or that
+lies between two, is repeated and the sequence kept; one that cannot follow ends the message; and a
+message is read back, so that the diver can cancel it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any, Literal
 from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.interpretation import Mission, interpret_message
-from app.recognition.text.wording import join_words
+from app.recognition.text.wording import ask_which, join_words
 
 PhraseEventKind = Literal[
     "continues",
@@ -40,12 +40,15 @@ class PhraseEvent:
     kind
         ``continues``: the message needs or allows further gestures. ``complete``: the message
         ended. ``ambiguous``: it ended with two meanings, so there is no command. ``cancelled``,
-        ``timed_out``, ``unexpected``: it is dropped. ``repeat``: the gesture was not recognised;
-        the message is kept. ``outside``: no message has begun.
+        ``timed_out``, ``unexpected``: it is dropped. ``repeat``: the gesture was not recognised, or
+        `pair` is asked; the message is kept. ``outside``: no message has begun.
     gestures
         Labels of the message so far, including this gesture if it belongs to it.
     label
-        Label of this gesture; None when it was rejected, and for a pause.
+        Label of this gesture; None for a pair, when it was rejected, and for a pause.
+    pair
+        The two gestures between which this one lies, asked at the place after `gestures`; None
+        otherwise, and for a second pair in a row, which counts as rejected.
     expected
         Labels that may come next, in the grammar's order.
     mission
@@ -58,6 +61,7 @@ class PhraseEvent:
     kind: PhraseEventKind
     gestures: tuple[str, ...]
     label: str | None
+    pair: tuple[str, str] | None = None
     expected: tuple[str, ...]
     mission: Mission | None = None
     start: float
@@ -69,6 +73,9 @@ class PhraseEvent:
         so_far, following = ", ".join(self.gestures), join_words(self.expected, last="or")
         if self.mission is not None:
             return self.mission.spoken
+        if self.pair is not None:
+            place = f"gesture {len(self.gestures) + 1}: " if self.gestures else ""
+            return f"{place}{ask_which(self.pair)} show it again"
         return {
             "continues": f"{so_far}: then {following}",
             "complete": so_far,
@@ -86,6 +93,7 @@ class PhraseEvent:
             "kind": self.kind,
             "gestures": list(self.gestures),
             "label": self.label,
+            "pair": self.pair and list(self.pair),
             "expected": list(self.expected),
             "mission": self.mission and self.mission.to_list(),
             "text": self.text,
@@ -107,7 +115,9 @@ class _Message:
     start, end
         Seconds, of its first and its last gesture.
     doubtful
-        Whether the last gesture was rejected.
+        Whether the last gesture was not recognised.
+    asked
+        Whether a pair was asked since the last gesture that was recognised.
 
     """
 
@@ -116,6 +126,7 @@ class _Message:
     start: float = 0.0
     end: float = 0.0
     doubtful: bool = False
+    asked: bool = False
 
 
 class PhraseParser:
@@ -149,29 +160,33 @@ class PhraseParser:
         """Whether a pause now would complete the message instead of dropping it."""
         return not self._message.doubtful and len(self._complete()) == 1
 
-    def feed(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
+    def feed(
+        self, label: str | None, start: float, end: float, pair: tuple[str, str] | None = None
+    ) -> tuple[PhraseEvent, ...]:
         """Process one gesture.
 
         Parameters
         ----------
         label
-            As recognised; None when it was rejected.
+            As recognised; None for a pair, and when it was rejected.
         start, end
             Seconds of the take, in one clock for all gestures.
+        pair
+            The two gestures between which the take lies, if there is no label.
 
         Returns
         -------
         The event of the gesture; before it, that of the preceding pause if it was too long.
 
         """
-        return (*self.expire(start), *self._advance(label, start, end))
+        return (*self.expire(start), *self._advance(label, start, end, pair))
 
     def expire(self, now: float) -> tuple[PhraseEvent, ...]:
         """Process a pause: no gesture had begun by `now`; returns an event if it is too long."""
         message = self._message
         if not message.gestures or now - message.end <= self.grammar.timeout:
             return ()
-        # After a rejected gesture it is unknown whether the message had ended.
+        # After a gesture that was not recognised it is unknown whether the message had ended.
         if not message.doubtful and (parses := self._complete()):
             return (self._end_message(None, parses),)
         return (self._drop("timed_out", None),)
@@ -180,11 +195,18 @@ class PhraseParser:
         """Drop an unfinished message."""
         return (self._drop("cancelled", None),) if self._message.gestures else ()
 
-    def _advance(self, label: str | None, start: float, end: float) -> tuple[PhraseEvent, ...]:
-        before = self._message if self._message.gestures else _Message(start=start)
-        self._message = replace(before, end=end, doubtful=label is None)
+    def _advance(
+        self, label: str | None, start: float, end: float, pair: tuple[str, str] | None = None
+    ) -> tuple[PhraseEvent, ...]:
+        last = self._message
+        before = last if last.gestures else _Message(start=start)
+        self._message = replace(before, end=end, doubtful=label is None, asked=False)
         if label is None:
-            return (self._event("repeat" if before.gestures else "outside", None),)
+            asked = last.asked and start - last.end <= self.grammar.timeout
+            told = self._event("repeat" if before.gestures else "outside", None)
+            # A second pair clears the question, another rejected gesture keeps it.
+            self._message = replace(self._message, asked=asked != (pair is not None))
+            return (told if asked else replace(told, pair=pair),)
         if before.gestures and label == self.grammar.cancel:
             return (self._drop("cancelled", label),)
         following = self._following(label)

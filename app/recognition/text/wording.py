@@ -20,3 +20,8 @@ def join_words(items: Sequence[str], last: str = "and") -> str:
     if len(items) < 2:
         return "".join(items)
     return f"{', '.join(items[:-1])} {last} {items[-1]}"
+
+
+def ask_which(labels: Sequence[str]) -> str:
+    """Return the question which gesture was meant: "circle or square?"."""
+    return f"{join_words(labels, last='or')}?"

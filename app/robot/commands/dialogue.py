@@ -3,9 +3,10 @@
 A misrecognised gesture must not move a robot. So a command is given when the diver repeats its
 gesture, a gesture can cancel, and only the operator's emergency labels need no repetition. A cancel
 is never ignored, however old it is, because stopping is the safe direction. An emergency may be
-older than other gestures, but must be sure, stamped, and of the language of the commands. All else
-is taken in the order of arrival, while it is fresh. In a language with phrases the whole
-message is repeated and executed, not its single gestures.
+older than other gestures, but must be sure, near, stamped, and of the language of the commands. All
+else is taken in the order of arrival, while it is fresh. A take that lies between two gestures
+commands nothing: the diver is asked back and shows the gesture again, which decides and confirms.
+In a language with phrases the whole message is repeated and executed, not its single gestures.
 """
 
 from __future__ import annotations
@@ -15,79 +16,11 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-CONFIRM_SECONDS = 20.0
-"""Time for the diver to read the robot's display and repeat a gesture, salutes included. A gesture
-of the sample clips takes 4 to 6 s, so this leaves two attempts."""
-
-STALE_SECONDS = 3.0
-"""Longest delay from the picture that ended a gesture to its arrival. Pose estimation on a slow
-robot takes well below a second; a later message was held up, replayed, or has a wrong clock."""
-
-EMERGENCY_AGE_SECONDS = 10.0
-"""Largest age of an emergency: a slow robot's queue of pictures is shorter, a recording that is
-played again is older."""
-
-EMERGENCY_CONFIDENCE = 0.2
-"""Lowest confidence of an emergency, far below the sample clips' gestures, which have 0.96."""
+# Relative, because ROS 2's package has links to both files and no `app`.
+from .rules import EMERGENCY_LIMIT, Rules
 
 MOST_BODIES = 32
 """Number of bodies whose last event is kept: more than the divers near one robot."""
-
-
-@dataclass(frozen=True)
-class Rules:
-    """Rules of a `CommandDialogue`.
-
-    Attributes
-    ----------
-    confirmed
-        Whether a gesture or a message must be repeated before its command is given.
-    confirm_seconds
-        Longest time from a gesture to the end of its repetition. For a message: longest time to
-        each next gesture of its repetition, and from the last one to its end.
-    stale_seconds
-        Largest difference between a gesture's stamp and the current time, in either direction; for
-        labels in `cancel` there is no limit.
-    least_confidence
-        Lowest confidence that counts: a gesture below it is rejected, a message not understood.
-    cancel
-        Labels that cancel a pending gesture or message. Their own commands are not given.
-    emergency
-        Labels whose commands are given at once.
-    emergency_seconds
-        The same as `stale_seconds`, of an emergency.
-    emergency_confidence
-        The same as `least_confidence`, of an emergency; the larger of the two counts.
-
-    Raises
-    ------
-    ValueError
-        When a number is out of its range, or a label is in both `cancel` and `emergency`.
-
-    """
-
-    confirmed: bool = True
-    confirm_seconds: float = CONFIRM_SECONDS
-    stale_seconds: float = STALE_SECONDS
-    least_confidence: float = 0.0
-    cancel: frozenset[str] = frozenset()
-    emergency: frozenset[str] = frozenset()
-    emergency_seconds: float = EMERGENCY_AGE_SECONDS
-    emergency_confidence: float = EMERGENCY_CONFIDENCE
-
-    def __post_init__(self) -> None:
-        """Validate the values; a wrong one would give commands at the wrong moment."""
-        for name in ("confirm_seconds", "stale_seconds", "emergency_seconds"):
-            seconds = getattr(self, name)
-            if not (math.isfinite(seconds) and seconds > 0):
-                raise ValueError(f"{name} is {seconds}; give seconds above 0")
-        for name in ("least_confidence", "emergency_confidence"):
-            if not 0 <= (share := getattr(self, name)) <= 1:
-                raise ValueError(f"{name} is {share}; give 0 to 1")
-        if both := sorted(self.cancel & self.emergency):
-            raise ValueError(
-                f"{both} cancel and are emergencies as well; take them out of one of the two lists"
-            )
 
 
 @dataclass(frozen=True)
@@ -97,7 +30,7 @@ class RecognizedGesture:
     Attributes
     ----------
     label
-        The gesture; None when rejected.
+        The gesture; None for a pair, and when rejected.
     confidence
         In [0, 1].
     stamp
@@ -108,6 +41,10 @@ class RecognizedGesture:
         Time at which the take began, in seconds; None: at `stamp`.
     body_id
         Whose gesture it is.
+    pair
+        The two gestures between which the take lies; None: it lies between no two.
+    novelty
+        That of the gesture, see `Recognition`; NaN or 0 where it is not known.
 
     """
 
@@ -117,6 +54,8 @@ class RecognizedGesture:
     language_id: str
     start: float | None = None
     body_id: str = ""
+    pair: tuple[str, str] | None = None
+    novelty: float = math.nan
 
     @property
     def began(self) -> float:
@@ -141,11 +80,13 @@ class RecognizedPhrase:
     start, stamp
         Time of the first gesture, and of the picture after which the message was known, in seconds.
     label
-        Label of the gesture that caused the event; None for a rejected gesture and for a pause.
+        Label of the gesture that caused the event; None for a pair, a rejected gesture and a pause.
     language_id
         Id of its language.
     body_id
         Whose message it is.
+    pair
+        The two gestures that the diver is asked about; None: no two.
 
     """
 
@@ -158,6 +99,7 @@ class RecognizedPhrase:
     label: str | None
     language_id: str
     body_id: str = ""
+    pair: tuple[str, str] | None = None
 
     @property
     def began(self) -> float:
@@ -213,18 +155,22 @@ class Decision:
 
 @dataclass(frozen=True)
 class Pending:
-    """A gesture or a message that waits for its repetition.
+    """A gesture, a pair or a message that waits for its repetition.
 
     Attributes
     ----------
     label
-        Label of the gesture; for a message, its text.
+        Label of the gesture, of a pair both; for a message, its text.
     deadline
         Time by which the repetition must have ended, in seconds; for a message, ended or continued.
     mission
         Mission of the message; None for a gesture.
     body_id
         Who must repeat it.
+    labels
+        Labels of the gestures that confirm: one, or those of a pair; none for a message.
+    asked
+        Whether the diver was asked back, so that a second pair is refused.
 
     """
 
@@ -232,6 +178,8 @@ class Pending:
     deadline: float
     mission: str | None = None
     body_id: str = ""
+    labels: tuple[str, ...] = ()
+    asked: bool = False
 
 
 @dataclass(frozen=True)
@@ -266,7 +214,7 @@ class CommandDialogue:
     table
         Commands of the active language; an empty table gives no commands.
     pending
-        Gesture or message that waits for its repetition, or None.
+        Gesture, pair or message that waits for its repetition, or None.
 
     """
 
@@ -306,11 +254,13 @@ class CommandDialogue:
 
         """
         self._follow_clock(now)
-        least = self.rules.least_confidence
+        # Of a pair each gesture has a low confidence, and it commands nothing.
+        least = 0.0 if gesture.pair else self.rules.least_confidence
         if is_emergency := gesture.label in self.rules.emergency:
             least = max(least, self.rules.emergency_confidence)
         # False for NaN too: what is no share of 1 is no confidence.
         sure = least <= gesture.confidence <= 1
+        sure &= not (is_emergency and gesture.novelty > EMERGENCY_LIMIT)
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
         if sure and gesture.label in self.rules.cancel:
@@ -321,11 +271,14 @@ class CommandDialogue:
             refused = self._find_refusal(gesture, now, before, is_newer=is_newer)
         if refused is not None:
             return Decision(refused)
-        label = gesture.label if sure else None
-        self._remember(self._gestures, gesture, now, understood=label is not None)
-        if label is None:
-            return Decision("not understood; show the gesture again")
-        return self._decide_label(label, gesture)
+        label, pair = (gesture.label, gesture.pair) if sure else (None, None)
+        understood = label is not None or pair is not None
+        self._remember(self._gestures, gesture, now, understood=understood)
+        if label is not None:
+            return self._decide_label(label, gesture)
+        if pair is not None:
+            return self._decide_pair(pair, gesture)
+        return Decision("not understood; show the gesture again")
 
     def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
         """Decide about a phrase event, which follows a gesture or a pause.
@@ -361,7 +314,8 @@ class CommandDialogue:
         stays = phrase.kind in ("continues", "repeat")
         stays |= phrase.kind == "outside" and phrase.label is None
         if pending is None or stays:
-            return Decision(phrase.text)
+            urgent = phrase.pair is not None and self.rules.emergency.intersection(phrase.pair)
+            return Decision(self._ask(phrase.pair) if urgent and phrase.pair else phrase.text)
         self.pending = None
         return Decision(f"{phrase.text}; {pending.label!r} is forgotten")
 
@@ -460,7 +414,7 @@ class CommandDialogue:
     def _decide_label(self, label: str, gesture: RecognizedGesture) -> Decision:
         pending, self.pending = self.pending, None
         command = self.table.commands.get(label)
-        if label in self.table.phrase_labels - self.rules.cancel - self.rules.emergency:
+        if label in self._phrase_only:
             # Such gestures repeat the pending message.
             self.pending = pending if pending and pending.mission else None
             return Decision(f"{label!r} counts within a phrase only", label=label)
@@ -471,12 +425,44 @@ class CommandDialogue:
             return Decision(f"{label!r} has no command", label=label)
         if label in self.rules.emergency:
             return Decision(f"emergency {label!r}: {command}", command, label, emergency=True)
-        repeated = self._is_repetition(pending, gesture) and pending and pending.label == label
+        repeated = self._is_repetition(pending, gesture) and pending and label in pending.labels
         if not self.rules.confirmed or repeated:
             return Decision(f"{label!r}: {command}", command, label)
         deadline = gesture.stamp + self.rules.confirm_seconds
-        self.pending = Pending(label, deadline, body_id=gesture.body_id)
+        self.pending = Pending(label, deadline, body_id=gesture.body_id, labels=(label,))
         return Decision(f"repeat {label!r} to confirm: {command}", label=label)
+
+    def _decide_pair(self, pair: tuple[str, str], gesture: RecognizedGesture) -> Decision:
+        """Ask which of two gestures was meant; the next showing decides, and confirms."""
+        pending = self.pending
+        if (pending and pending.mission) or self._phrase_only.issuperset(pair):
+            return Decision(self._ask(pair))
+        self.pending = None
+        in_time = pending if self._is_repetition(pending, gesture) else None
+        if in_time and in_time.asked:
+            return Decision("not understood; begin again")
+        # What was shown alone before is confirmed by itself only.
+        before = () if in_time is None else in_time.labels
+        labels = tuple(each for each in pair if each in before) or pair
+        deadline = gesture.stamp + self.rules.confirm_seconds
+        self.pending = Pending(
+            " or ".join(labels),
+            deadline,
+            body_id=gesture.body_id,
+            labels=labels,
+            asked=True,
+        )
+        return Decision(self._ask(pair))
+
+    def _ask(self, pair: tuple[str, str]) -> str:
+        """Return the question which gesture was meant, with an emergency first."""
+        named = sorted(pair, key=lambda each: each not in self.rules.emergency)
+        return f"{' or '.join(named)}? show it again"
+
+    @property
+    def _phrase_only(self) -> frozenset[str]:
+        """Labels that have no meaning alone."""
+        return self.table.phrase_labels - self.rules.cancel - self.rules.emergency
 
     def _complete(self, phrase: RecognizedPhrase, pending: Pending | None) -> Decision:
         """Decide about a complete message, which may confirm `pending`."""

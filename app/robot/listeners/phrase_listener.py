@@ -78,13 +78,16 @@ class PhraseListener(WrappingListener):
             added.append(event)
             if self._parser is None or not isinstance(event, TakeRecognized | TakeRejected):
                 continue
-            label = None
-            if isinstance(event, TakeRecognized):
+            label = pair = None
+            if isinstance(event, TakeRejected):
+                pair = event.pair
+            else:
                 label = event.label
                 # A take that does not end before this one belongs to another stream.
                 before = [take for take in self._takes if take.end <= event.start]
                 self._takes = [*before, event]
-            added += self._to_events(event.time, self._parser.feed(label, event.start, event.end))
+            heard = self._parser.feed(label, event.start, event.end, pair)
+            added += self._to_events(event.time, heard)
         return tuple(added)
 
     def _cancel_message(self, time: float) -> tuple[PhraseHeard, ...]:

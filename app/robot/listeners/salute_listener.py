@@ -170,7 +170,7 @@ class Listener:
         if sight.take is None:
             return changed
         verdict = judge_take(self._language, sight.take, time, explain_unclosed(trigger))
-        self._doubtful = isinstance(verdict, TakeRejected)
+        self._doubtful = isinstance(verdict, TakeRejected) and verdict.pair is None
         return (*changed, verdict)
 
     def _recognize_gap(self, time: float) -> TakeRecognized | None:

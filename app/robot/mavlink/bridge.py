@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import threading
 import time as clock
 from collections.abc import Callable, Sequence
@@ -194,6 +195,8 @@ class MavlinkBridge:
             event.time,
             event.sha256,
             start=event.start,
+            pair=event.pair if isinstance(event, TakeRejected) else None,
+            novelty=math.nan if event.recognition is None else event.recognition.nearest_novelty,
         )
         decision = self._dialogue.decide(gesture, self._source_time())
         action = None
@@ -219,6 +222,7 @@ class MavlinkBridge:
             stamp=event.time,
             label=phrase.label,
             language_id=event.sha256,
+            pair=phrase.pair,
         )
         decision = self._dialogue.decide_phrase(heard, self._source_time())
         grammar = self._language().recognizer.language.grammar

@@ -18,7 +18,7 @@ from typing_extensions import Self
 
 from app.recognition import Language
 from app.recognition.errors import VehicleError
-from app.robot.commands.dialogue import (
+from app.robot.commands.rules import (
     CONFIRM_SECONDS,
     EMERGENCY_AGE_SECONDS,
     EMERGENCY_CONFIDENCE,
@@ -195,7 +195,7 @@ class VehicleTable(_Entry):
     cancel
         Labels of gestures that cancel a gesture or message that waits for its repetition.
     confirm_seconds, stale_seconds, least_confidence, emergency_seconds, emergency_confidence
-        As in `app.robot.commands.dialogue.Rules`.
+        As in `app.robot.commands.rules.Rules`.
     vehicle
         Address of the vehicle, and its limits.
 

@@ -154,6 +154,8 @@ class DdsPublisher:
             rejected=isinstance(event, TakeRejected),
             reason=event.reason if isinstance(event, TakeRejected) else "",
             report=json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
+            pair=list((event.pair if isinstance(event, TakeRejected) else None) or ()),
+            novelty=answer.nearest_novelty if answer else 0.0,
         )
 
     def _phrase(self, event: PhraseHeard) -> Phrase:
@@ -172,6 +174,7 @@ class DdsPublisher:
             confidence=event.confidence,
             mission="" if mission is None else json.dumps(mission, allow_nan=False),
             text=phrase.text,
+            pair=list(phrase.pair or ()),
         )
 
     def _stamp(self, seconds: float) -> Time:

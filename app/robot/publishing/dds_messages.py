@@ -49,6 +49,8 @@ class GestureRecognition(IdlStruct, typename="osg_interfaces::msg::dds_::Gesture
     rejected: bool = False
     reason: str = ""
     report: str = ""
+    pair: sequence[str] = field(default_factory=list)
+    novelty: float64 = 0.0
 
 
 @dataclass
@@ -68,3 +70,4 @@ class Phrase(IdlStruct, typename="osg_interfaces::msg::dds_::Phrase_"):
     confidence: float64 = 0.0
     mission: str = ""
     text: str = ""
+    pair: sequence[str] = field(default_factory=list)

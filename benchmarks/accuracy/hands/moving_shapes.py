@@ -184,7 +184,7 @@ def _find_foreign(signs: HeldSigns, pair: tuple[str, str]) -> npt.NDArray[np.boo
 
 def _recognize(recognizer: Recognizer, poses: PoseSequence) -> tuple[str | None, str]:
     result = recognizer.recognize(poses)
-    return result.label, result.nearest
+    return None if result.outcome == "rejected" else result.nearest, result.nearest
 
 
 def count_same(composer: Composer, drawn: Draw, queries: int) -> Share | None:

@@ -173,7 +173,7 @@ def _recognize(recognizer: Recognizer, relation: str, signs: Signs, poses: PoseS
         result = recognizer.recognize(poses)
     except PoseError:
         return Answer(relation, signs, right=False, accepted=False, sequence=False)
-    label = result.label
+    label = None if result.outcome == "rejected" else result.nearest
     sequence = label is not None and len(recognizer.language.gesture(label).held_shapes) > 1
     right = result.fault is None and result.nearest == name_gesture(signs)
     return Answer(relation, signs, right, label is not None, sequence)

@@ -25,6 +25,8 @@ export interface Recognized {
   closed: boolean;
   language: string | null;
   label: string | null;
+  /** The two gestures between which the take lies, nearest first. */
+  pair: string[] | null;
   nearest: string | null;
   confidence: number | null;
   voters: number;

@@ -319,6 +319,11 @@ export interface components {
             expected: string;
             /** Label */
             label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             */
+            pair: string[] | null;
             /** Nearest */
             nearest: string;
             /** Right */
@@ -563,8 +568,21 @@ export interface components {
         GestureRateView: {
             /** Right */
             right: number;
-            /** Asked */
+            /**
+             * Asked
+             * @description Takes, those of pairs included
+             */
             asked: number;
+            /**
+             * Pairs
+             * @description Takes that lie between two gestures: neither right nor a wrong label
+             */
+            pairs: number;
+            /**
+             * Pairs Right
+             * @description Of these, those with the right gesture in the pair
+             */
+            pairs_right: number;
             /** Rate */
             rate: number | null;
             /** Low */
@@ -874,9 +892,14 @@ export interface components {
             recognition_id: string | null;
             /**
              * Label
-             * @description Null: rejected
+             * @description Null: a pair, or rejected
              */
             label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             */
+            pair: string[] | null;
             /** Nearest */
             nearest: string | null;
             /** Confidence */
@@ -1253,9 +1276,14 @@ export interface components {
             gestures: string[];
             /**
              * Label
-             * @description Null when it was not recognised, and for a pause
+             * @description Null for a pair, when it was not recognised, and for a pause
              */
             label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             */
+            pair: string[] | null;
             /**
              * Expected
              * @description What may come next
@@ -1380,11 +1408,16 @@ export interface components {
             diver: string;
             /**
              * Takes
-             * @description Takes recognised by the newest revision
+             * @description Takes recognised by the newest revision, without pairs
              */
             takes: number;
             /** Errors */
             errors: number;
+            /**
+             * Pairs
+             * @description Takes of the newest revision that were asked back, with the gesture meant in the pair: neither right nor an error
+             */
+            pairs: number;
             /**
              * Bound
              * @description Upper bound of the error rate (Clopper and Pearson)
@@ -1432,9 +1465,14 @@ export interface components {
             expected: string;
             /**
              * Label
-             * @description Null: rejected
+             * @description Null: a pair, or rejected
              */
             label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             */
+            pair: string[] | null;
             /** Right */
             right: boolean;
             /** Clip Id */
@@ -1562,8 +1600,21 @@ export interface components {
         RateView: {
             /** Right */
             right: number;
-            /** Asked */
+            /**
+             * Asked
+             * @description Takes, those of pairs included
+             */
             asked: number;
+            /**
+             * Pairs
+             * @description Takes that lie between two gestures: neither right nor a wrong label
+             */
+            pairs: number;
+            /**
+             * Pairs Right
+             * @description Of these, those with the right gesture in the pair
+             */
+            pairs_right: number;
             /** Rate */
             rate: number | null;
             /** Low */
@@ -1628,9 +1679,14 @@ export interface components {
             created: string;
             /**
              * Label
-             * @description None when rejected
+             * @description Null for a pair and when rejected
              */
             label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             */
+            pair?: string[] | null;
             /**
              * Nearest
              * @description The best label even when rejected
@@ -1964,7 +2020,7 @@ export interface components {
             closed: boolean | null;
             /**
              * Label
-             * @description Null: rejected
+             * @description Null: a pair, or rejected
              */
             label: string | null;
             /** Nearest */
@@ -1991,6 +2047,11 @@ export interface components {
             revision: number;
             /** Profile */
             profile: string;
+            /**
+             * Pair
+             * @description "circle or square"; null: it lies between no two
+             */
+            pair: string | null;
         };
         /**
          * TakeTableRequest
@@ -2062,12 +2123,12 @@ export interface components {
             gestures: components["schemas"]["GestureRateView"][];
             /**
              * Better
-             * @description Ids of takes that are right now and were wrong before
+             * @description Ids of takes that are answered better than before
              */
             better: string[];
             /**
              * Worse
-             * @description Ids of takes that are wrong now and were right before
+             * @description Ids of takes that are answered worse than before: right is better than a pair with the right gesture, which is better than anything else
              */
             worse: string[];
             /**

@@ -99,3 +99,10 @@ export const plural = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"
  */
 export const percent = (share) =>
   share > 0 && share < 0.005 ? "<1 %" : `${(100 * share).toFixed(0)} %`;
+
+/**
+ * The question which of two gestures was meant.
+ *
+ * @param {string[]} pair
+ */
+export const askWhich = (pair) => `${pair.join(" or ")}?`;

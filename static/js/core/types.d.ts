@@ -151,6 +151,9 @@ export interface Explanation {
   notes: string[];
 }
 
+/** The two gestures between which a take lies, nearest first; null: it lies between no two. */
+export type Pair = string[] | null;
+
 /** The answer to a recognition; the fields that the page reads. */
 export interface Recognition {
   id: string;
@@ -165,6 +168,7 @@ export interface Recognition {
   expected: string | null;
   created: string;
   label: string | null;
+  pair: Pair;
   nearest: string | null;
   confidence: number;
   voters: string[];

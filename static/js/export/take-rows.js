@@ -3,13 +3,15 @@
 /** @import { TakeRow } from "../core/types.d.ts" */
 
 /**
- * The rows that a filter leaves: "" all, "refused", "faults", or "=LABEL".
+ * The rows that a filter leaves: "" all, "rejected", "asked", "faults", or "=LABEL".
  *
  * @param {TakeRow[]} rows
  * @param {string} filter
  */
 export function shownRows(rows, filter) {
-  if (filter === "refused") return rows.filter(({ take, label }) => take !== null && !label);
+  if (filter === "rejected")
+    return rows.filter(({ take, label, pair }) => take !== null && !label && !pair);
+  if (filter === "asked") return rows.filter(({ pair }) => pair);
   if (filter === "faults") return rows.filter(({ faults }) => faults);
   if (filter.startsWith("=")) return rows.filter(({ label }) => label === filter.slice(1));
   return rows;

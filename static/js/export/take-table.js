@@ -57,11 +57,22 @@ function jump(row) {
   update({ take: row.take === null ? null : row.take - 1, start: null, end: null });
 }
 
+/**
+ * Whether a take was recognised as expected, and if not, what was expected.
+ *
+ * @param {TakeRow} row
+ */
+function verdictOf({ take, label, pair, expected }) {
+  if (expected === null) return "";
+  if (take === null || label === expected) return "yes";
+  return `${pair ? "asked" : "no"}: ${expected}`;
+}
+
 /** @param {TakeRow} row */
 function cellsOf(row) {
   const name = row.take === null ? row.clip : `${row.clip}, take ${row.take}`;
-  const result = row.take === null ? "" : (row.label ?? `rejected, nearest ${row.nearest}`);
-  const wrong = row.take !== null && row.expected !== null && row.expected !== row.label;
+  const answer = row.pair ? `${row.pair}?` : `rejected, nearest ${row.nearest}`;
+  const result = row.take === null ? "" : (row.label ?? answer);
   return [
     h(
       "button",
@@ -73,7 +84,7 @@ function cellsOf(row) {
     result,
     row.confidence === null ? "" : percent(row.confidence),
     row.runner_up ?? "",
-    row.expected === null ? "" : wrong ? `no: ${row.expected}` : "yes",
+    verdictOf(row),
     row.faults,
   ];
 }
@@ -92,6 +103,7 @@ function resultOf({ rows, csv }) {
     { id: "take-filter" },
     h("option", { value: "" }, "All takes"),
     h("option", { value: "rejected" }, "Rejected"),
+    h("option", { value: "asked" }, "Asked back"),
     h("option", { value: "faults" }, "With faults"),
     labels.map((label) => h("option", { value: `=${label}` }, label)),
   );

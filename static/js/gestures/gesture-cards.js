@@ -58,7 +58,7 @@ function faultTag({ demonstrations }) {
 function draw(gesture, element) {
   const mark =
     state.result &&
-    (gesture.label === state.result.label
+    ((state.result.pair ?? [state.result.label]).includes(gesture.label)
       ? "chosen"
       : gesture.label === state.result.expected
         ? "expected"

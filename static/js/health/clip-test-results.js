@@ -7,6 +7,7 @@
 /** The result of a take that no revision has recognised yet. */
 const UNKNOWN = {
   label: null,
+  pair: null,
   nearest: null,
   confidence: 0,
   right: false,
@@ -51,14 +52,17 @@ const COLUMNS = [
   "right",
   "revision",
   "id",
+  "pair",
 ];
 
 /**
  * A value as CSV (RFC 4180); a text that a spreadsheet would read as a formula is marked as text.
  *
  * @param {unknown} value
+ * @returns {string}
  */
 function field(value) {
+  if (Array.isArray(value)) return field(value.join(" or "));
   const text =
     typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

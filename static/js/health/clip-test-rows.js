@@ -2,6 +2,7 @@
 
 import { statusText } from "../clips/clip-store.js";
 import { h, iconButton, WRITES } from "../core/dom.js";
+import { askWhich } from "../core/format.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake } from "../languages/test-set.js";
@@ -14,11 +15,19 @@ import { leaveOut, leaveWaiting, means, waitingClips } from "./clip-test.js";
 /** @typedef {ReturnType<typeof waitingClips>[number]} WaitingClip */
 
 export const REFUSED = "refused";
+export const ASKED = "asked back";
 
 export const labels = () => state.gestures?.labels ?? [];
 
-/** @param {Pick<TestedTake, "label">} take */
-export const readAs = ({ label }) => label ?? REFUSED;
+/** @param {Pick<TestedTake, "label" | "pair">} take */
+export const readAs = ({ label, pair }) => label ?? (pair ? ASKED : REFUSED);
+
+/**
+ * The order of a take among others: the wrong ones come first, then those that were asked back.
+ *
+ * @param {Pick<TestedTake, "right" | "pair">} take
+ */
+export const rankOf = ({ right, pair }) => (right ? 2 : pair ? 1 : 0);
 
 /**
  * @param {string} name
@@ -157,25 +166,37 @@ export function placeOf(take, takes) {
 }
 
 /**
+ * What else is known about the result of a take, in words.
+ *
+ * @param {TestedTake} take
+ */
+function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
+  return [
+    fault,
+    demonstration ? "a demonstration" : null,
+    pair ? `the right one is ${pair.includes(expected) ? "" : "not "}in it` : null,
+    label === null && !pair && nearest ? `nearest ${nearest}` : null,
+  ].filter(Boolean);
+}
+
+/**
  * The result of a take in words, and whether it is better or worse than before.
  *
  * @param {TestedTake} take
  */
 function outcomeOf(take) {
   if (!take.known) return [h("span", { className: "dim" }, "not recognised yet")];
-  const extra = [
-    take.fault,
-    take.demonstration ? "a demonstration" : null,
-    take.label === null && take.nearest ? `nearest ${take.nearest}` : null,
-  ].filter(Boolean);
+  const { pair } = take;
+  const extra = notesOf(take);
+  const [sign, word] = [
+    ["\u2260", "wrong: "],
+    ["?", "asked back: "],
+    ["\u2713", "right: "],
+  ][rankOf(take)];
   return [
-    h(
-      "span",
-      { className: "outcome-sign", "aria-hidden": "true" },
-      take.right ? "\u2713" : "\u2260",
-    ),
-    h("span", {}, take.right ? "right: " : "wrong: "),
-    h("b", {}, readAs(take)),
+    h("span", { className: "outcome-sign", "aria-hidden": "true" }, sign),
+    h("span", {}, word),
+    h("b", {}, pair ? askWhich(pair) : readAs(take)),
     extra.length ? h("small", { className: "dim" }, `, ${extra.join(", ")}`) : null,
     take.change ? h("span", { className: `tag ${take.change}` }, take.change) : null,
   ];
@@ -191,7 +212,10 @@ export function takeRow(take, takes) {
   const place = placeOf(take, takes);
   return h(
     "tr",
-    { className: take.demonstration || !take.known ? "demonstration" : take.right ? "" : "wrong" },
+    {
+      className:
+        take.demonstration || !take.known ? "demonstration" : ["wrong", "asked", ""][rankOf(take)],
+    },
     h(
       "td",
       {},

@@ -10,8 +10,10 @@ import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js
 import { csvOf, testedOf } from "./clip-test-results.js";
 import {
   advance,
+  ASKED,
   labels,
   placeOf,
+  rankOf,
   readAs,
   REFUSED,
   takeRow,
@@ -70,8 +72,8 @@ function matrix(takes) {
     (label) => takes.some(({ expected }) => expected === label),
   );
   const columns = [...new Set([...labels(), ...takes.map(readAs)])]
-    .filter((label) => label !== REFUSED)
-    .concat(REFUSED);
+    .filter((label) => label !== REFUSED && label !== ASKED)
+    .concat(takes.some(({ pair }) => pair) ? ASKED : [], REFUSED);
   /**
    * @param {number} row
    * @param {number} column
@@ -80,6 +82,7 @@ function matrix(takes) {
     const meant = takes.filter(({ expected }) => expected === rows[row]);
     const found = meant.filter((take) => readAs(take) === columns[column]);
     const right = rows[row] === columns[column];
+    const asked = columns[column] === ASKED;
     const open =
       found.length === 1
         ? () => go("studio", placeOf(found[0], takes))
@@ -87,9 +90,9 @@ function matrix(takes) {
     return {
       text: found.length ? `${found.length}${right ? " \u2713" : ""}` : "\u00b7",
       amount: found.length / meant.length,
-      className: right ? "diagonal" : found.length ? "wrong" : "",
+      className: right ? "diagonal" : !found.length ? "" : asked ? "asked" : "wrong",
       open: found.length ? open : null,
-      label: `${plural(found.length, "take")} of ${rows[row]} read as ${columns[column]}`,
+      label: `${plural(found.length, "take")} of ${rows[row]} ${asked ? "" : "read as "}${columns[column]}`,
     };
   };
   return confusionGrid({
@@ -117,6 +120,14 @@ const shareText = ({ rate, low, high }) =>
   rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
 
 /**
+ * How many takes were asked back, and of how many the right gesture is in the pair.
+ *
+ * @param {Pick<TestSet["overall"], "pairs" | "pairs_right">} share
+ */
+const pairsText = ({ pairs, pairs_right: right }) =>
+  pairs ? `; ${pairs} asked back, ${right} of them with the right gesture` : "";
+
+/**
  * The rates of the gestures, the lowest first.
  *
  * @param {TestSet} testSet
@@ -126,7 +137,12 @@ const rates = ({ gestures }) =>
     "ul",
     { className: "test-rates", "aria-label": "Rate of each gesture" },
     gestures.map((share) =>
-      h("li", {}, h("b", {}, share.label), ` ${share.right} of ${share.asked}${shareText(share)}`),
+      h(
+        "li",
+        {},
+        h("b", {}, share.label),
+        ` ${share.right} of ${share.asked}${shareText(share)}${pairsText(share)}`,
+      ),
     ),
   );
 
@@ -230,7 +246,7 @@ function summary(testSet, takes) {
       overall.asked
         ? [
             h("b", { className: "num" }, `${overall.right} of ${overall.asked}`),
-            ` recognised as labelled${shareText(overall)}`,
+            ` recognised as labelled${shareText(overall)}${pairsText(overall)}`,
           ]
         : "Nothing is recognised yet",
       change ? `; since the revision before: ${change}` : null,
@@ -254,13 +270,13 @@ function list(takes, uploads) {
   const cell = pairOf(state.cell);
   const shown = cell
     ? takes.filter((take) => take.expected === cell[0] && readAs(take) === cell[1])
-    : [...takes].sort((one, other) => Number(one.right) - Number(other.right));
+    : [...takes].sort((one, other) => rankOf(one) - rankOf(other));
   return [
     cell
       ? h(
           "p",
           { className: "test-filter", role: "status" },
-          `Only takes of ${cell[0]} read as ${cell[1]}`,
+          `Only takes of ${cell[0]} ${cell[1] === ASKED ? "" : "read as "}${cell[1]}`,
           h(
             "button",
             { type: "button", className: "link", onclick: () => update({ cell: null }) },

@@ -1,7 +1,7 @@
 // The recognitions of the live view: the newest one large, the others in a list.
 
 import { byId, h } from "../core/dom.js";
-import { moment, plural } from "../core/format.js";
+import { askWhich, moment, plural } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { go } from "../core/views.js";
@@ -20,9 +20,18 @@ function verdict(result) {
       title: result.label,
       text: `${percent(result.confidence ?? 0)} sure, ${result.agreeing} of ${plural(result.voters, "voter")}`,
     };
+  if (result.pair)
+    return { title: askWhich(result.pair), text: "It lies between these two: show it again" };
   if (result.problem) return { title: "Not judged", text: result.problem };
   return { title: "No gesture of this language", text: `nearest is ${result.nearest}` };
 }
+
+/**
+ * The class of a recognition: a question looks otherwise than a rejection.
+ *
+ * @param {Recognized} result
+ */
+const lookOf = ({ label, pair }) => (pair ? "asked" : label === null ? "unsure" : "");
 
 /**
  * The list entry of a recognition; for a clip, a link to the take and its explanation.
@@ -43,7 +52,7 @@ function entry(result, clip, clock) {
   };
   return h(
     "li",
-    { className: result.label === null ? "unsure" : "" },
+    { className: lookOf(result) },
     h("b", {}, title),
     h(
       "span",
@@ -77,7 +86,7 @@ function entry(result, clip, clock) {
 export function addResult(result, clip) {
   const { title, text } = verdict(result);
   const box = byId("live-result");
-  box.className = `live-result${result.label === null ? " unsure" : ""}`;
+  box.className = `live-result ${lookOf(result)}`;
   box.replaceChildren(
     h("strong", {}, title),
     result.label === null

@@ -2,6 +2,7 @@
 
 import * as api from "../core/api.js";
 import { h, reconcile } from "../core/dom.js";
+import { askWhich } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { called, ROLES } from "./grammar-edits.js";
@@ -31,8 +32,8 @@ export const found = () => answer?.view ?? null;
 export const followFound = (react) => listeners.push(react);
 
 /**
- * The gestures shown, "" for one that was not recognised. The URL has one per line, since a label
- * has no line breaks.
+ * The gestures shown, "" for one that was not recognised, two with a tab between them for a pair.
+ * The URL has one per line, since a label has neither tabs nor line breaks.
  */
 const shown = () => (state.shown === null ? [] : state.shown.split("\n"));
 
@@ -55,10 +56,34 @@ export async function showExample(name) {
 
 const last = () => found()?.events.at(-1) ?? null;
 
+const BETWEEN = "\t"; // Between the two labels of a pair.
+
+/** @type {string[] | null} */
+let picked = null; // The gestures of a pair that is being chosen, or null.
+
+/** @param {PhraseEvent | null} event */
+const isOver = (event) => event !== null && OVER.has(event.kind) && !event.pair;
+
 /** @param {string} gesture */
 function add(gesture) {
-  const over = state.paused || (answer?.settled && OVER.has(last()?.kind ?? ""));
+  const over = state.paused || (answer?.settled && isOver(last()));
   show(over ? [gesture] : [...shown(), gesture]);
+}
+
+/**
+ * Show a gesture, or choose it for the pair.
+ *
+ * @param {string} gesture
+ */
+function press(gesture) {
+  if (picked === null || gesture === "") picked = null;
+  else if (!picked.includes(gesture)) picked.push(gesture);
+  if (picked === null) add(gesture);
+  else if (picked.length === 2) {
+    const pair = picked.join(BETWEEN);
+    picked = null;
+    add(pair);
+  }
 }
 
 /** Request the meaning of the gestures shown, whenever they or the phrases change. */
@@ -85,18 +110,25 @@ function speak(text) {
 }
 
 /** @param {PhraseEvent | null} event */
+function lookOf(event) {
+  if (event?.kind === "complete") return "well";
+  if (event?.pair) return "asked";
+  return isOver(event) ? "unwell" : "";
+}
+
+/** @param {PhraseEvent | null} event */
+function markOf(event) {
+  if (!event) return "\u2026";
+  return event.pair ? "?" : (MARKS[event.kind] ?? "!");
+}
+
+/** @param {PhraseEvent | null} event */
 function drawAnswer(event) {
-  const over = event && OVER.has(event.kind);
-  const kind = event?.kind ?? "nothing";
   const words = event ? event.text : "Show a gesture: click it below.";
   return h(
     "div",
-    { className: `said ${kind === "complete" ? "well" : over ? "unwell" : ""}` },
-    h(
-      "span",
-      { className: "mark", "aria-hidden": "true" },
-      MARKS[kind] ?? (event ? "!" : "\u2026"),
-    ),
+    { className: `said ${lookOf(event)}` },
+    h("span", { className: "mark", "aria-hidden": "true" }, markOf(event)),
     h("p", { id: "said" }, words),
     canSpeak() && event
       ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak")
@@ -143,7 +175,7 @@ function gestureButton({ label, thumbnail }, next, item) {
       {},
       h(
         "button",
-        { type: "button", className: "try-gesture", onclick: () => add(label) },
+        { type: "button", className: "try-gesture", onclick: () => press(label) },
         h("img", { alt: "", width: 56, height: 56 }),
         h("span", {}, label),
         h("small"),
@@ -161,8 +193,11 @@ function gestureButton({ label, thumbnail }, next, item) {
 }
 
 /** @param {string} label */
-const chip = (label) =>
-  h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+function chip(label) {
+  const [one, other] = label.split(BETWEEN);
+  if (other) return h("li", { className: "chip asked" }, askWhich([one, other]));
+  return h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+}
 
 function hint() {
   const { timeout } = grammar();
@@ -181,6 +216,16 @@ export function trialPanel() {
     { type: "button", onclick: () => update({ paused: "yes" }) },
     "Pause too long",
   );
+  const between = h("button", { type: "button" });
+  const drawBetween = () => {
+    between.setAttribute("aria-pressed", String(picked !== null));
+    between.textContent = picked?.length ? `${picked[0]} or \u2026?` : "Between two";
+  };
+  between.onclick = () => {
+    picked = picked === null ? [] : null;
+    drawBetween();
+  };
+  gestures.addEventListener("click", drawBetween);
   const clear = h("button", { type: "button", onclick: () => show([]) }, "Clear");
   const note = h("p", { className: "dim" });
   const draw = () => {
@@ -198,7 +243,8 @@ export function trialPanel() {
       ({ label }) => label,
       (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item),
     );
-    pause.disabled = !event || OVER.has(event.kind) || state.paused !== null;
+    pause.disabled = !event || isOver(event) || state.paused !== null;
+    drawBetween();
     clear.disabled = state.shown === null;
     note.textContent = hint();
   };
@@ -217,7 +263,8 @@ export function trialPanel() {
     h(
       "div",
       { className: "trial-actions" },
-      h("button", { type: "button", onclick: () => add("") }, "Not recognised"),
+      h("button", { type: "button", onclick: () => press("") }, "Not recognised"),
+      between,
       pause,
       clear,
     ),

@@ -1,7 +1,7 @@
 // The feedback to a diver about the last take.
 
 import { h } from "../core/dom.js";
-import { moment } from "../core/format.js";
+import { askWhich, moment } from "../core/format.js";
 
 /** @import { PracticeAnswer } from "../core/types.d.ts" */
 
@@ -11,11 +11,17 @@ import { moment } from "../core/format.js";
  * @param {PracticeAnswer} answer
  */
 export function feedback({ take, sentence, lesson, notes }) {
+  const look = take.right ? "right" : take.pair ? "asked" : "wrong";
+  const heads = {
+    right: "\u2713 Right: ",
+    asked: take.pair ? `? ${askWhich(take.pair)} ` : "",
+    wrong: "\u2260 Not yet: ",
+  };
   return [
     h(
       "p",
-      { className: take.right ? "practice-right" : "practice-wrong" },
-      h("b", {}, take.right ? "\u2713 Right: " : "\u2260 Not yet: "),
+      { className: `practice-${look}` },
+      h("b", {}, heads[look]),
       take.right ? take.expected : sentence,
     ),
     lesson

@@ -1,7 +1,7 @@
 // The records of practice: the evidence that each diver's takes give, and the takes themselves.
 
 import { h, iconButton, WRITES } from "../core/dom.js";
-import { percent, plural } from "../core/format.js";
+import { askWhich, percent, plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 
@@ -12,7 +12,7 @@ import { address, go, here } from "../core/views.js";
 /**
  * The evidence of a record in words, and what is missing.
  *
- * @param {Omit<PracticeRecord, "diver" | "older" | "shown">} record
+ * @param {Omit<PracticeRecord, "diver" | "older" | "pairs" | "shown">} record
  */
 export function evidenceOf({ takes, errors, bound, limit: most, reached, more, confidence }) {
   const counted = `${plural(errors, "error")} in ${plural(takes, "take")}`;
@@ -41,13 +41,17 @@ function takeRow(take, remove) {
   const place = placeOf(take);
   return h(
     "li",
-    { className: take.right ? "right" : "wrong" },
-    h("span", { "aria-hidden": "true" }, take.right ? "\u2713" : "\u2260"),
+    { className: take.right ? "right" : take.pair ? "asked" : "wrong" },
+    h("span", { "aria-hidden": "true" }, take.right ? "\u2713" : take.pair ? "?" : "\u2260"),
     h(
       "span",
       {},
       h("b", {}, take.expected),
-      take.right ? " recognised" : ` read as ${take.label ?? "nothing"}`,
+      take.right
+        ? " recognised"
+        : take.pair
+          ? ` asked back: ${askWhich(take.pair)}`
+          : ` read as ${take.label ?? "nothing"}`,
       h("small", { className: "dim" }, ` revision ${take.revision}`),
     ),
     clip
@@ -77,6 +81,13 @@ export function recordCard(record, remove) {
       max: Math.max(1, needed),
       value: record.takes,
     }),
+    record.pairs
+      ? h(
+          "p",
+          { className: "dim" },
+          `${plural(record.pairs, "take")} asked back with the right gesture: neither right nor an error.`,
+        )
+      : null,
     record.older
       ? h(
           "p",

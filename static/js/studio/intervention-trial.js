@@ -3,6 +3,7 @@
 
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
+import { askWhich } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
@@ -152,7 +153,9 @@ async function keep({ change }) {
  * @param {Recognition} result
  */
 export function trialBar(trial, result) {
-  const read = result.label ?? `nothing; nearest is ${result.nearest}`;
+  const read = result.pair
+    ? askWhich(result.pair)
+    : `${result.label ?? `nothing; nearest is ${result.nearest}`}.`;
   return h(
     "div",
     { className: "trial", role: "status" },
@@ -160,7 +163,7 @@ export function trialBar(trial, result) {
       "p",
       {},
       h("b", {}, "Trial: "),
-      `${trial.change.words}. Recognised as ${read}. Not saved yet.`,
+      `${trial.change.words}. Recognised as ${read} Not saved yet.`,
     ),
     h(
       "span",

@@ -3,7 +3,7 @@
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
-import { percent } from "../core/format.js";
+import { askWhich, percent } from "../core/format.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
@@ -186,6 +186,24 @@ const supportWords = (result) =>
     .join(", ");
 
 /**
+ * What was recognised, in words.
+ *
+ * @param {Recognition} result
+ */
+function outcomeWords({ label, pair, nearest, expected, fault }) {
+  const meant =
+    expected === null || expected === label
+      ? [expected === null ? "" : ", as expected"]
+      : [", expected ", h("b", { className: "expected" }, expected)];
+  if (pair) return [h("b", { className: "chosen" }, askWhich(pair)), ...meant];
+  if (label !== null) return ["Recognised as ", h("b", { className: "chosen" }, label), ...meant];
+  return [
+    fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
+    h("b", {}, nearest),
+  ];
+}
+
+/**
  * Show what was recognised.
  *
  * @param {State} state
@@ -193,30 +211,13 @@ const supportWords = (result) =>
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, nearest, expected, fault } = result;
+  const { label, pair, expected } = result;
   const wrong = label === null || (expected !== null && expected !== label);
-  const parts =
-    label === null
-      ? [
-          fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
-          h("b", {}, nearest),
-        ]
-      : expected === null || expected === label
-        ? [
-            "Recognised as ",
-            h("b", { className: "chosen" }, label),
-            expected === label ? ", as expected" : "",
-          ]
-        : [
-            "Recognised as ",
-            h("b", { className: "chosen" }, label),
-            ", expected ",
-            h("b", { className: "expected" }, expected),
-          ];
-  box.className = `outcome ${wrong ? "wrong" : "right"}`;
+  const mark = pair ? "?" : wrong ? "\u2260" : "\u2713";
+  box.className = `outcome ${pair ? "asked" : wrong ? "wrong" : "right"}`;
   return box.replaceChildren(
-    h("span", { className: "outcome-mark", "aria-hidden": "true" }, wrong ? "\u2260" : "\u2713"),
-    h("span", {}, ...parts, h("small", {}, supportWords(result))),
+    h("span", { className: "outcome-mark", "aria-hidden": "true" }, mark),
+    h("span", {}, ...outcomeWords(result), h("small", {}, supportWords(result))),
   );
 }
 

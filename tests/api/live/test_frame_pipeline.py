@@ -8,13 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized, Seen
-from app.recognition import OsgError, Recognizer
+from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized, Seen, answer_of
+from app.recognition import OsgError, Recognizer, takes_in
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.factory import NO_HANDS
 from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 from tests.api.live.test_socket import frames_of
+from tests.api.recordings import recording_of
 from tests.posed import BY_BELLY, posed_clip, posed_language
+from tests.robot.languages import ambiguous
 
 pytestmark = [pytest.mark.usefixtures("installed_models"), pytest.mark.slow]
 
@@ -41,6 +43,13 @@ def test_a_gesture_is_recognised_where_no_hand_is_seen(trigger: Trigger, name: s
     assert all(each.closed and each.language == "posed" for each in found)
     seen = [each for each in answers if isinstance(each, Seen)]
     assert any(each.held for each in seen) == (trigger == BY_BELLY)
+
+
+def test_a_take_between_two_gestures_is_answered_with_both() -> None:
+    (take,) = takes_in(recording_of("circle"))
+    answer = answer_of(take, ambiguous().recognizer)
+    assert (answer.label, answer.problem) == (None, None)
+    assert set(answer.pair or ()) == {"circle", "ring"}
 
 
 def test_a_language_that_is_gone_leaves_the_salute() -> None:

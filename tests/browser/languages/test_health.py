@@ -194,6 +194,30 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
         expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
 
 
+def test_a_clip_between_two_gestures_is_asked_back_and_counted_on_its_own(
+    open_page: OpenPage, server: Running
+) -> None:
+    with client_of(server.address) as client:
+        library = library_of(server, client, "asking")
+        library.add_gesture("ring")
+        clip = add_clip(server, "circle", name="circle-asked.mp4")
+        test_set = f"/api/v1/languages/{library.language}/test-set"
+        take = {"clip_id": clip, "expected": "circle"}
+        client.post(test_set, json={"takes": [take]}).raise_for_status()
+        client.post(f"{test_set}/run").raise_for_status()
+        page = open_page(health_of(library), scene=False)
+        section = page.get_by_role("region", name="Test with clips")
+        expect(section).to_contain_text("0 of 1 recognised as labelled")
+        expect(section).to_contain_text("1 asked back, 1 of them with the right gesture")
+        takes = page.get_by_role("table", name="The test clips")
+        expect(takes).to_contain_text("asked back: circle or ring?, the right one is in it")
+        assert faults(page) == []
+        asked = page.get_by_role("gridcell", name="1 take of circle asked back")
+        expect(asked).to_have_css("border-style", "dashed")
+        asked.click()
+        expect(page.locator("#outcome.asked")).to_contain_text("circle or ring?, expected circle")
+
+
 def test_a_change_of_the_language_repeats_the_test_and_says_what_got_worse(
     open_page: OpenPage, server: Running
 ) -> None:

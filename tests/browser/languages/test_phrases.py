@@ -62,6 +62,27 @@ def test_a_phrase_is_tried_by_clicking_what_may_come_next(
     expect(page.locator("#said")).to_contain_text("waited too long")
 
 
+def test_a_pair_is_tried_and_asked_for_its_place(open_page: OpenPage, library: Library) -> None:
+    page = open_page(sample(library), scene=False)
+    gestures = page.get_by_role("list", name="Gestures to show")
+    for label in ("circle", "square"):
+        gestures.get_by_role("button", name=f"Show {label}, may come next").click()
+    page.get_by_role("button", name="Between two").click()
+    gestures.get_by_role("button", name="Show three, may come next").click()
+    expect(page.get_by_role("button", name="three or \u2026?")).to_be_visible()
+    gestures.get_by_role("button", name="Show square").click()
+    said = page.locator(".said.asked")
+    expect(said).to_have_text("?gesture 3: three or square? show it againSpeak")
+    expect(page.locator(".chip.asked")).to_have_text("three or square?")
+    expect(page.get_by_role("button", name="Between two")).to_have_attribute(
+        "aria-pressed", "false"
+    )
+    assert faults(page) == []
+    for label in ("three", "circle"):
+        gestures.get_by_role("button", name=f"Show {label}, may come next").click()
+    expect(page.locator("#said")).to_have_text("mission: align yourself, 3 times")
+
+
 def test_a_first_phrase_is_made_with_a_slot_and_tried(
     open_page: OpenPage, library: Library
 ) -> None:

@@ -49,6 +49,28 @@ def test_takes_are_judged_and_counted_towards_acceptance(
     expect(page.locator("#outcome")).to_contain_text("as expected")
 
 
+def test_a_take_between_two_gestures_is_a_question_and_no_error(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    library.add_gesture("ring")
+    add_clip(server, "circle", name="my circle.mp4")
+    page = open_page({"view": "practice", "language": library.language}, scene=False)
+    page.get_by_label("Diver").fill("Ana")
+    page.get_by_label("Clip", exact=True).select_option(label="my circle.mp4")
+    page.get_by_label("Gesture to show").select_option("circle")
+    page.get_by_role("button", name="Show it by this clip").click()
+    answer = page.locator(".practice-asked")
+    expect(answer).to_contain_text("? circle or ring? The take lies between 'circle' and 'ring'")
+    record = page.get_by_role("region", name="Ana")
+    expect(record).to_contain_text("0 errors in 0 takes")
+    expect(record).to_contain_text("1 take asked back with the right gesture")
+    record.get_by_text("1 take", exact=True).click()
+    expect(record).to_contain_text("circle asked back: circle or ring?")
+    assert faults(page) == []
+    record.get_by_role("link", name="my circle.mp4").click()
+    expect(page.locator("#outcome.asked")).to_contain_text("circle or ring?, expected circle")
+
+
 def test_practice_fits_a_phone(open_page: OpenPage, library: Library) -> None:
     query = {"view": "practice", "language": library.language}
     page = open_page(query, scene=False, size=(390, 844))

@@ -62,6 +62,24 @@ def test_all_takes_are_in_one_table(
     page.wait_for_url(f"**clip={both}&take=1**")
 
 
+def test_takes_between_two_gestures_and_rejected_ones_are_filtered(
+    open_page: OpenPage, library: Library
+) -> None:
+    library.add_gesture("ring")
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="All takes in one table").click()
+    dialog = page.get_by_role("dialog", name="All takes, recognised by dives")
+    dialog.get_by_role("button", name="Recognise all takes").click()
+    rows = dialog.locator("tbody tr")
+    # Clips of other tests are recognised too, which takes a while.
+    expect(rows.first).to_be_visible(timeout=30_000)
+    dialog.get_by_label("Show", exact=True).select_option("Asked back")
+    expect(rows.first.locator("td").nth(3)).to_have_text("circle or ring?")
+    dialog.get_by_label("Show", exact=True).select_option("Rejected")
+    shown = rows.locator("td:nth-child(4)").all_inner_texts()
+    assert [text for text in shown if not text.startswith("rejected")] == []
+
+
 def test_a_table_shows_how_far_it_is_and_is_cancelled(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:

@@ -58,6 +58,18 @@ def test_every_clip_is_in_the_table_with_its_faults(
     assert "3 clips, 2 gestures recognised" in ended.error
 
 
+def test_a_batch_of_nothing_but_pairs_recognises_nothing(
+    osg_studio: OsgStudio, folder: Path, command: list[str]
+) -> None:
+    pool(circle=circle, ring=circle).save(folder.parent / "pool.json")
+    (folder / "day 2" / "b.csv").unlink()
+    ended = osg_studio(*command)
+    assert ended.code == 1
+    assert "a.csv: circle or ring?" in ended.error
+    rows = read(folder / "takes.csv")
+    assert (rows[0]["label"], rows[0]["pair"]) == ("", "circle or ring")
+
+
 def test_an_interrupted_batch_goes_on(
     osg_studio: OsgStudio, folder: Path, command: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

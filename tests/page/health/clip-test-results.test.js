@@ -19,6 +19,7 @@ const take = (id, clip, result, values = {}) => ({
     confidence: 0.9,
     right: true,
     fault: null,
+    pair: null,
     ...result,
   },
   before: null,
@@ -43,9 +44,22 @@ test("takes are sorted as people count, and say what got better and worse", () =
   assert.deepEqual(testedOf(null), []);
 });
 
+test("a take that was asked back has both gestures in the table", () => {
+  const takes = [
+    take("a", "a.mp4", { label: null, right: false, pair: ["circle", "ring"] }),
+    take("b", "b.mp4", null),
+  ];
+  const tested = testedOf({ takes, better: [], worse: [] });
+  assert.deepEqual(
+    tested.map(({ pair }) => pair),
+    [["circle", "ring"], null],
+  );
+  assert.match(csvOf(tested).split("\r\n")[1], /,a,circle or ring$/);
+});
+
 test("a spreadsheet neither calculates a name nor splits it", () => {
   const takes = [take("a", '=1+1, "x".mp4', {})];
   const [heads, row] = csvOf(testedOf({ takes, better: [], worse: [] })).split("\r\n");
-  assert.equal(heads, "clip,start,end,expected,label,nearest,confidence,right,revision,id");
-  assert.equal(row, `"'=1+1, ""x"".mp4",0,1,circle,circle,circle,0.9,true,3,a`);
+  assert.equal(heads, "clip,start,end,expected,label,nearest,confidence,right,revision,id,pair");
+  assert.equal(row, `"'=1+1, ""x"".mp4",0,1,circle,circle,circle,0.9,true,3,a,`);
 });

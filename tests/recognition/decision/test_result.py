@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,6 +31,7 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
     assert json.loads(text) == {
         "profile": "paper",
         "label": "circle",
+        "pair": None,
         "nearest": "circle",
         "confidence": 0.75,
         "votes": {"hu": "circle", "zernike": "circle"},
@@ -65,6 +67,41 @@ def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:
     rejected = result(label=None).to_dict()
     assert rejected["label"] is None
     assert rejected["nearest"] == "circle"
+
+
+def between(*scores: float, **change: Any) -> Recognition:
+    there = replace(result(label=None), scores=np.array(scores), novelty=np.full(len(scores), 0.5))
+    return replace(there, gestures=("circle", "line", "wedge")[: len(scores)], **change)
+
+
+@pytest.mark.parametrize(
+    ("answer", "outcome"),
+    [
+        (result(), "recognized"),
+        (between(1.0, 1.1, pair=("circle", "line")), "pair"),
+        (result(label=None), "rejected"),
+    ],
+)
+def test_one_property_says_what_the_outcome_is(answer: Recognition, outcome: str) -> None:
+    assert answer.outcome == outcome
+    assert Recognition.from_dict(json.loads(json.dumps(answer.to_dict()))).outcome == outcome
+
+
+def test_a_pair_comes_back_from_its_plain_form_and_earlier_records_have_none() -> None:
+    content = between(1.0, 1.1, pair=("circle", "line")).to_dict()
+    assert content["pair"] == ["circle", "line"]
+    assert Recognition.from_dict(content).pair == ("circle", "line")
+    del content["pair"]
+    assert Recognition.from_dict(content).pair is None
+
+
+def test_a_rejection_between_three_gestures_names_them() -> None:
+    assert between(1.1, 1.0, 1.05).between == ("line", "wedge", "circle")
+    assert between(1.1, 1.0, 1.05, fault="no hand is seen").between == ()
+    assert between(1.0, 1.1, 9.0, pair=("circle", "line")).between == ("circle", "line")
+    assert result().between == ()
+    far = replace(between(1.1, 1.0, 1.05), novelty=np.full(3, 1.5))
+    assert far.between == ()
 
 
 def test_the_distances_of_a_result_cannot_be_changed() -> None:

@@ -34,7 +34,7 @@ def found_for(
 
 @pytest.mark.parametrize("profile", PROFILES)
 def test_each_turns_the_recognition_right_when_applied(profile: str) -> None:
-    query = recording(wedge, jitter=0.02)
+    query = recording(SHAPES["square"], jitter=0.03)
     context = RecognitionContext(recognizer=drawn_recognizer(profile), poses=query, whole=query)
     told = find_counterfactuals(context, "circle")
     assert told.found

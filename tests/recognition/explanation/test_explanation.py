@@ -169,6 +169,36 @@ def test_who_was_rejected_is_told_by_how_much() -> None:
     assert sum(verdict.share for verdict in explanation.verdicts) == pytest.approx(1.0)
 
 
+def between(*, asked: bool) -> RecognitionContext:
+    """Return a take that lies between two gestures, if asked about, or between three."""
+    examined = context(recording(wedge, jitter=0.02), drawn_recognizer("full"))
+    names = ("wedge", "circle", "line")
+    scores = [
+        1.0 + 0.01 * names.index(each) if each in names else 9.0 for each in drawn_language().labels
+    ]
+    result = replace(
+        examined.result,
+        label=None,
+        pair=names[:2] if asked else None,
+        scores=np.array(scores),
+        novelty=np.full(len(scores), 0.5),
+    )
+    vars(examined)["trace"] = replace(examined.trace, result=result)
+    return examined
+
+
+@pytest.mark.parametrize("expected", ["wedge", "circle", "square"])
+def test_a_take_between_gestures_is_told_so(expected: str) -> None:
+    asked = explain(between(asked=True), expected, with_counterfactuals=False)
+    assert asked.sentence.startswith("The take lies between 'wedge' and 'circle'")
+    assert (asked.right, asked.to_dict()["pair"]) == (False, ["wedge", "circle"])
+    rejected = explain(between(asked=False), expected, with_counterfactuals=False)
+    told = "Nothing was recognised: the take lies between 'wedge', 'circle' and 'line'"
+    assert rejected.sentence.startswith(told)
+    assert rejected.to_dict()["pair"] is None
+    assert "thresholds allow" not in asked.sentence + rejected.sentence
+
+
 def test_a_recording_too_poor_to_judge_is_told_so() -> None:
     query = recording(circle)
     xy = query.xy.copy()

@@ -134,6 +134,7 @@ def test_an_event_is_plain_json() -> None:
         "kind": "complete",
         "gestures": ["start", "go", "left", "end"],
         "label": "end",
+        "pair": None,
         "expected": ["start"],
         "mission": [
             {"phrase": "go", "slots": {"way": "left"}, "command": "go left", "spoken": "go left"}
@@ -203,3 +204,70 @@ def test_two_parsers_of_one_grammar_do_not_hear_each_other() -> None:
     one_diver, other = PhraseParser(MISSIONS), PhraseParser(replace(MISSIONS))
     feed(one_diver, "start", "go")
     assert other.expected == ("start",)
+
+
+PAIR = ("three", "two")
+
+
+def test_a_pair_is_asked_for_its_place_and_the_next_showing_decides() -> None:
+    parser = PhraseParser(MISSIONS)
+    feed(parser, "start", "photo")
+    (asked,) = parser.feed(None, 4.0, 5.0, PAIR)
+    assert (asked.kind, asked.label, asked.pair, asked.mission) == ("repeat", None, PAIR, None)
+    assert asked.gestures == ("start", "photo")
+    assert asked.text == "gesture 3: three or two? show it again"
+    assert asked.to_dict()["pair"] == ["three", "two"]
+    *_, last = feed(parser, "two", "end", since=6.0)
+    assert last.mission is not None
+    assert last.mission.spoken == "mission: photo, 2 times"
+    assert last.pair is None
+
+
+@pytest.mark.parametrize("between", [(), (None,)])
+def test_a_second_pair_is_a_refusal_and_the_message_is_kept(between: tuple[None, ...]) -> None:
+    parser = PhraseParser(MISSIONS)
+    feed(parser, "start", "photo")
+    parser.feed(None, 4.0, 5.0, PAIR)
+    feed(parser, *between, since=6.0)
+    (refused,) = parser.feed(None, 8.0, 9.0, PAIR)
+    assert (refused.kind, refused.pair) == ("repeat", None)
+    assert refused.text.startswith("not recognised, show it again")
+    (asked,) = parser.feed(None, 10.0, 11.0, PAIR)
+    assert asked.pair == PAIR
+    *_, last = feed(parser, "three", "end", since=12.0)
+    assert last.kind == "complete"
+
+
+def test_a_pair_at_another_place_is_asked_too() -> None:
+    parser = PhraseParser(MISSIONS)
+    feed(parser, "start")
+    parser.feed(None, 2.0, 3.0, ("photo", "picture"))
+    feed(parser, "photo", since=4.0)
+    (asked,) = parser.feed(None, 6.0, 7.0, PAIR)
+    assert asked.pair == PAIR
+
+
+def test_a_pair_before_a_message_is_asked_and_begins_none() -> None:
+    parser = PhraseParser(MISSIONS)
+    (asked,) = parser.feed(None, 0.0, 1.0, ("start", "go"))
+    assert (asked.kind, asked.text) == ("outside", "start or go? show it again")
+    (refused,) = parser.feed(None, 2.0, 3.0, ("start", "go"))
+    assert (refused.kind, refused.pair) == ("outside", None)
+    parser.feed(None, 4.0, 5.0, ("start", "go"))
+    (asked,) = parser.feed(None, 6.0 + MISSIONS.timeout, 90.0, ("start", "go"))
+    assert asked.pair == ("start", "go")
+
+
+def test_a_pair_does_not_cancel_and_a_pause_after_it_executes_nothing() -> None:
+    parser = PhraseParser(MISSIONS)
+    feed(parser, "start", "photo")
+    (asked,) = parser.feed(None, 4.0, 5.0, ("cancel", "end"))
+    assert (asked.kind, asked.mission) == ("repeat", None)
+    assert kinds(feed(parser, "end", since=6.0)) == ["complete"]
+    open_ended = PhraseParser(OPEN)
+    feed(open_ended, "photo")
+    assert open_ended.may_end
+    open_ended.feed(None, 2.0, 3.0, PAIR)
+    assert not open_ended.may_end
+    (event,) = open_ended.expire(8.5)
+    assert (event.kind, event.mission) == ("timed_out", None)

@@ -21,7 +21,7 @@ from app.robot import (
 )
 from tests.api.recordings import recording_of
 from tests.recognition.held_takes import FIST, FLAT, between_salutes, follow, hold
-from tests.robot.languages import language_of, moments_of, run_listener, spoken
+from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
 from tests.robot.listeners.test_salute_listener import cut, moved
 
 PHOTO = Phrase(
@@ -83,6 +83,17 @@ def test_a_rejected_take_is_asked_for_again_and_gives_no_command() -> None:
     emitted = run_listener(PhraseListener(Listener(made)), recording_of("circle", "line"))
     assert any(isinstance(event, TakeRejected) for event in emitted)
     assert phrases(emitted) == [("continues", None), ("repeat", None)]
+
+
+def test_a_pair_is_asked_for_its_place_and_executes_nothing() -> None:
+    active = ambiguous(replace(CLOSED, end="line"))
+    emitted = run_listener(PhraseListener(Listener(active)), recording_of("circle", "line"))
+    (take, _) = [event for event in emitted if isinstance(event, TakeRejected | TakeRecognized)]
+    assert isinstance(take, TakeRejected)
+    assert set(take.pair or ()) == {"circle", "ring"}
+    (asked, _) = [event.phrase for event in emitted if isinstance(event, PhraseHeard)]
+    assert (asked.kind, asked.pair, asked.text) == ("outside", take.pair, take.reason)
+    assert phrases(emitted) == [("outside", None), ("outside", None)]
 
 
 def test_a_pause_ends_a_message_that_needs_no_end() -> None:

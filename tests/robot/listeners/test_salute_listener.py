@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,10 +12,10 @@ from hypothesis import strategies as st
 from app.recognition import PoseSequence, Recording, takes_in
 from app.recognition.recording.live_segmentation import LONGEST_SALUTE
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
-from app.robot import Event, Listener, StateChanged, TakeRecognized, TakeRejected
+from app.robot import ActiveLanguage, Event, Listener, StateChanged, TakeRecognized, TakeRejected
 from app.robot.listeners.stream_order import MOST_LATE
 from tests.api.recordings import RATE, recording_of
-from tests.robot.languages import moments_of, run_listener, spoken
+from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
 
 SHAPES = ("circle", "line", "circle backwards")
 
@@ -83,6 +85,31 @@ def test_what_is_no_gesture_is_rejected_with_the_nearest_one() -> None:
     assert "no gesture of 'pool'" in rejected.reason
     assert (rejected.nearest, rejected.margin) == ("circle", np.inf)
     assert rejected.confidence is not None
+
+
+def test_a_take_between_two_gestures_is_asked_about_and_one_between_three_is_not() -> None:
+    emitted = run_listener(Listener(ambiguous()), recording_of("circle"))
+    (asked,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert asked.recognition is not None
+    assert asked.pair == asked.recognition.pair
+    assert asked.pair is not None
+    assert asked.reason == f"{asked.pair[0]} or {asked.pair[1]}? show it again"
+    three = [replace(language_of("circle").gestures[0], label=label) for label in "abc"]
+    language = replace(language_of("circle"), gestures=three)
+    active = ActiveLanguage.from_json(language.to_json())
+    emitted = run_listener(Listener(active), recording_of("circle"))
+    (rejected,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert rejected.pair is None
+    assert rejected.reason == "it lies between a, b and c"
+
+
+def test_an_open_take_is_not_asked_about() -> None:
+    listener = Listener(ambiguous())
+    run_listener(listener, cut(recording_of("circle"), 2.8))
+    (rejected,) = listener.finish()
+    assert isinstance(rejected, TakeRejected)
+    assert rejected.recognition is not None
+    assert (rejected.recognition.outcome, rejected.pair) == ("pair", None)
 
 
 def test_a_take_that_nobody_ends_is_rejected_when_the_stream_does() -> None:

@@ -10,6 +10,7 @@ from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
@@ -115,10 +116,20 @@ class Diver:
         self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock)
         self.bridge.publish(build_language_changed(0.0, crew()))
 
-    def show(self, label: str | None, language: ActiveLanguage | None = None) -> None:
-        """Show a gesture, recognised or rejected (None)."""
+    def show(
+        self,
+        label: str | None,
+        language: ActiveLanguage | None = None,
+        *,
+        pair: tuple[str, str] | None = None,
+        novelty: float = 0.1,
+    ) -> None:
+        """Show a gesture: recognised, rejected (None), or between two."""
         self.time += 5.0
-        take = a_rejected_take() if label is None else replace(a_take(), label=label)
+        recognition = replace(a_take().recognition, novelty=np.full(1, novelty))
+        take: TakeRecognized | TakeRejected = replace(a_rejected_take(), pair=pair)
+        if label is not None:
+            take = replace(a_take(), label=label, recognition=recognition)
         sha256 = (language or crew()).sha256
         self.bridge.publish(
             replace(take, time=self.time, start=self.time - 3, end=self.time - 1, sha256=sha256)
@@ -185,7 +196,7 @@ def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
         for _ in range(100):
             label = chance.choice([*DONE])
             other = chance.choice([each for each in [*DONE, "other"] if each != label])
-            match chance.randrange(6):
+            match chance.randrange(7):
                 case 0:  # once, and something else
                     diver.show(label)
                     diver.show(other)
@@ -206,45 +217,15 @@ def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
                 case 5:  # of another language
                     diver.show(label, spoken("circle"))
                     diver.show(label, spoken("circle"))
+                case 6:  # between two gestures, twice or followed by a third
+                    diver.show(None, pair=(label, "help"))
+                    diver.show(None, pair=(label, "help"))
+                    diver.show(None, pair=("help", label))
+                    diver.show("other")
             diver.show("no")
         diver.wait_for("nothing to cancel")
     assert diver.vehicle.asked == 0
     assert diver.vehicle.obeyed == []
-
-
-def test_an_emergency_is_obeyed_at_once_and_somewhat_late() -> None:
-    with diving() as diver:
-        diver.delay = 9.0
-        diver.show("help")
-        assert diver.wait_for("done") == "done: surface"
-    assert diver.vehicle.obeyed == ["SURFACE"]
-    assert "EMERGENCY: surface" in diver.vehicle.texts
-
-
-def test_an_emergency_replaces_what_is_on_its_way() -> None:
-    with diving() as diver:
-        diver.vehicle.loss = 1.0
-        diver.confirm("bright")
-        diver.show("help")
-        assert diver.wait_for("replaced") == "replaced: lights 50 %"
-        diver.vehicle.loss = 0.0
-        assert diver.wait_for("done") == "done: surface"
-    assert diver.vehicle.obeyed == ["SURFACE"]
-
-
-def test_an_ordinary_command_never_replaces_an_emergency() -> None:
-    with diving() as diver:
-        diver.vehicle.loss = 1.0
-        diver.show("help")
-        diver.confirm("free")
-        assert diver.wait_for("replaced", "NOT DONE") == (
-            "NOT DONE, EMERGENCY goes on: mode STABILIZE"
-        )
-        diver.vehicle.loss = 0.0
-        assert diver.wait_for("done") == "done: surface"
-        diver.confirm("free")
-        assert diver.wait_for("done") == "done: mode STABILIZE"
-    assert diver.vehicle.obeyed == ["SURFACE", "STABILIZE"]
 
 
 @pytest.mark.withstands(row="H36")

@@ -88,11 +88,25 @@ def test_an_emergency_needs_no_repetition_and_an_object_stays_one(bench: Bench) 
     assert (robot.commands[0].command, robot.commands[0].emergency) == ('{"go":"up"}', True)
 
 
+def test_a_pair_is_asked_and_the_next_gesture_decides(bench: Bench) -> None:
+    robot = Robot(bench, emergency=["line"])
+    pair: dict[str, Any] = {"pair": ["circle", "line"], "rejected": True, "nearest": "circle"}
+    assert robot.show("", **pair) == "line or circle? show it again"
+    asked = robot.states[-1]
+    assert (asked.state, asked.label) == (CommandState.CONFIRMING, "circle or line")
+    assert robot.show("circle") == "'circle': photo"
+    bench.wait(lambda: bool(robot.commands), "command")
+    assert [command.label for command in robot.commands] == ["circle"]
+
+
 @pytest.mark.parametrize(
     "other",
     [
         {"rejected": True},
         {"confidence": 0.3},
+        {"novelty": 0.9},
+        {"pair": ["line", "wave"]},
+        {"pair": ["line", "wave", "circle"]},
     ],
 )
 def test_nothing_comes_of_what_is_rejected_or_unsure(bench: Bench, other: dict[str, Any]) -> None:

@@ -87,6 +87,7 @@ def compare_takes(
     expected = {(nanoseconds(event.start), nanoseconds(event.end)): event for event in events}
     received = {(to_nanoseconds(take.start), to_nanoseconds(take.end)): take for take in takes}
     assert received.keys() == expected.keys()
+    assert {len(take.pair) for take in takes} == {0, 2}
     for span, take in received.items():
         event = expected[span]
         assert take.rejected is isinstance(event, TakeRejected)
@@ -94,6 +95,9 @@ def compare_takes(
         assert (take.nearest, take.confidence) == (event.nearest, event.confidence)
         assert (take.language_id, take.language_revision) == (event.sha256, event.revision)
         assert take.language_name == "pool"
+        assert tuple(take.pair) == (getattr(event, "pair", None) or ())
+        assert event.recognition is not None
+        assert take.novelty == event.recognition.nearest_novelty
         assert json.loads(take.report)["nearest"] == event.nearest
 
 

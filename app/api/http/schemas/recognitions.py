@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.http.schemas.gestures import GestureChange
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
 from app.recognition.language.file_schema import TuningEntry
 
 
@@ -54,7 +54,8 @@ class RecognitionView(BaseModel):
     )
     expected: str | None
     created: datetime
-    label: str | None = Field(description="None when rejected")
+    label: str | None = Field(description="Null for a pair and when rejected")
+    pair: Pair = None
     nearest: str | None = Field(description="The best label even when rejected")
     confidence: float
     voters: list[str]
@@ -89,6 +90,7 @@ class ExplanationView(BaseModel):
     profile: str
     expected: str
     label: str | None
+    pair: Pair
     nearest: str
     right: bool
     confidence: float

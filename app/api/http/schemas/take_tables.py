@@ -28,7 +28,7 @@ class TakeRowView(BaseModel):
     start: float | None
     end: float | None
     closed: bool | None
-    label: str | None = Field(description="Null: rejected")
+    label: str | None = Field(description="Null: a pair, or rejected")
     nearest: str | None
     runner_up: str | None = Field(description="The nearest gesture but `nearest`")
     confidence: float | None
@@ -38,6 +38,7 @@ class TakeRowView(BaseModel):
     language: str
     revision: int
     profile: str
+    pair: str | None = Field(description='"circle or square"; null: it lies between no two')
 
 
 class TakeTableView(BaseModel):

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
 from app.store.labelled_takes import MOST_TAKES
 
 
@@ -38,7 +38,8 @@ class LabelledResultView(BaseModel):
 
     revision: int
     recognition_id: str | None = Field(description="Null: it could not be recognised, see `fault`")
-    label: str | None = Field(description="Null: rejected")
+    label: str | None = Field(description="Null: a pair, or rejected")
+    pair: Pair
     nearest: str | None
     confidence: float
     right: bool
@@ -65,7 +66,11 @@ class RateView(BaseModel):
     """Rate of right answers, with Wilson's 95 % interval; null without any answer."""
 
     right: int
-    asked: int
+    asked: int = Field(description="Takes, those of pairs included")
+    pairs: int = Field(
+        description="Takes that lie between two gestures: neither right nor a wrong label"
+    )
+    pairs_right: int = Field(description="Of these, those with the right gesture in the pair")
     rate: float | None
     low: float | None
     high: float | None
@@ -87,6 +92,9 @@ class TestSetView(BaseModel):
     takes: list[LabelledTakeView]
     overall: RateView
     gestures: list[GestureRateView] = Field(description="The lowest rate first")
-    better: list[str] = Field(description="Ids of takes that are right now and were wrong before")
-    worse: list[str] = Field(description="Ids of takes that are wrong now and were right before")
+    better: list[str] = Field(description="Ids of takes that are answered better than before")
+    worse: list[str] = Field(
+        description="Ids of takes that are answered worse than before: right is better than a pair "
+        "with the right gesture, which is better than anything else"
+    )
     waiting: int = Field(description="Takes without a result of the newest revision")

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
+from app.api.http.schemas.values import Pair
 from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
 from app.recognition import Language
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
@@ -20,9 +21,16 @@ from app.recognition.phrases.parser import PhraseEvent, PhraseEventKind, PhraseP
 MOST_SHOWN = 100
 """Most gestures of one simulation: more than any message may have."""
 
+BETWEEN = "\t"
+"""Separates the two labels of a pair; no label has it."""
+
 Shown = Annotated[
-    list[Annotated[str, Field(max_length=MAX_LABEL_LENGTH)]],
-    Query(max_length=MOST_SHOWN, description="Labels in order; an empty one was not recognised"),
+    list[Annotated[str, Field(max_length=2 * MAX_LABEL_LENGTH + len(BETWEEN))]],
+    Query(
+        max_length=MOST_SHOWN,
+        description="Labels in order; an empty one was not recognised, two with a tab between "
+        "them are a pair",
+    ),
 ]
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -51,7 +59,10 @@ class PhraseEventView(BaseModel):
 
     kind: PhraseEventKind
     gestures: list[str] = Field(description="Of the message so far")
-    label: str | None = Field(description="Null when it was not recognised, and for a pause")
+    label: str | None = Field(
+        description="Null for a pair, when it was not recognised, and for a pause"
+    )
+    pair: Pair
     expected: list[str] = Field(description="What may come next")
     mission: list[MeaningView] | None = Field(description="What to do; only when complete")
     text: str = Field(description="In words, for the diver")
@@ -87,7 +98,7 @@ def describe_phrases(
     state = studio.languages.get(language_id, revision)
     grammar = studio.language(state).grammar or Grammar()
     parser = PhraseParser(grammar)
-    events = [event for label in gesture for event in parser.feed(label or None, 0.0, 0.0)]
+    events = [event for shown in gesture for event in _feed(parser, shown)]
     if then == "pause":
         events += parser.expire(2 * grammar.timeout)
     return PhrasesView(
@@ -100,6 +111,13 @@ def describe_phrases(
         expected=list(parser.expected),
         may_end=parser.may_end,
     )
+
+
+def _feed(parser: PhraseParser, shown: str) -> tuple[PhraseEvent, ...]:
+    one, _, other = shown.partition(BETWEEN)
+    if one and other:
+        return parser.feed(None, 0.0, 0.0, (one, other))
+    return parser.feed(one or None, 0.0, 0.0)
 
 
 def _view(event: PhraseEvent) -> PhraseEventView:

@@ -8,12 +8,17 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Diver, Identifier, Label, Pair, Seconds
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
 from app.api.services.running_studio import CurrentStudio, Studio, edited
-from app.api.services.stored_recognitions import load_situation, recognize_range
+from app.api.services.stored_recognitions import (
+    load_situation,
+    read_pair,
+    recognize_range,
+    write_pair,
+)
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
 from app.recognition.explanation.explanation import explain
 from app.store import LanguageState, PracticeTake
@@ -36,7 +41,8 @@ class PracticeTakeView(BaseModel):
 
     id: str
     expected: str
-    label: str | None = Field(description="Null: rejected")
+    label: str | None = Field(description="Null: a pair, or rejected")
+    pair: Pair
     right: bool
     clip_id: str
     recognition_id: str
@@ -47,8 +53,12 @@ class PracticeRecordView(BaseModel):
     """A diver's record with the newest revision: evidence of acceptance."""
 
     diver: str
-    takes: int = Field(description="Takes recognised by the newest revision")
+    takes: int = Field(description="Takes recognised by the newest revision, without pairs")
     errors: int
+    pairs: int = Field(
+        description="Takes of the newest revision that were asked back, with the gesture meant in "
+        "the pair: neither right nor an error"
+    )
     bound: float = Field(description="Upper bound of the error rate (Clopper and Pearson)")
     limit: float = Field(description="Error rate to be below")
     confidence: float = Field(description="Confidence of the bound")
@@ -109,6 +119,7 @@ def show_gesture(
             diver=draft.diver.strip(),
             expected=draft.expected,
             label=made.answer["label"],
+            pair=write_pair(made.answer),
             revision=record.revision,
             recognition_id=record.id,
         )
@@ -142,23 +153,26 @@ def _records(studio: Studio, state: LanguageState) -> list[PracticeRecordView]:
 
 
 def _record(diver: str, takes: list[PracticeTake], revision: int) -> PracticeRecordView:
-    counted = [take for take in takes if take.revision == revision]
+    current = [take for take in takes if take.revision == revision]
+    counted = [take for take in current if take.expected not in (read_pair(take.pair) or ())]
     errors = sum(take.label != take.expected for take in counted)
     bound = bound_error_rate(errors, len(counted))
     return PracticeRecordView(
         diver=diver,
         takes=len(counted),
         errors=errors,
+        pairs=len(current) - len(counted),
         bound=bound,
         limit=LIMIT,
         confidence=CONFIDENCE,
         reached=bound < LIMIT,
         more=max(0, count_takes_needed(errors) - len(counted)),
-        older=len(takes) - len(counted),
+        older=len(takes) - len(current),
         shown=[_view(take) for take in takes],
     )
 
 
 def _view(take: PracticeTake) -> PracticeTakeView:
-    shown = take.model_dump(exclude={"language_id", "start", "diver", "created"})
-    return PracticeTakeView(**shown, right=take.label == take.expected)
+    shown = take.model_dump(exclude={"language_id", "start", "diver", "created", "pair"})
+    right = take.label == take.expected
+    return PracticeTakeView(**shown, pair=read_pair(take.pair), right=right)

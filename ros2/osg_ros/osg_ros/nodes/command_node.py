@@ -7,7 +7,7 @@ Studio, so it runs wherever ROS 2 does.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from osg_interfaces.msg import ActiveLanguage as LanguageMessage
@@ -15,15 +15,17 @@ from osg_interfaces.msg import Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
 from osg_ros.commands.dialogue import (
-    CONFIRM_SECONDS,
-    EMERGENCY_AGE_SECONDS,
-    EMERGENCY_CONFIDENCE,
-    STALE_SECONDS,
     CommandDialogue,
     CommandTable,
     Decision,
     RecognizedGesture,
     RecognizedPhrase,
+)
+from osg_ros.commands.rules import (
+    CONFIRM_SECONDS,
+    EMERGENCY_AGE_SECONDS,
+    EMERGENCY_CONFIDENCE,
+    STALE_SECONDS,
     Rules,
 )
 from osg_ros.commands.table import read_commands
@@ -171,8 +173,9 @@ class CommandNode(ManagedNode):
     def _hear(self, recognition: GestureRecognition) -> None:
         self.count_input()
         stamp = to_nanoseconds(recognition.header.stamp)
-        # `rejected` takes precedence over a label in the same message.
-        label = None if recognition.rejected else recognition.label or None
+        # `rejected` and `pair` take precedence over a label in the same message.
+        is_answered = not recognition.rejected and not recognition.pair
+        label = (recognition.label or None) if is_answered else None
         start = to_nanoseconds(recognition.start)
         gesture = RecognizedGesture(
             label,
@@ -182,6 +185,8 @@ class CommandNode(ManagedNode):
             # Publishers of other projects may leave it out.
             start=start / NANOSECONDS if start else None,
             body_id=recognition.body_id,
+            pair=to_pair(recognition.pair),
+            novelty=recognition.novelty,
         )
         decision = self._dialogue.decide(gesture, self._now() / NANOSECONDS)
         self._act(decision, recognition)
@@ -198,6 +203,7 @@ class CommandNode(ManagedNode):
             label=phrase.label or None,
             language_id=phrase.language_id,
             body_id=phrase.body_id,
+            pair=to_pair(phrase.pair),
         )
         self._act(self._dialogue.decide_phrase(heard, self._now() / NANOSECONDS), phrase)
 
@@ -235,6 +241,11 @@ class CommandNode(ManagedNode):
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
+
+
+def to_pair(labels: Sequence[str]) -> tuple[str, str] | None:
+    """Convert the labels of a pair; None for a message without one."""
+    return (labels[0], labels[1]) if len(labels) == 2 else None
 
 
 def to_seconds(nanoseconds: int) -> float:

@@ -81,6 +81,8 @@ class VisualisationNode(ManagedNode):
     def _take_recognition(self, recognition: GestureRecognition) -> None:
         share = f"{recognition.nearest} {recognition.confidence:.0%}"
         self._words = f"rejected: {share}" if recognition.rejected else share
+        if recognition.pair:
+            self._words = f"{' or '.join(recognition.pair)}?"
 
     def _draw(self, pair: tuple[Any, tuple[BodyKeypoints, Hands]] | None) -> None:
         if pair is None:

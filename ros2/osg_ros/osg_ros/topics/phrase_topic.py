@@ -66,6 +66,7 @@ def to_phrase_message(event: PhraseHeard, clock: Stopwatch, header: Header) -> P
         confidence=event.confidence,
         mission=mission,
         text=phrase.text,
+        pair=list(phrase.pair or ()),
     )
 
 

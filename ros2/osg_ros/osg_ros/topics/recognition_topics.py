@@ -38,8 +38,8 @@ STATES = {
 class RecognitionTopics:
     """Publishers of a listener's events.
 
-    A rejected take is published on `recognition` alone, with its reason, so that a subscriber of
-    the label topics never gets the label of a rejected take.
+    A take that is rejected or lies between two gestures is published on `recognition` alone, with
+    its reason, so that a subscriber of the label topics never gets the label of such a take.
 
     Parameters
     ----------
@@ -156,6 +156,8 @@ def to_recognition_message(
         rejected=not recognized,
         reason=event.reason if isinstance(event, TakeRejected) else "",
         report=json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
+        pair=list((event.pair if isinstance(event, TakeRejected) else None) or ()),
+        novelty=answer.nearest_novelty if answer else 0.0,
     )
 
 

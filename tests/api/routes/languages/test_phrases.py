@@ -95,6 +95,18 @@ def test_gestures_are_simulated_without_leaving_anything_behind(
     assert client.get(place).json()["revision"] == 2
 
 
+def test_a_pair_is_asked_for_its_place(client: httpx.Client, place: str) -> None:
+    view = shown(client, place, "line", "circle\tline")
+    asked = view["events"][-1]
+    assert (asked["kind"], asked["label"]) == ("repeat", None)
+    assert asked["pair"] == ["circle", "line"]
+    assert asked["text"] == "gesture 2: circle or line? show it again"
+    assert view["may_end"] is False
+    assert shown(client, place, "line", "circle\tline", "circle")["events"][-1]["mission"]
+    assert shown(client, place, "line", "circle\tline", "a\tb")["events"][-1]["pair"] is None
+    assert shown(client, place, "line", "\tline")["events"][-1]["pair"] is None
+
+
 def test_ambiguities_are_told_as_the_phrases_change(client: httpx.Client, place: str) -> None:
     client.patch(place, json={"grammar": {**GRAMMAR, "end": None}})
     view = shown(client, place, "line")

@@ -13,7 +13,7 @@ from app.api.routes.languages import practice
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import recognize_range
 from tests.api.http.test_connection import begin
-from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import PATIENCE_SECONDS, Running, assert_problem, until
 
@@ -50,6 +50,26 @@ def test_a_diver_is_told_what_to_change_and_has_a_record(
     client.patch(f"{LANGUAGES}/{language_id}", json={"name": "sea"}).raise_for_status()
     (older,) = client.get(place).json()
     assert (older["takes"], older["older"]) == (0, 1)
+
+
+def test_a_pair_with_the_gesture_meant_is_neither_right_nor_an_error(
+    client: httpx.Client, studio: Studio
+) -> None:
+    place = f"{add_ambiguous_language(client)}/practice"
+    clip = add_recorded_clip(studio, recording_of("circle"), "circle.mp4")
+    shown = {"diver": "Ana", "expected": "circle", "clip_id": clip}
+    asked = client.post(place, json=shown).json()
+    assert (asked["take"]["label"], asked["take"]["right"]) == (None, False)
+    assert set(asked["take"]["pair"]) == {"circle", "ring"}
+    assert asked["sentence"].startswith("The take lies between")
+    record = asked["record"]
+    assert (record["takes"], record["errors"], record["pairs"]) == (0, 0, 1)
+    again = add_recorded_clip(studio, recording_of("circle"), "again.mp4")
+    other = client.post(place, json={**shown, "expected": "line", "clip_id": again})
+    record = other.json()["record"]
+    assert (record["takes"], record["errors"], record["pairs"]) == (1, 1, 1)
+    (listed,) = client.get(place).json()
+    assert [take["pair"] for take in listed["shown"]] == [asked["take"]["pair"]] * 2
 
 
 def test_a_take_whose_client_leaves_is_in_the_audit_log(

@@ -13,7 +13,7 @@ import pytest
 from app.api.jobs.test_run import test_run_key as key_of_run
 from app.api.services.running_studio import Studio
 from app.store import JobStatus
-from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, until
 from tests.api.running_workers import linux, workers_of
@@ -89,6 +89,25 @@ def test_a_change_of_the_language_says_what_got_better_and_worse(
     count_direction("off")
     relaxed = run(client, place)
     assert (relaxed["better"], relaxed["worse"]) == ([take["id"]], [])
+
+
+def test_a_pair_is_counted_on_its_own_and_lies_between_right_and_wrong(
+    client: httpx.Client, studio: Studio
+) -> None:
+    language = add_ambiguous_language(client)
+    place = f"{language}/test-set"
+    clip = add_recorded_clip(studio, recording_of("circle", "line"), "two.mp4")
+    labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    found = run(client, place)
+    pair, wrong = (take["result"] for take in found["takes"])
+    assert (pair["label"], pair["right"], set(pair["pair"])) == (None, False, {"circle", "ring"})
+    assert (wrong["label"], wrong["pair"]) == ("line", None)
+    counts = {name: found["overall"][name] for name in ("right", "asked", "pairs", "pairs_right")}
+    assert counts == {"right": 0, "asked": 2, "pairs": 1, "pairs_right": 1}
+    client.delete(f"{language}/gestures", params={"label": "ring"}).raise_for_status()
+    better = run(client, place)
+    assert (better["better"], better["worse"]) == ([found["takes"][0]["id"]], [])
+    assert (better["overall"]["right"], better["overall"]["pairs"]) == (1, 0)
 
 
 def test_a_take_gets_another_label_and_is_removed(

@@ -1,11 +1,14 @@
 """Recognitions over HTTP: complete, repeatable, and stored."""
 
+import json
+
 import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
 from app.recognition.gestures.profile import PROFILES
-from tests.api.languages import LANGUAGES, add_gesture
+from app.store import RecognitionRecord
+from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem
 
@@ -37,6 +40,29 @@ def test_a_take_is_recognised_with_every_voters_distances(
     assert set(result["votes"]) <= set(result["voters"]) == set(result["weights"])
     assert (result["profile"], result["revision"]) == ("full", 3)
     assert client.get(f"{RECOGNITIONS}/{result['id']}").json() == result
+
+
+def test_a_take_between_two_gestures_is_kept_with_the_pair_and_older_records_have_none(
+    client: httpx.Client, studio: Studio, circle_clip: str
+) -> None:
+    language = add_ambiguous_language(client).rpartition("/")[2]
+    asked = {"clip_id": circle_clip, "language_id": language, "expected": "ring"}
+    made = client.post(RECOGNITIONS, json=asked).json()
+    assert made["label"] is None
+    assert set(made["pair"]) == {"circle", "ring"}
+    place = f"{RECOGNITIONS}/{made['id']}"
+    assert client.get(place).json()["pair"] == made["pair"]
+    explained = client.get(f"{place}/explanation").json()
+    assert explained["pair"] == made["pair"]
+    assert explained["sentence"].startswith("The take lies between")
+    record = studio.recognitions.get(made["id"])
+    older = json.loads(record.result)
+    del older["pair"]
+    again = RecognitionRecord(
+        **record.model_dump(exclude={"id", "result"}), result=json.dumps(older)
+    )
+    kept = studio.recognitions.add(again)
+    assert client.get(f"{RECOGNITIONS}/{kept.id}").json()["pair"] is None
 
 
 def test_a_recognition_outlives_what_its_language_becomes(
