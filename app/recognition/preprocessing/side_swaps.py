@@ -50,11 +50,6 @@ BLENDED = 0.9
 model's smoothing mixes both sides. From 0.88 to 0.94 a frame or two differ; with less, a blended
 frame remains and adds a stroke."""
 
-MOST_BLENDED = 0.2
-"""Share of frames with narrow shoulders from which the diver turns and no frame is blended. Of 320
-takes of `utd_other`, four turned ones lost a third of their frames, which cost the languages that
-they demonstrate 2 points of accuracy."""
-
 ELBOWS = ("left_elbow", "right_elbow")
 
 ARMS_BLENDED = 0.95
@@ -64,6 +59,11 @@ blended arms. From 0.9 to 0.97 the sample clip that needs it is recognised on ev
 BLEND_SECONDS = 0.25
 """Longest time from a blended frame to one that shows the arms apart: a pose model's smoothing
 has settled by then (from 0.2 to 0.4 s the result is the same)."""
+
+LONGEST_BLEND = 2 * BLEND_SECONDS
+"""Seconds from which narrow shoulders are a turn of the body and no blend. Of 320 takes of
+`utd_other`, four turned ones lost a third of their frames, which cost the languages that they
+demonstrate 2 points of accuracy."""
 
 Mask: TypeAlias = npt.NDArray[np.bool_]
 SingleArray: TypeAlias = npt.NDArray[np.float32]
@@ -173,7 +173,7 @@ def swap_sides(values: FloatArray, landmarks: tuple[str, ...], frames: Mask) -> 
 def _find_blended(trajectory: Trajectory) -> Mask:
     """Return ``(T,)``: frames in which the shoulders are too close to each other.
 
-    None where they are so for longer than a pose model's smoothing: then the diver turns.
+    Frames that are so for longer than a pose model's smoothing show a diver who turns.
     """
     if not set(SHOULDERS) <= set(trajectory.landmarks):
         return np.zeros(len(trajectory), dtype=bool)
@@ -183,7 +183,11 @@ def _find_blended(trajectory: Trajectory) -> Mask:
     known = width[np.isfinite(width)]
     usual = median(known) if len(known) else 0.0
     narrow = np.asarray(width < (BLENDED * usual if usual > FRONTAL else 0.0))
-    return narrow if narrow.mean() <= MOST_BLENDED else np.zeros_like(narrow)
+    bounds = np.flatnonzero(np.diff(narrow, prepend=False, append=False)).reshape(-1, 2)
+    for start, end in bounds.tolist():
+        if trajectory.time[end - 1] - trajectory.time[start] > LONGEST_BLEND:
+            narrow[start:end] = False
+    return narrow
 
 
 def _find_blended_arms(trajectory: Trajectory, blended: Mask) -> Mask:
