@@ -98,17 +98,17 @@ def answer(recognizer: Recognizer, poses: PoseSequence) -> dict[str, Any]:
 
 
 def _rebuild(file: Path) -> dict[str, Any]:
-    """Load, save and calibrate a shipped language."""
+    """Load and save a shipped language, and a new one of its gestures."""
     language = Language.load(file)
     with tempfile.TemporaryDirectory() as folder:
-        again, calibrated = Path(folder) / "again.json", Path(folder) / "calibrated.json"
+        again, rebuilt = Path(folder) / "again.json", Path(folder) / "rebuilt.json"
         language.save(again)
         built = Language(name="rebuilt", gestures=list(language.gestures), created=language.created)
-        built.save(calibrated)
+        built.save(rebuilt)
         return {
             "same bytes": again.read_bytes() == file.read_bytes(),
             "sha256": hashlib.sha256(again.read_bytes()).hexdigest(),
-            "calibrated": json.loads(calibrated.read_text()),
+            "rebuilt": json.loads(rebuilt.read_text()),
         }
 
 

@@ -67,7 +67,7 @@ class TakeEntry(_Entry):
     scores: Annotated[list[Number], Field(description="G fused scores, smaller is more alike.")]
     novelty: Annotated[list[Number], Field(description="G values; above 1 a take is rejected.")]
     novelty_by_view: Annotated[
-        dict[str, list[Number]], Field(description="The same per group of cues.")
+        dict[str, list[Number]], Field(description="The same of the movement and of the hands.")
     ]
     facing: Annotated[
         Number,

@@ -47,7 +47,7 @@ class ActiveLanguage:
 
     @classmethod
     def load(cls, path: str | Path, profile: str | None = None) -> Self:
-        """Read a language file; this takes up to a second if the file has no thresholds.
+        """Read a language file; this takes up to a second for large languages.
 
         Raises
         ------

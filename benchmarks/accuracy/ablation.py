@@ -1,8 +1,8 @@
 """Ablation: accuracy of profile ``full`` with one voter alone and with one voter left out.
 
-One-shot accuracy on the recorded sets, user-independent where people are known. Each query's
-distances are measured once, in the traversals that all voters together chose, and fused anew for
-every choice of voters.
+One-shot accuracy on the recorded sets, user-independent where people are known. The voters are
+switched off as an author would, by weight factors (`Tuning`), so that limit and unambiguous
+traversals stay those of all voters together.
 
     python -m benchmarks.accuracy.ablation ../shared/data
 """
@@ -13,10 +13,8 @@ import numpy as np
 
 from app.recognition import PoseError
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.fusion import fuse
 from app.recognition.gestures.demonstration import condense
-from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import Trajectory
+from app.recognition.gestures.tuning import Tuning
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.voters.registry import VOTER_NAMES
 from benchmarks.accuracy.shared_sets import demonstrated
@@ -26,13 +24,14 @@ from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 ALL = "all together"
 
 
-def choices() -> dict[str, FloatArray]:
-    """Return the weight factors of the voters, ``(V,)``, by name of the choice."""
-    alone = {f"{voter} alone": np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)}
-    without = {
-        f"without {voter}": 1 - np.eye(len(VOTER_NAMES))[i] for i, voter in enumerate(VOTER_NAMES)
+def choices() -> dict[str, Tuning]:
+    """Return the weight factors of the voters by name of the choice."""
+    alone = {
+        f"{voter} alone": Tuning(weights={name: float(name == voter) for name in VOTER_NAMES})
+        for voter in VOTER_NAMES
     }
-    return {ALL: np.ones(len(VOTER_NAMES))} | alone | without
+    without = {f"without {voter}": Tuning(weights={voter: 0.0}) for voter in VOTER_NAMES}
+    return {ALL: Tuning()} | alone | without
 
 
 def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[str, float]:
@@ -46,27 +45,18 @@ def ablate(recorded: RecordedSet, draws: int, queries: int, seed: int) -> dict[s
             int(random.choice(np.flatnonzero(own & (recorded.labels == label))))
             for label in np.unique(recorded.labels)
         ]
-        vote = FusedVote(demonstrated(recorded, templates))
-        weights, between = (
-            np.array([*of.values()]) for of in (vote.unnormalized_weights, vote.between)
-        )
+        gestures = demonstrated(recorded, templates)
+        votes = {name: FusedVote(gestures, tuning) for name, tuning in choices().items()}
         pool = np.setdiff1d(np.flatnonzero(~own if (~own).any() else own), templates)
         for query in random.choice(pool, min(queries, len(pool)), replace=False):
             asked += 1
             try:
-                seen = condense(
-                    Trajectory.from_poses(repair_poses(recorded.recordings[query]).poses)
-                )
+                seen = condense(repair_poses(recorded.recordings[query]).trajectory)
             except PoseError:
                 continue
-            compared = vote.compare(seen)
-            penalties = np.array([each.penalty if each else 1.0 for each in compared.traversals])
-            for name, factor in choices().items():
-                scores = fuse(compared.distances, weights * factor, between) * penalties
-                nearest = recorded.labels[templates[int(scores.argmin())]]
-                correct[name] += bool(
-                    np.isfinite(scores.min()) and nearest == recorded.labels[query]
-                )
+            for name, vote in votes.items():
+                result = vote.recognize(seen)
+                correct[name] += result is not None and result.nearest == recorded.labels[query]
     return {name: count / asked for name, count in correct.items()}
 
 

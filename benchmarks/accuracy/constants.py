@@ -1,11 +1,12 @@
-"""Constants of the voters and of rejection, each set's chosen without that set.
+"""Constants of the decision, each set's chosen without that set and the people in it.
 
-`voters` prints every voter's distances within and between classes, and compares three ways to weigh
-the voters on a left-out set: the shipped priors, equal priors, and priors learned on the other sets
-by logistic ranking. `rejection` prints, for languages of half of a set's classes, how many true
-takes by others the shipped thresholds reject and how many out-of-vocabulary takes they accept.
-Beside them stand the rates of an oracle, whose threshold is fitted to the set and rejects one in
-twenty, and the confidence's coefficients fitted without the set.
+`voters` prints every voter's mean distance to takes of the same gesture by others, and between
+gestures. Then it changes one constant at a time and prints the share of takes whose nearest gesture
+is right: for every set at the value that is best on the sets of other people, and at the
+shipped one. `rejection` prints, for languages of half of a set's classes, the scores of right takes
+by others, of takes of the other classes (near), and of movements of people who do not sign (far,
+for whole bodies); how many of each the shipped limit rejects or accepts, and the one chosen without
+the set; and the confidence's coefficients fitted without it.
 
     python -m benchmarks.accuracy.constants ../shared/data --subject voters
     python -m benchmarks.accuracy.constants ../shared/data --subject rejection
@@ -15,60 +16,62 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from typing import Any, Final
+from unittest.mock import patch
 
 import numpy as np
 import numpy.typing as npt
 
+from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer
-from app.recognition.decision.calibration import REACH
+from app.recognition.decision import motion_references
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.rejection import SCORE_FLOOR
+from app.recognition.decision.rejection import LIMIT_OF_ARMS, LIMIT_OF_HANDS, SCORE_FLOOR
+from app.recognition.features import motion, traversals
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES
-from benchmarks.accuracy.people import all_sets
+from app.recognition.voters.motion import velocity
+from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion.place import Place
+from app.recognition.voters.registry import MOTION_VOTERS
+from benchmarks.accuracy.people import all_sets, is_of_bodies, recognize
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
 from benchmarks.sets.one_shot_draws import Draw, draws
-from benchmarks.sets.recorded_sets import SETS, RecordedSet
-from benchmarks.sets.simulated_bodies import CARRIED
+from benchmarks.sets.recorded_sets import DOMAINS, RecordedSet
+from benchmarks.sets.simulated_bodies import CARRIED_DOMAINS
+from benchmarks.sets.whole_body_sets import far_movements
 
-CHOSEN_ON = (*SETS, "utd_other", "utkinect", *CARRIED)
-"""The sets that the shipped constants were chosen on; the default."""
+TRIED: Final[Sequence[tuple[Any, str, tuple[float, ...]]]] = (
+    (velocity, "SLOW", (0.1, 0.2, 0.3, 0.5, 1.0)),
+    (Place, "prior", (0.5, 1.0, 1.5, 2.0)),
+    (Place, "within", (0.5, 0.6, 0.69, 0.8)),
+    (Path, "prior", (0.0, 0.25, 0.5, 1.0)),
+    (motion, "RESTING_SHARE", (0.0, 0.02, 0.04, 0.07)),
+    (traversals, "BACKWARD_PENALTY", (1.2, 1.4, 1.7, 2.0, 2.5)),
+    (traversals, "EXCHANGED_PENALTY", (1.4, 1.5, 2.0, 3.0)),
+    (motion_references, "SAME_FIGURE", (0.25, 0.4, 0.5)),
+)
+"""Owner, name and tried values of the constants of the nearest gesture."""
 
-ROUNDS, STEP = 200, 0.3
-"""Steps of the exponentiated gradient, and their length."""
+SAME_PEOPLE: Final = (
+    {*DOMAINS, *CARRIED_DOMAINS},
+    {"utd_other", "utd_signals", "utd_figures"},
+)
+"""Sets of the same people's takes, which are left out together."""
+
+LIMITS: Final = tuple(percent / 100 for percent in range(20, 101, 2))
+"""Tried limits of the score."""
+
+FAR_ACCEPTED: Final = 0.05
+"""Largest share of far movements that a limit may accept on each set from which it is chosen."""
 
 NEWTON_ROUNDS = 30
 """Steps of Newton's method; logistic regression converges in about ten."""
-
-ORACLE_REFUSES = 0.05
-"""Share of true takes that the oracle's threshold rejects."""
-
-KINDS = [VOTER_NAMES.index(voter.name) for voter in MOTION_VOTERS]
-"""Rows of the motion voters among all."""
-
-
-@dataclass(frozen=True, eq=False)
-class Comparison:
-    """Queries of one language.
-
-    Attributes
-    ----------
-    distances
-        ``(Q, V, G)`` of the motion voters; infinite where not comparable.
-    between
-        ``(V,)``: the voters' between-class distances in this language.
-    right
-        ``(Q,)``: index of the right gesture.
-
-    """
-
-    distances: FloatArray
-    between: FloatArray
-    right: npt.NDArray[np.intp]
 
 
 def others_or_own(chosen: Draw) -> npt.NDArray[np.intp]:
@@ -76,121 +79,122 @@ def others_or_own(chosen: Draw) -> npt.NDArray[np.intp]:
     return chosen.others if len(chosen.others) else chosen.own
 
 
-def compare(recorded: RecordedSet, given: argparse.Namespace) -> Iterator[Comparison]:
-    """Yield the distances of queries to the gestures of randomly drawn languages."""
-    for chosen in draws(recorded, given.draws, given.queries, given.seed):
-        labels = [str(recorded.labels[index]) for index in chosen.templates]
-        vote = FusedVote(
-            [
-                gesture_of(label, recorded.recordings[index])
-                for label, index in zip(labels, chosen.templates, strict=True)
-            ]
-        )
-        queries = others_or_own(chosen)
-        tables = [
-            vote.compare(condense(repair_poses(recorded.recordings[index]).trajectory), drawn=False)
-            for index in queries
-        ]
-        yield Comparison(
-            distances=np.array([table.distances[KINDS] for table in tables]),
-            between=np.array([vote.between[voter.name] for voter in MOTION_VOTERS]),
-            right=np.array([labels.index(str(recorded.labels[index])) for index in queries]),
-        )
+def without_people_of(names: Sequence[str], name: str) -> list[str]:
+    """Return the sets in which nobody occurs whose takes are in the named one."""
+    left_out = next((group for group in SAME_PEOPLE if name in group), {name})
+    return [other for other in names if other not in left_out]
 
 
-def measure_within(compared: Sequence[Comparison]) -> FloatArray:
-    """Return ``(V,)``: the median distance to the right gesture; NaN where not comparable."""
-    own = np.concatenate(
-        [each.distances[np.arange(len(each.right)), :, each.right] for each in compared]
-    )
-    return np.array(
-        [np.median(row[row < np.inf]) if (row < np.inf).any() else np.nan for row in own.T]
-    )
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A language of all classes, and queries.
 
-
-def average_over_sets(measured: Sequence[FloatArray]) -> FloatArray:
-    """Return the geometric mean over the sets in which a voter compares: ``(V,)``."""
-    logarithms = np.log(np.array(measured))
-    known = np.isfinite(logarithms)
-    total = np.where(known, logarithms, 0.0).sum(axis=0)
-    count = known.sum(axis=0)
-    means: FloatArray = np.full(len(total), np.nan)
-    np.divide(total, count, out=means, where=count > 0)
-    return np.asarray(np.exp(means))
-
-
-def relate(each: Comparison, within: FloatArray) -> FloatArray:
-    """Return ``(Q, V, G)``: distances over between-class distances, times the adapted weight."""
-    with np.errstate(invalid="ignore"):
-        adapted = np.maximum(0.0, 1.0 - within / each.between)
-    scaled = each.distances * (np.nan_to_num(adapted) / each.between)[:, None]
-    return np.where(np.isfinite(each.distances), scaled, 0.0)
-
-
-def count_right(compared: Sequence[Comparison], within: FloatArray, priors: FloatArray) -> float:
-    """Return the share of queries whose smallest weighted sum is the right gesture's."""
-    hits = [
-        (np.einsum("v,qvg->qg", priors, relate(each, within)).argmin(axis=1) == each.right)
-        for each in compared
-    ]
-    return float(np.concatenate(hits).mean())
-
-
-def learn_priors(sets: Sequence[Sequence[Comparison]], within: FloatArray) -> FloatArray:
-    """Learn priors by logistic ranking of the right gesture; sets are weighted equally.
-
-    Returns
-    -------
-    ``(V,)`` >= 0, by the exponentiated gradient (Kivinen and Warmuth 1997).
+    Attributes
+    ----------
+    gestures
+        One of each class.
+    queries
+        Condensed takes.
+    right
+        The queries' labels.
 
     """
-    priors = np.ones(len(within))
-    data = [
-        (relate(each, within), each.right, len(sets) * sum(map(_size, one)))
-        for one in sets
-        for each in one
-    ]
-    for _ in range(ROUNDS):
-        gradient = np.zeros_like(priors)
-        for relative, right, count in data:
-            scores = -np.einsum("v,qvg->qg", priors, relative)
-            chance = np.exp(scores - scores.max(axis=1, keepdims=True))
-            chance /= chance.sum(axis=1, keepdims=True)
-            expected = np.einsum("qg,qvg->qv", chance, relative)
-            gradient += (relative[np.arange(len(right)), :, right] - expected).sum(axis=0) / count
-        priors = priors * np.exp(-STEP * gradient)
-    return priors
 
+    gestures: list[Gesture]
+    queries: list[Trajectory]
+    right: list[str]
 
-def _size(each: Comparison) -> int:
-    return len(each.right)
+    def measure(self) -> tuple[FloatArray, FloatArray]:
+        """Return the voters' distances.
 
+        Returns
+        -------
+        ``(Q, V)`` to the right gestures, NaN where not comparable, and ``(V,)`` between gestures.
 
-def print_voters(data: Mapping[str, Sequence[Comparison]]) -> None:
-    """Print within- and between-class distances, and the nested comparison of priors."""
-    within = {name: measure_within(each) for name, each in data.items()}
-    for row, voter in enumerate(MOTION_VOTERS):
-        print(
-            f"{voter.name:14}",
-            *(
-                f"{name} {within[name][row]:.3f}/{np.mean([c.between[row] for c in each]):.3f}"
-                for name, each in data.items()
-            ),
-            f"| shipped {voter.within}, over sets {average_over_sets([*within.values()])[row]:.3f}",
+        """
+        vote = FusedVote(self.gestures)
+        labels = [gesture.label for gesture in self.gestures]
+        within = [
+            vote.compare(query).distances[:, labels.index(label)]
+            for query, label in zip(self.queries, self.right, strict=True)
+        ]
+        known = np.where(np.isfinite(within), within, np.nan)
+        return known, np.array([*vote.between.values()])
+
+    def count_right(self) -> Share:
+        """Count the queries whose nearest gesture is right, with all descriptors computed anew."""
+        vote = FusedVote(
+            [
+                replace(each, trajectory=each.trajectory and replace(each.trajectory))
+                for each in self.gestures
+            ]
         )
-    shipped = np.array([voter.prior for voter in MOTION_VOTERS])
-    for name, each in data.items():
-        others = [other for other in data if other != name]
-        without = average_over_sets([within[other] for other in others])
-        learned = learn_priors([data[other] for other in others], without)
-        shares = {
-            "shipped": count_right(each, without, shipped),
-            "equal": count_right(each, without, np.ones(len(shipped))),
-            "learned": count_right(each, without, learned),
-        }
-        print(
-            f"{name:10}", *(f"{which} {share:.1%}" for which, share in shares.items()), flush=True
-        )
+        results = [vote.recognize(replace(query)) for query in self.queries]
+        hits = [
+            result is not None and result.nearest == label
+            for result, label in zip(results, self.right, strict=True)
+        ]
+        return Share(sum(hits), len(hits))
+
+
+def ask(recorded: RecordedSet, given: argparse.Namespace) -> Iterator[Asked]:
+    """Yield randomly drawn languages of a set with their queries."""
+    for chosen in draws(recorded, given.draws, given.queries, given.seed):
+        queries, right = [], []
+        for index in others_or_own(chosen):
+            with suppress(PoseError):
+                queries.append(condense(repair_poses(recorded.recordings[index]).trajectory))
+                right.append(str(recorded.labels[index]))
+        gestures = [
+            gesture_of(str(recorded.labels[index]), recorded.recordings[index])
+            for index in chosen.templates
+        ]
+        yield Asked(gestures, queries, right)
+
+
+def print_voters(data: Mapping[str, Sequence[Asked]]) -> None:
+    """Print distances, and shares at every value of the constants and at those of other sets."""
+    measured = {which: [each.measure() for each in languages] for which, languages in data.items()}
+    for at, voter in enumerate(MOTION_VOTERS):
+        cells, means = [], []
+        for which, pairs in measured.items():
+            own = np.concatenate([within[:, at] for within, _ in pairs])
+            own = own[np.isfinite(own)]
+            means += [float(own.mean())] if len(own) else []
+            between = np.mean([between[at] for _, between in pairs])
+            cells.append(f"{which} {own.mean() if len(own) else np.nan:.3f}/{between:.3f}")
+        mean = np.mean(means) if means else np.nan
+        print(f"{voter.name:10} {'  '.join(cells)} | mean {mean:.3f}, shipped {voter.within}")
+    for owner, name, values in TRIED:
+        shipped = getattr(owner, name)
+        shares: dict[str, list[Share]] = {}
+        for which, languages in data.items():
+            shares[which] = []
+            for value in values:
+                with patch.object(owner, name, value):
+                    counted = (language.count_right() for language in languages)
+                    shares[which].append(sum(counted, Share(0, 0)))
+        print(f"{owner.__name__.rsplit('.', 1)[-1]}.{name}, shipped {shipped}", flush=True)
+        for which, row in shares.items():
+            others = without_people_of([*data], which)
+            nested = ""
+            if others:
+                best = int(_average([shares[each] for each in others]).argmax())
+                nested = f"without it {values[best]}: {row[best]}, "
+            print(
+                f"  {which:16} {_list(values, _average([row]))} | {nested}shipped "
+                f"{row[values.index(shipped)]}, n {row[0].asked}"
+            )
+        print(f"  {'mean':16} {_list(values, _average([*shares.values()]))}", flush=True)
+
+
+def _average(rows: Sequence[Sequence[Share]]) -> FloatArray:
+    """Return the mean share over the rows, for each column."""
+    return np.asarray(np.mean([[share.value or 0.0 for share in row] for row in rows], axis=0))
+
+
+def _list(values: Sequence[float], shares: FloatArray) -> str:
+    return "  ".join(f"{value}: {share:.1%}" for value, share in zip(values, shares, strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,17 +203,29 @@ class Decided:
 
     Attributes
     ----------
+    shipped
+        The limit of usual languages of this kind, `LIMIT_OF_ARMS` or `LIMIT_OF_HANDS`.
     kind
-        ``(Q,)``: ``right``, ``wrong``, or ``foreign`` where the class is not in the language.
+        ``(Q,)``: ``right``, ``wrong``, ``near`` where the class is not in the language, or ``far``.
     novelty, nearest, second
         ``(Q,)`` of the nearest gesture, and the two smallest scores.
 
     """
 
+    shipped: float
     kind: npt.NDArray[np.str_]
     novelty: FloatArray
     nearest: FloatArray
     second: FloatArray
+
+    def scores(self, kind: str) -> FloatArray:
+        """Return the novelties of a kind times `shipped`: the scores in usual languages."""
+        return np.asarray(self.novelty[self.kind == kind] * self.shipped)
+
+    def accepted(self, kind: str, limit: float) -> Share:
+        """Return the share of a kind within a limit."""
+        scores = self.scores(kind)
+        return Share(int((scores <= limit).sum()), len(scores))
 
     def regressors(self) -> FloatArray:
         """Return ``(Q, 3)``: 1, and the logarithms of novelty and of the share of the scores."""
@@ -218,71 +234,101 @@ class Decided:
         return np.stack([np.ones_like(share), np.log(self.novelty + SCORE_FLOOR), share], axis=1)
 
 
-def decide(recorded: RecordedSet, given: argparse.Namespace) -> Decided:
-    """Recognise takes of all classes with languages of half of them."""
+def decide(recorded: RecordedSet, far: RecordedSet, given: argparse.Namespace) -> Decided:
+    """Recognise takes of all classes, and far movements, with languages of half of the classes."""
     generator = np.random.default_rng(given.seed)
     found: list[tuple[str, float, float, float]] = []
+    shipped = LIMIT_OF_HANDS
     for chosen in draws(recorded, given.draws, given.queries, given.seed):
         labels = {index: str(recorded.labels[index]) for index in chosen.templates}
         kept = set(generator.choice([*labels.values()], max(2, len(labels) // 2), replace=False))
-        gestures: list[Gesture] = [
+        gestures = [
             gesture_of(label, recorded.recordings[index])
             for index, label in labels.items()
             if label in kept
         ]
+        shipped = LIMIT_OF_ARMS if FusedVote(gestures).references.sees_arms else LIMIT_OF_HANDS
         recognizer = Recognizer(Language(recorded.name, gestures), "full")
-        for index in others_or_own(chosen):
-            try:
-                result = recognizer.recognize(recorded.recordings[index])
-            except PoseError:
+        asked = [*recognize(recognizer, recorded, others_or_own(chosen))]
+        if is_of_bodies(recorded):
+            order = generator.permutation(len(far.recordings))[: given.queries]
+            asked += [(result, "") for result, _ in recognize(recognizer, far, order)]
+        for result, label in asked:
+            if result is None:
                 continue
-            label, at = str(recorded.labels[index]), result.gestures.index(result.nearest)
             kind = "right" if label == result.nearest else "wrong"
-            nearest, second = np.sort(result.scores)[:2]
-            found.append(
-                (kind if label in kept else "foreign", float(result.novelty[at]), nearest, second)
-            )
+            if label not in kept:
+                kind = "near" if label else "far"
+            at = result.gestures.index(result.nearest)
+            found.append((kind, float(result.novelty[at]), *np.sort(result.scores)[:2].tolist()))
     kinds, novelties, nearest_scores, seconds = zip(*found, strict=True)
-    return Decided(np.array(kinds), *map(np.array, (novelties, nearest_scores, seconds)))
+    return Decided(shipped, np.array(kinds), *map(np.array, (novelties, nearest_scores, seconds)))
 
 
 def fit_confidence(data: Sequence[Decided]) -> FloatArray:
-    """Fit the confidence's coefficients ``(3,)``; foreign takes weigh one half of each set."""
-    regressors = np.concatenate([each.regressors() for each in data])
-    right = np.concatenate([each.kind == "right" for each in data]).astype(float)
-    weights = np.concatenate(
-        [
-            np.where(foreign, 0.5 / foreign.sum(), 0.5 / (~foreign).sum()) / len(data)
-            for each in data
-            for foreign in [each.kind == "foreign"]
-        ]
-    )
+    """Fit the confidence's coefficients ``(3,)``; near takes weigh one half of each set."""
+    regressors, right, weights = [], [], []
+    for each in data:
+        asked = each.kind != "far"
+        near = (each.kind == "near")[asked]
+        regressors.append(each.regressors()[asked])
+        right.append((each.kind == "right")[asked].astype(float))
+        weights.append(np.where(near, 0.5 / near.sum(), 0.5 / (~near).sum()) / len(data))
+    known, correct, weight = map(np.concatenate, (regressors, right, weights))
     coefficients = np.zeros(3)
     for _ in range(NEWTON_ROUNDS):
-        chance = 1.0 / (1.0 + np.exp(-regressors @ coefficients))
-        gradient = regressors.T @ (weights * (right - chance))
-        curvature = (regressors.T * (weights * chance * (1 - chance))) @ regressors
+        chance = 1.0 / (1.0 + np.exp(-known @ coefficients))
+        gradient = known.T @ (weight * (correct - chance))
+        curvature = (known.T * (weight * chance * (1 - chance))) @ known
         coefficients += np.linalg.solve(curvature, gradient)
     return coefficients
 
 
+def choose_limit(data: Sequence[Decided]) -> float:
+    """Choose the largest limit that accepts at most `FAR_ACCEPTED` of each set's far movements.
+
+    Where none has any, the limit with the fewest right takes rejected and near ones accepted.
+    """
+    if known := [scores for each in data if len(scores := each.scores("far"))]:
+        return min(float(np.quantile(scores, FAR_ACCEPTED)) for scores in known)
+    gain = _average([[each.accepted("right", at) for at in LIMITS] for each in data])
+    loss = _average([[each.accepted("near", at) for at in LIMITS] for each in data])
+    return LIMITS[int((gain - loss).argmax())]
+
+
 def print_rejection(data: Mapping[str, Decided]) -> None:
-    """Print rejected and accepted shares, the oracle's, and the coefficients without each set."""
-    reaches = []
+    """Print scores, rejected and accepted shares, and what is chosen without each set."""
     for name, each in data.items():
-        right, foreign = (each.novelty[each.kind == kind] for kind in ("right", "foreign"))
-        limit = float(np.quantile(right, 1 - ORACLE_REFUSES))
-        reaches.append(limit * REACH)
-        without = fit_confidence([other for which, other in data.items() if which != name])
-        print(
-            f"{name:10} n {len(right)}/{len(foreign)}  right refused {(right > 1).mean():.1%}  "
-            f"foreign accepted {(foreign <= 1).mean():.1%}  oracle accepts "
-            f"{(foreign <= limit).mean():.1%} at reach {limit * REACH:.1f}  "
-            f"confidence {without.round(2).tolist()}",
-            flush=True,
-        )
-    print(f"median reach {np.median(reaches):.1f}, shipped {REACH}")
+        others = [data[other] for other in without_people_of([*data], name)]
+        alike = [other for other in others if other.shipped == each.shipped]
+        limits = {"shipped": each.shipped} | ({"without it": choose_limit(alike)} if alike else {})
+        shown = [
+            f"right {_quantiles(each.scores('right'), 90, 95)}",
+            f"near {_quantiles(each.scores('near'), 5, 25)}",
+            f"far {_quantiles(each.scores('far'), 5)}",
+        ]
+        for which, limit in limits.items():
+            right = each.accepted("right", limit)
+            rejected = Share(right.asked - right.correct, right.asked)
+            shown.append(
+                f"{which} {limit:.2f}: right rejected {rejected},"
+                f" near accepted {each.accepted('near', limit)},"
+                f" far accepted {each.accepted('far', limit)}"
+            )
+        if others:
+            shown.append(f"confidence {fit_confidence(others).round(2).tolist()}")
+        counts = "/".join(str(int((each.kind == kind).sum())) for kind in ("right", "near", "far"))
+        print(f"{name:16} n {counts}  " + "  ".join(shown), flush=True)
+    for of_kind in (LIMIT_OF_ARMS, LIMIT_OF_HANDS):
+        if alike := [each for each in data.values() if each.shipped == of_kind]:
+            print(f"limit of all sets {choose_limit(alike):.2f}, shipped {of_kind}")
     print(f"confidence of all sets {fit_confidence([*data.values()]).round(2).tolist()}")
+
+
+def _quantiles(scores: FloatArray, *percent: int) -> str:
+    return (
+        " ".join(f"{each:.2f}" for each in np.percentile(scores, percent)) if len(scores) else "-"
+    )
 
 
 def main() -> None:
@@ -290,11 +336,13 @@ def main() -> None:
     parser = set_arguments(__doc__, draws=10, queries=40)
     parser.add_argument("--subject", choices=("voters", "rejection"), default="voters")
     given = parser.parse_args()
-    sets = list(all_sets(given.data / "trajectories", given.sets or CHOSEN_ON))
+    folder = given.data / "trajectories"
+    sets = all_sets(folder, given.sets)
     if given.subject == "voters":
-        print_voters({each.name: [*compare(each, given)] for each in sets})
+        print_voters({each.name: [*ask(each, given)] for each in sets})
     else:
-        print_rejection({each.name: decide(each, given) for each in sets})
+        far = far_movements(folder)
+        print_rejection({each.name: decide(each, far, given) for each in sets})
 
 
 if __name__ == "__main__":

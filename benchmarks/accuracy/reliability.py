@@ -5,10 +5,9 @@ queries come from all classes, so that about half of them are out-of-vocabulary.
 same person (UD), and if people are known also by everybody else (UI). Rejected and accepted shares
 are printed; averages over the sets are of queries by the same person if people are known.
 
-Three thresholds of the novelty are compared: one per set, which rejects `REFUSED` of the set's true
-takes; a common one, which rejects `REFUSED` on average over the sets; and the calibrated one of
-each language. Intervals are from the bootstrap over languages (Efron 1979), because queries to one
-language share its templates and its missing classes.
+The limit is compared with one per set, which rejects `REFUSED` of the set's true takes. Intervals
+are from the bootstrap over languages (Efron 1979), because queries to one language share its
+templates and its missing classes.
 
     python -m benchmarks.accuracy.reliability ../shared/data --seeds 1 2 3
 """
@@ -29,7 +28,7 @@ from benchmarks.arguments import set_arguments
 from benchmarks.sets.recorded_sets import RecordedSet, recorded_sets
 
 REFUSED = 0.05
-"""Share of the true takes rejected at the thresholds for which false acceptance is reported."""
+"""Share of the true takes rejected at the set's own limit."""
 
 RESAMPLES = 1000
 """Bootstrap samples: with these the ends of a 95 % interval vary by a tenth of its width."""
@@ -81,39 +80,29 @@ class Outcomes:
         return float((~self.refused[~self.known]).mean())
 
     @property
-    def own_bar(self) -> float:
-        """The threshold that rejects `REFUSED` of the true takes."""
+    def own_limit(self) -> float:
+        """The novelty that rejects `REFUSED` of the true takes if it is the limit."""
         return float(np.quantile(self.novelty[self.known], 1 - REFUSED))
 
-    def accepted_at(self, bar: float) -> float:
-        """Return the share of out-of-vocabulary movements at or below a threshold."""
-        return float((self.novelty[~self.known] <= bar).mean())
+    def accepted_at(self, novelty: float) -> float:
+        """Return the share of out-of-vocabulary movements of at most this novelty."""
+        return float((self.novelty[~self.known] <= novelty).mean())
 
 
 Statistic = Callable[[Sequence[Outcomes]], float]
 
 
-def accepted_at_own_bars(sets: Sequence[Outcomes]) -> float:
-    """Return the share accepted, averaged over the sets, each with its own threshold."""
-    return float(np.mean([each.accepted_at(each.own_bar) for each in sets]))
+def accepted_at_own_limits(sets: Sequence[Outcomes]) -> float:
+    """Return the share accepted, averaged over the sets, each with its own limit."""
+    return float(np.mean([each.accepted_at(each.own_limit) for each in sets]))
 
 
-def accepted_at_one_bar(sets: Sequence[Outcomes]) -> float:
-    """Return the mean share accepted at the threshold that rejects `REFUSED` on average."""
-    true = np.concatenate([each.novelty[each.known] for each in sets])
-    counted = [int(each.known.sum()) for each in sets]
-    weight = np.concatenate([np.full(count, 1 / count / len(sets)) for count in counted])
-    order = np.argsort(true)
-    bar = float(true[order][np.searchsorted(np.cumsum(weight[order]), 1 - REFUSED)])
-    return float(np.mean([each.accepted_at(bar) for each in sets]))
-
-
-def refused_as_calibrated(sets: Sequence[Outcomes]) -> float:
+def refused_by_limit(sets: Sequence[Outcomes]) -> float:
     """Return the share of true takes rejected, averaged over the sets."""
     return float(np.mean([each.true_refused for each in sets]))
 
 
-def accepted_as_calibrated(sets: Sequence[Outcomes]) -> float:
+def accepted_by_limit(sets: Sequence[Outcomes]) -> float:
     """Return the share of out-of-vocabulary movements accepted, averaged over the sets."""
     return float(np.mean([each.foreign_accepted for each in sets]))
 
@@ -127,10 +116,9 @@ def with_interval(statistic: Statistic, sets: Sequence[Outcomes]) -> str:
 
 
 STATISTICS = {
-    "foreign accepted, each set with its own bar": accepted_at_own_bars,
-    "foreign accepted, one bar for all sets": accepted_at_one_bar,
-    "true refused as calibrated": refused_as_calibrated,
-    "foreign accepted as calibrated": accepted_as_calibrated,
+    "foreign accepted, each set with its own limit": accepted_at_own_limits,
+    "true refused by the limit": refused_by_limit,
+    "foreign accepted by the limit": accepted_by_limit,
 }
 
 
@@ -207,7 +195,7 @@ def row(name: str, asked: Sequence[Answer]) -> str:
     found = outcomes(asked)
     known = int(found.known.sum())
     return (
-        f"| {name} | {found.accepted_at(found.own_bar):.1%} | "
+        f"| {name} | {found.accepted_at(found.own_limit):.1%} | "
         f"{found.true_refused:.1%} of {known} | "
         f"{found.foreign_accepted:.1%} of {len(asked) - known} |"
     )

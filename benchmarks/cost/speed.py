@@ -164,8 +164,8 @@ def main() -> None:
         "once a gesture by our own code"
     )
     print(
-        f"{head}adding a gesture and calibrating takes {adding.again / recognition.again:.0f} "
-        f"recognitions, {adding.again / frame:.0f} frames of pose estimation"
+        f"{head}adding a gesture takes {adding.again / recognition.again:.0f} recognitions, "
+        f"{adding.again / frame:.0f} frames of pose estimation"
     )
 
 

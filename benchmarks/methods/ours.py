@@ -22,7 +22,7 @@ class OurProfile(Method):
         self._gestures.append(gesture_of(label, demonstration))
 
     def prepare(self) -> None:
-        """Calibrate the language."""
+        """Make the language of the gestures."""
         self._recognizer = Recognizer(Language("compared", self._gestures), self._profile)
 
     def answer(self, query: PoseSequence) -> str | None:

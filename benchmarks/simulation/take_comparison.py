@@ -5,24 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from app.recognition import Gesture, PoseSequence
-from app.recognition.decision.fusion import fuse, weigh_voters
-from app.recognition.decision.motion_references import MotionReferences, describe_movement
-from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES, VOTERS
+from app.recognition.voters.registry import VOTER_NAMES
 
 LOOKS = ("duration", "way", "unevenness", "corners", "opening", "roughness")
 """Features of a take by itself, see `looks`."""
 
 SCORE = "score"
-"""The fused voters' distances, each divided by its typical distance between gestures."""
+"""The fused score in a language of the one gesture: 1 is as far as two gestures usually are."""
 
 FEATURES = (*VOTER_NAMES, SCORE, *LOOKS)
-
-_PATH = [voter.name for voter in MOTION_VOTERS].index("path")
 
 
 class TakeComparison:
@@ -38,22 +34,17 @@ class TakeComparison:
     def __init__(self, gesture: Gesture) -> None:
         self.demonstration = demonstration_of(gesture)
         self._salient = gesture.salient
-        self._shapes = ShapeReferences([gesture])
-        self._motions = MotionReferences.of([gesture])
+        self._vote = FusedVote([gesture])
         self._looks = looks(self.demonstration, gesture.salient)
-        none = [np.empty(0)] * len(VOTER_NAMES)
-        self._weights, self._between = weigh_voters(VOTERS, none, len(self._motions.landmarks))
 
     def features(self, take: Trajectory) -> FloatArray:
         """Return ``(F,)`` numbers, named by `FEATURES`.
 
-        Distances are in the traversal with the nearest path; `looks` are given as differences.
+        Distances are in the nearest traversal; `looks` are given as differences.
         """
-        motion = self._motions.distances(describe_movement(take, self._motions.landmarks))
-        nearest = motion[:, motion[_PATH].argmin()]
-        distances = np.concatenate([self._shapes.distances(take)[:, 0], nearest])
-        score = fuse(distances[:, None], self._weights, self._between)
-        return np.concatenate([distances, score, looks(take, self._salient) - self._looks])
+        compared = self._vote.compare(take)
+        seen = looks(take, self._salient) - self._looks
+        return np.concatenate([compared.distances[:, 0], compared.scores, seen])
 
     def of_recording(self, poses: PoseSequence) -> FloatArray:
         """Return the features of a recorded take."""

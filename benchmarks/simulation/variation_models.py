@@ -37,7 +37,7 @@ people."""
 
 
 def ours(shown: Trajectory, count: int, seed: int, person: Person) -> tuple[Trajectory, ...]:
-    """Draw variants as for the recogniser's calibration."""
+    """Draw variants as for the health report."""
     return draw_variants(shown, count, seed=seed, person=person)
 
 

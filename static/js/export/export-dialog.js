@@ -19,7 +19,7 @@ const FORMATS = {
   },
   "osg-reference": {
     title: "Published OSG format",
-    text: "For the published ROS node: images and salient keypoints only. Movement, thresholds, tuning and commands are left out.",
+    text: "For the published ROS node: images and salient keypoints only. Movement, tuning and commands are left out.",
     command: (file) => `osg-studio convert ${file} language.json`,
   },
   proteus: {

@@ -1,4 +1,4 @@
-"""Thresholds of the novelty: each rejects the share of true takes that it promises."""
+"""Limits of the novelty: each rejects the share of true takes that it promises."""
 
 import numpy as np
 import pytest
@@ -6,10 +6,9 @@ import pytest
 from benchmarks.accuracy.reliability import (
     REFUSED,
     Outcomes,
-    accepted_as_calibrated,
-    accepted_at_one_bar,
-    accepted_at_own_bars,
-    refused_as_calibrated,
+    accepted_at_own_limits,
+    accepted_by_limit,
+    refused_by_limit,
     with_interval,
 )
 
@@ -28,28 +27,22 @@ NEAR, FAR = drawn(0.5, 0.9, seed=1), drawn(0.5, 2.0, seed=2)
 LOOSE = drawn(0.8, 2.0, seed=3)
 
 
-def test_a_sets_own_bar_refuses_its_share_of_the_true_takes() -> None:
+def test_a_sets_own_limit_refuses_its_share_of_the_true_takes() -> None:
     for outcomes in (NEAR, FAR, LOOSE):
-        refused = (outcomes.novelty[outcomes.known] > outcomes.own_bar).mean()
+        refused = (outcomes.novelty[outcomes.known] > outcomes.own_limit).mean()
         assert refused == pytest.approx(REFUSED, abs=0.002)
 
 
-def test_one_bar_for_all_is_a_compromise() -> None:
-    """A set whose true takes are farther away needs a higher threshold than the common one."""
-    assert accepted_at_one_bar([NEAR]) == pytest.approx(accepted_at_own_bars([NEAR]), abs=0.01)
-    assert accepted_at_one_bar([NEAR, LOOSE]) > accepted_at_own_bars([NEAR, LOOSE])
-
-
 def test_what_is_far_is_never_accepted_and_what_is_near_mostly_is() -> None:
-    assert accepted_at_own_bars([FAR]) == 0
-    assert accepted_as_calibrated([NEAR]) > 0.5
-    assert refused_as_calibrated([NEAR]) < 0.02
+    assert accepted_at_own_limits([FAR]) == 0
+    assert accepted_by_limit([NEAR]) > 0.5
+    assert refused_by_limit([NEAR]) < 0.02
 
 
 def test_an_interval_holds_what_was_measured() -> None:
     measured, low, high = (
         float(word.strip("(%)"))
-        for word in with_interval(accepted_as_calibrated, [NEAR]).split()
+        for word in with_interval(accepted_by_limit, [NEAR]).split()
         if word != "to"
     )
     assert low < measured < high

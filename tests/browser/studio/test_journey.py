@@ -10,7 +10,7 @@ import httpx
 from playwright.sync_api import FrameLocator, Locator, Page, expect
 
 from app.recognition import Language
-from app.recognition.voters.registry import VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 from app.ui.workspace import initial_frame
 from tests.api.running import Running
 from tests.browser.conftest import OpenPage
@@ -112,9 +112,9 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     assert 95 <= sum(support.values()) <= 105
     silent = page.locator("#votes").get_by_text(re.compile(r"^\d+ voters? without weight"))
     without_weight = int(silent.inner_text().split()[0])
-    assert table.locator("tbody tr").count() == len(VOTERS) - without_weight
+    assert table.locator("tbody tr").count() == len(MOTION_VOTERS) - without_weight
     page.get_by_role("button", name="Show the voters without weight").click()
-    expect(table.locator("tbody tr")).to_have_count(len(VOTERS))
+    expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
     page.get_by_role("button", name="Hide the voters without weight").click()
     outcome = page.locator("#outcome")
     expect(outcome).to_have_text(re.compile(r"Recognised as .*voters with \d+ % of the weight"))

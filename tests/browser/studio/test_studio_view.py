@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from app.recognition.voters.registry import VOTERS
+from app.recognition.voters.registry import MOTION_VOTERS
 from app.ui import workspace
 from tests.api.recordings import recording_of
 from tests.api.running import Running, client_of, until
@@ -110,7 +110,7 @@ def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons
     assert picture["height"] >= 480
     table = page.get_by_role("table", name="Votes")
     page.get_by_role("button", name="Show the voters without weight").click()
-    expect(table.locator("tbody tr")).to_have_count(len(VOTERS))
+    expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
     expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
     for part in (page.locator("#lab-box"), page.locator("#outcome"), table):
         expect(part).to_be_in_viewport(ratio=1)

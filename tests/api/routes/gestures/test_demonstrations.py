@@ -68,7 +68,6 @@ def test_the_document_keeps_it_through_export_copy_and_import(
     add(client, place, backwards_clip, diver="Ben")
     exported = client.get(f"{LANGUAGES}/{language_id}/export").content
     language = Language.from_json(exported)
-    assert language.thresholds_for == language.fingerprint
     assert [each.diver for each in language.gesture("circle").single_demonstrations()] == [
         "Ana",
         "Ben",

@@ -150,13 +150,13 @@ def test_a_tuning_changes_this_recognition_alone_and_is_told_with_it(
 ) -> None:
     body = {"clip_id": line_clip, "language_id": spoken, "expected": "circle"}
     plain = client.post(RECOGNITIONS, json=body).json()
-    tuned = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"arm_path": 0.0}}}).json()
+    tuned = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"velocity": 0.0}}}).json()
     assert plain["tuning"] is None
-    assert tuned["tuning"]["weights"] == {"arm_path": 0.0}
-    assert tuned["weights"]["arm_path"] == 0.0 < plain["weights"]["arm_path"]
+    assert tuned["tuning"]["weights"] == {"velocity": 0.0}
+    assert tuned["weights"]["velocity"] == 0.0 < plain["weights"]["velocity"]
     why = client.get(f"{RECOGNITIONS}/{tuned['id']}/explanation").json()
-    (arm_path,) = [verdict for verdict in why["verdicts"] if verdict["voter"] == "arm_path"]
-    assert arm_path["weight"] == 0.0
+    (velocity,) = [verdict for verdict in why["verdicts"] if verdict["voter"] == "velocity"]
+    assert velocity["weight"] == 0.0
     unknown = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"magic": 1.0}}})
     assert unknown.status_code == 422
     assert "no voter 'magic'" in unknown.json()["detail"]
