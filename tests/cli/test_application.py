@@ -238,8 +238,8 @@ def test_a_range_by_hand_needs_no_salute(
 def test_what_is_no_gesture_is_rejected_and_ends_with_one(
     osg_studio: OsgStudio, tmp_path: Path, sample_clips: Path
 ) -> None:
-    clip = shortened(sample_clips / "ordinary-movement.mp4", tmp_path / "idle.mp4", 2.6)
-    ended = osg_studio("recognize", f"{clip}@0.5-2.5", "--language", LANGUAGE, "--json")
+    clip = shortened(sample_clips / "ordinary-movement.mp4", tmp_path / "idle.mp4", 4.7)
+    ended = osg_studio("recognize", f"{clip}@2.5-4.5", "--language", LANGUAGE, "--json")
     assert ended.code == 1
     (take,) = json.loads(ended.out)["takes"]
     assert take["label"] is None

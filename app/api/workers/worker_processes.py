@@ -65,6 +65,10 @@ _BROKEN_OFF = Failed(
 )
 
 
+PROBES = 2
+"""Processes that may die while they probe a file until it is refused."""
+
+
 def _hold_nothing(_files: Collection[Path]) -> AbstractContextManager[None]:
     return nullcontext()
 
@@ -102,21 +106,26 @@ class Workers:
         await self._executor.close()
 
     async def probe(self, source: ClipSource, file: Path, options: ReadOptions) -> Probed | Failed:
-        """Probe a received file; see `ClipSource.probe`."""
+        """Probe a received file; see `ClipSource.probe`.
+
+        A process that dies without an outcome may have been killed from outside, for example for
+        lack of memory: the file is refused only if it happens twice.
+        """
         command = ["probe", source.name, str(file)]
-        # On this machine: the sender waits for the result, and the file may be only here.
-        messages = self._run(
-            command,
-            file.parent,
-            source.probe_seconds,
-            TaskFiles((file,), ()),
-            options,
-            executor=self._here,
-        )
-        async with self._short, aclosing(messages):
-            async for message in messages:
-                if isinstance(message, Probed | Failed):
-                    return message
+        for _ in range(PROBES):
+            # On this machine: the sender waits for the result, and the file may be only here.
+            messages = self._run(
+                command,
+                file.parent,
+                source.probe_seconds,
+                TaskFiles((file,), ()),
+                options,
+                executor=self._here,
+            )
+            async with self._short, aclosing(messages):
+                async for message in messages:
+                    if isinstance(message, Probed | Failed):
+                        return message
         return _failure(source.broken_off)
 
     async def record(

@@ -151,6 +151,17 @@ def test_a_kill_between_file_and_row_loses_no_acknowledged_part(tmp_path: Path) 
         assert list((data / "uploads").iterdir()) == []
 
 
+@pytest.mark.withstands(row="H31")
+def test_a_killed_probe_is_repeated_before_an_upload_is_refused(tmp_path: Path) -> None:
+    content = write_clip(tmp_path / "clip.mp4").read_bytes()
+    with served(tmp_path / "data") as (process, client), ThreadPoolExecutor(1) as other:
+        place = begun(client, len(content))
+        waiting = other.submit(sent, client, place, 0, content)
+        os.kill(hold_worker(process.pid), signal.SIGKILL)
+        clip = waiting.result().headers["content-location"]
+        assert client.get(f"{clip}/video").content == content
+
+
 def test_a_folder_in_use_or_damaged_ends_the_start_in_one_line(tmp_path: Path) -> None:
     data = tmp_path / "data"
     command = [sys.executable, "-c", SERVE, str(data)]
