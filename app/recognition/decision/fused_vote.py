@@ -34,6 +34,7 @@ from app.recognition.decision.rejection import MOST_REFUSED, NOVELTIES, choose_l
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.virtual_views import View, Views
+from app.recognition.features.motion import SIZE
 from app.recognition.features.trajectory_image import is_drawable
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
@@ -151,6 +152,9 @@ class FusedVote:
         owners = self._owners[self._motions.gestures]
         rows = self._motions.as_shown[: len(scores)]
         by_others = (owners[rows][:, None] == owners) & (divers[rows][:, None] != divers)
+        every, sizes = np.arange(len(owners)), self._motions.descriptors[SIZE]
+        smaller = [self._motions.measure_smallness(sizes[row], every) for row in rows.tolist()]
+        scores = scores * np.array(smaller).reshape(scores.shape)
         nearest = np.where(by_others, scores, np.inf).min(axis=1, initial=np.inf)
         return np.asarray(nearest[np.isfinite(nearest)])
 
@@ -314,6 +318,9 @@ class FusedVote:
         voters, compared = VOTER_NAMES, scores + turned
         novelty = np.full((len(NOVELTIES), len(rows)), np.nan)
         novelty[0] = compared / self._limit
+        if moved.any():
+            size = describe_movement(trajectory, self._motions.landmarks)[SIZE]
+            novelty[0, moved] *= self._motions.measure_smallness(size, rows[moved])
         if self._moving_shapes.any_counts:
             voters = _ALL_NAMES
             hands = self._compare_moving_hands(trajectory, rows, compared)

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from app.recognition.decision.fusion import fuse
 from app.recognition.features.motion import (
     SHARES,
+    SIZE,
     Movement,
     build_movement,
     find_followed_landmarks,
@@ -73,6 +74,11 @@ _OTHERS = {
 }
 
 _TEMPO = [voter.name for voter in MOTION_VOTERS].index(Tempo.name)
+
+SMALLER = 0.8
+"""Doublings by which a take may be smaller than its gesture at no cost: other people's right takes
+differ by half a doubling at most, what people do between gestures is often smaller
+(`benchmarks/studies/people.md`)."""
 
 LEAST_SHARED = 0.05
 """Least cosine between the shares of two movements, so that none is infinitely far."""
@@ -171,7 +177,7 @@ class MotionReferences:
     traversals
         The traversal of each row.
     descriptors
-        By voter's name, ``(R, ...)``, and the `SHARES`.
+        By voter's name, ``(R, ...)``, and the `SHARES` and `SIZE`.
 
     """
 
@@ -208,7 +214,7 @@ class MotionReferences:
                 name: np.concatenate(
                     [each.descriptors[name] for each in described.values()] or [np.empty(0)]
                 )
-                for name in (*(voter.name for voter in MOTION_VOTERS), SHARES)
+                for name in (*(voter.name for voter in MOTION_VOTERS), SHARES, SIZE)
             },
         )
 
@@ -276,6 +282,24 @@ class MotionReferences:
         shown = self.descriptors[SHARES]
         alike = np.einsum("mij,ij->mi", shown if rows is None else shown[rows], shares)
         return np.asarray(1.0 / np.sqrt(np.maximum(alike, LEAST_SHARED).prod(axis=1)))
+
+    def measure_smallness(self, size: FloatArray, rows: npt.NDArray[np.intp]) -> FloatArray:
+        """Compute the factors on novelties of a movement for how much smaller it is.
+
+        Parameters
+        ----------
+        size
+            ``(2,)``: `Movement.size` of the movement.
+        rows
+            Indices of M of the rows.
+
+        Returns
+        -------
+        ``(M,)`` >= 1; 1 where either size is not known.
+
+        """
+        smaller = np.nan_to_num(self.descriptors[SIZE][rows] - size)
+        return np.asarray(1 + 2 * np.maximum(smaller - SMALLER, 0.0).sum(axis=1))
 
     @property
     def sees_arms(self) -> bool:
@@ -427,7 +451,10 @@ def _describe_traversals(
         voter.name: np.array([voter.describe(each) for each in movements])
         for voter in MOTION_VOTERS
     }
-    return described | {SHARES: np.array([each.shares for each in movements])}
+    return described | {
+        SHARES: np.array([each.shares for each in movements]),
+        SIZE: np.array([each.size for each in movements]),
+    }
 
 
 def _describe_turned(
@@ -478,7 +505,7 @@ def describe_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> dict[
     def compute() -> dict[str, FloatArray]:
         seen = build_movement(trajectory, landmarks)
         described = {voter.name: voter.describe(seen) for voter in MOTION_VOTERS}
-        return described | {SHARES: seen.shares}
+        return described | {SHARES: seen.shares, SIZE: seen.size}
 
     return trajectory.compute_once(("movement", tuple(landmarks)), compute)
 

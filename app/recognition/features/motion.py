@@ -65,8 +65,8 @@ Recordings begin and end with hanging arms for any length of time, and with a pa
 and to them. A share of the path needs no speed of rest; shares from 0.02 to 0.07 give the same
 accuracy (`benchmarks/studies/people.md`)."""
 
-SHARES = "shares"
-"""Name of `Movement.shares` among a movement's descriptors."""
+SHARES, SIZE = "shares", "size"
+"""Names of `Movement.shares` and `Movement.size` among a movement's descriptors."""
 
 LEAST_MOVING = 8
 """Least moments that are kept; a movement of fewer is not cut."""
@@ -124,6 +124,20 @@ class Movement:
         flat = np.nan_to_num(self.places).reshape(len(self.places), -1)
         moved = np.stack([np.abs(np.diff(flat, axis=0)).sum(axis=0), np.ptp(flat, axis=0)])
         return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=1, keepdims=True), 1e-9))
+
+    @cached_property
+    def size(self) -> FloatArray:
+        """``(2,)``: logarithms to base 2 of the path's length and extent, torso lengths.
+
+        NaN where no torso is seen.
+        """
+        if not self.relative_to_body:
+            return np.full(2, np.nan)
+        flat = np.nan_to_num(self.places).reshape(len(self.places), -1)
+        steps = np.diff(flat, axis=0)
+        length = float(np.sqrt(np.vecdot(steps, steps)).sum())
+        extent = float(np.linalg.norm(np.ptp(flat, axis=0)))
+        return np.log2(np.maximum([length, extent], 1e-3))
 
     @property
     def duration(self) -> float:

@@ -61,9 +61,20 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
 
 def test_novelty_is_the_score_over_one_limit_for_all_gestures(recognizer: Recognizer) -> None:
     result = recognizer.recognize(recording(zigzag, jitter=0.01))
+    # A take as large as its gesture has no further factor.
     np.testing.assert_allclose(result.novelty, result.scores / limit_of(recognizer))
     np.testing.assert_array_equal(result.novelty, result.novelty_by_view["movement"])
     assert np.isnan(result.novelty_by_view["hand"]).all()
+
+
+def test_a_take_much_smaller_than_its_gesture_is_more_novel(recognizer: Recognizer) -> None:
+    def sized(scale: float) -> float:
+        poses = recording(lambda share: scale * circle(share), jitter=0.002)
+        result = recognizer.recognize(poses)
+        return float(result.novelty[0] / result.scores[0]) * limit_of(recognizer)
+
+    assert [sized(scale) for scale in (1.0, 0.8, 2.0)] == pytest.approx([1.0] * 3)
+    assert sized(0.4) > 1.5
 
 
 def test_one_person_leaves_a_cautious_limit_larger_where_elbows_are_seen() -> None:

@@ -32,6 +32,16 @@ def test_steps_are_equally_long_and_reached_in_time() -> None:
     assert seen.duration == pytest.approx((1 - 2 * RESTING_SHARE) * 59 / 30, abs=2 / 30)
 
 
+def test_the_size_is_in_doublings_of_the_torso_and_unknown_without_one() -> None:
+    whole = recording(circle)
+    half = recording(lambda share: 0.5 * circle(share))
+    large, small = (
+        build_movement(Trajectory.from_poses(each), WRIST).size for each in (whole, half)
+    )
+    np.testing.assert_allclose(large - small, 1.0, atol=0.05)
+    assert np.isnan(build_movement(Trajectory.from_poses(whole.select(WRIST)), WRIST).size).all()
+
+
 def test_jitter_is_smoothed() -> None:
     calm = build_movement(Trajectory.from_poses(recording(circle)), WRIST)
     shaky = build_movement(Trajectory.from_poses(recording(circle, jitter=0.03)), WRIST)
