@@ -10,6 +10,7 @@ from app.recognition.health.report import (
     MOST_MISSED,
     GestureHealth,
     HealthReport,
+    LimitHealth,
 )
 from app.recognition.simulation.rate_estimate import RateEstimate
 
@@ -25,6 +26,7 @@ def format_report(report: HealthReport) -> str:
     lines = [
         *_format_head(report),
         *_format_trigger(report),
+        *_format_limit(report.limit),
         *_format_gestures(report),
         *_format_pairs(report),
         *_format_findings(report),
@@ -52,6 +54,23 @@ def _format_trigger(report: HealthReport) -> Iterator[str]:
             f"trigger: missed of {format_rate(trigger.missed)} of other people, set off "
             f"{trigger.false_per_hour:.0f} times in an hour of moving arms"
         )
+
+
+def _format_limit(limit: LimitHealth | None) -> Iterator[str]:
+    if limit is None:
+        return
+    if limit.people == 1:
+        yield "limit: a cautious constant, because one person has shown this language"
+        return
+    dial = f"dial {100 * limit.most_refused:.3g}%" if limit.measured else "a cautious constant"
+    costs = [
+        "-" if rate is None else f"{rate.rate:.0%} ({rate.low:.0%}-{rate.high:.0%}, n {count})"
+        for rate, count in zip((limit.refused, limit.accepted), limit.takes, strict=True)
+    ]
+    yield (
+        f"limit of {limit.people} people, {dial}: refuses {costs[0]} of right takes, "
+        f"accepts {costs[1]} of missing gestures"
+    )
 
 
 def _format_gestures(report: HealthReport) -> Iterator[str]:

@@ -12,7 +12,7 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio
 from tests.posed import posed_language
-from tests.recognition.demonstrations import pool
+from tests.recognition.demonstrations import pool, shown_by
 from tests.recognition.strategies import circle, line
 
 
@@ -96,3 +96,12 @@ def test_the_rates_of_an_arm_trigger_are_told_above_the_gestures() -> None:
     assert "takes lie between two poses of the arms (left hand before the body)" in lines
     (rates,) = (line for line in lines if line.startswith("trigger: missed of 0.0% (0.0%-"))
     assert len(rates) <= 100
+
+
+def test_the_limit_is_one_line_with_both_costs_or_says_that_one_person_has_shown_it() -> None:
+    lines = format_report(check_health(shown_by(("Ann", "Bo", "Cy")), takes=2)).splitlines()
+    (costs,) = (line for line in lines if line.startswith("limit"))
+    assert costs.startswith("limit of 3 people, dial 5%: refuses 8% (1%-35%, n 12) of right takes")
+    assert costs.endswith("accepts 0% (0%-24%, n 12) of missing gestures")
+    alone = format_report(check_health(pool(circle=circle), takes=2)).splitlines()
+    assert "limit: a cautious constant, because one person has shown this language" in alone

@@ -1,5 +1,6 @@
 """Languages of a simulated diver, with known health."""
 
+from collections.abc import Mapping
 from functools import cache
 
 from app.recognition import Gesture, Language, Recognizer
@@ -17,6 +18,25 @@ def shown(label: str, shape: Shape, *, frames: int = 45) -> Gesture:
 def pool(**shapes: Shape) -> Language:
     """Return a language of these gestures."""
     return Language("pool", [shown(label, shape) for label, shape in shapes.items()])
+
+
+TAUGHT = {name: SHAPES[name] for name in ("circle", "wedge", "infinity", "square")}
+"""The gestures of `shown_by`."""
+
+
+def shown_by(divers: tuple[str, ...], shapes: Mapping[str, Shape] = TAUGHT) -> Language:
+    """Return a language of which each diver has shown every gesture once, in another size."""
+    gestures = []
+    for name, shape in shapes.items():
+        takes = [
+            recording(shape, frames=70 + 9 * at, torso=80 - 6 * at, jitter=0.01 * at)
+            for at in range(len(divers))
+        ]
+        gesture = Gesture.from_demonstration(name, takes[0], diver=divers[0])
+        for take, diver in zip(takes[1:], divers[1:], strict=True):
+            gesture = gesture.with_demonstration(take, diver)
+        gestures.append(gesture)
+    return Language("pool", gestures)
 
 
 @cache

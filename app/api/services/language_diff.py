@@ -82,6 +82,9 @@ def describe_changes(older: Language, newer: Language) -> list[str]:
     ]
     if older.tuning != newer.tuning:
         words.append(f"was recognised {older.tuning.words}, is {newer.tuning.words}")
+    if older.most_refused != newer.most_refused:
+        shares = [f"{100 * each.most_refused:.3g} %" for each in (older, newer)]
+        words.append(f"at most {shares[0]} of right takes were refused, at most {shares[1]} are")
     if older.trigger != newer.trigger:
         words.append(f"takes were found {older.trigger.words}, are {newer.trigger.words}")
     shared = [label for label in newer.labels if label in older.labels]

@@ -67,6 +67,7 @@ def answer(studio: Studio, state: LanguageState, response: Response) -> Language
         profile=language.profile,
         tuning=tuning_to_entry(language.tuning),
         tuning_words=language.tuning.words,
+        most_refused=language.most_refused,
         trigger=trigger_to_entry(language.trigger),
         trigger_words=language.trigger.words,
     )

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from app import __version__
 from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas.test_sets import (
     GestureRateView,
@@ -135,6 +136,7 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
         worse=[
             take.id for take, now, before in compared if _worth(take, now) < _worth(take, before)
         ],
+        upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
         waiting=sum(
             take.result is None or take.result.revision != state.revision.revision for take in takes
         ),
@@ -163,7 +165,7 @@ def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: Recog
             end=found.end,
             profile=studio.language(state).profile,
             expected=take.expected,
-            result=json.dumps(answer, allow_nan=False),
+            result=json.dumps(answer | {"version": __version__}, allow_nan=False),
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
@@ -194,6 +196,23 @@ def _ranges(
 def _worth(take: LabelledTakeView, result: LabelledResultView) -> int:
     """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer."""
     return 2 * result.right or int(take.expected in (result.pair or ()))
+
+
+def _were_upgraded(
+    studio: Studio, compared: Sequence[tuple[LabelledResultView, LabelledResultView]]
+) -> bool:
+    """Return whether another version of the program gave the oldest results before."""
+    pairs = [pair for pair in compared if all(each.recognition_id for each in pair)]
+    if not pairs:
+        return False
+    try:
+        versions = {
+            json.loads(studio.recognitions.get(each.recognition_id or "").result).get("version")
+            for each in min(pairs, key=lambda pair: pair[0].revision)
+        }
+    except NotFound:
+        return False
+    return len(versions) > 1  # Versions up to 0.2.0 stored none.
 
 
 def _rate(counted: Sequence[tuple[LabelledTakeView, LabelledResultView]]) -> dict[str, Any]:

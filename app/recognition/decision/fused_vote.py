@@ -30,7 +30,13 @@ from app.recognition.decision.motion_references import (
 )
 from app.recognition.decision.moving_shapes import WEIGHT, MovingShapes, weigh_shapes
 from app.recognition.decision.references import References
-from app.recognition.decision.rejection import MOST_REFUSED, NOVELTIES, choose_limit, is_rejected
+from app.recognition.decision.rejection import (
+    MOST_REFUSED,
+    NOVELTIES,
+    OthersScores,
+    choose_limit,
+    is_rejected,
+)
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.virtual_views import View, Views
@@ -93,7 +99,8 @@ class FusedVote:
         self._tempo = np.array([gesture.switches.tempo == "on" for gesture in sides])
         # Weight factors must not change which directions and tempos the language needs.
         self._weights, self._between = self._weigh()
-        self._limit = self._calibrate(sides, refused)
+        self._others = self._calibrate(sides)
+        self._limit = self._choose_limit(refused)
         factors = tuning.weights_of(VOTER_NAMES)
         weighed: FloatArray = self._weights * factors
         # Voters that have no weight in this language decide where the author leaves no others.
@@ -110,8 +117,8 @@ class FusedVote:
         known = [row[np.isfinite(row)] for row in pairs]
         return weigh_voters(MOTION_VOTERS, known, arms=self._motions.sees_arms)
 
-    def _calibrate(self, sides: Sequence[Gesture], refused: float) -> float:
-        """Find which directions and tempos the language needs, and return its limit."""
+    def _calibrate(self, sides: Sequence[Gesture]) -> OthersScores:
+        """Find which directions and tempos the language needs, and return what sets its limit."""
         scores = fuse(self._motions.own_distances, self._weights, self._between)
         scores *= self._motions.own_corrections
         kept = np.arange(len(self._motions))
@@ -125,9 +132,12 @@ class FusedVote:
             ]
             kept = find_unambiguous_traversals(self._motions, scores, self._owners, free)
             self._motions = self._motions.take(kept)
-        others = self._measure_others(scores[:, kept] * self._motions.penalties, sides)
+        return self._measure_others(scores[:, kept] * self._motions.penalties, sides)
+
+    def _choose_limit(self, refused: float) -> float:
+        """Return the limit at a share of right takes that may be rejected."""
         alike = max(1.0, Velocity.between / float(self._between[VOTER_NAMES.index(Velocity.name)]))
-        return choose_limit(others, refused, arms=self._motions.sees_arms, alike=alike)
+        return choose_limit(self._others, refused, arms=self._motions.sees_arms, alike=alike)
 
     def _spread(self, scores: FloatArray) -> FloatArray:
         """Return the scores of the references' movements as shown, ``(S, S)``; infinite if none."""
@@ -137,8 +147,8 @@ class FusedVote:
         spread[np.ix_(members, members)] = scores[:, rows]
         return spread
 
-    def _measure_others(self, scores: FloatArray, sides: Sequence[Gesture]) -> FloatArray:
-        """Return the scores of demonstrations for their gestures as other people show them.
+    def _measure_others(self, scores: FloatArray, sides: Sequence[Gesture]) -> OthersScores:
+        """Return the scores of demonstrations among those of other people.
 
         Parameters
         ----------
@@ -148,15 +158,15 @@ class FusedVote:
             The references. Those whose diver is not named count as by one person.
 
         """
-        divers = np.array([each.diver for each in sides])[self._motions.gestures]
-        owners = self._owners[self._motions.gestures]
         rows = self._motions.as_shown[: len(scores)]
-        by_others = (owners[rows][:, None] == owners) & (divers[rows][:, None] != divers)
-        every, sizes = np.arange(len(owners)), self._motions.descriptors[SIZE]
+        # A mirror image stands for its demonstration, and is no take by itself.
+        taken = np.flatnonzero(~self._shown.mirrored[self._motions.gestures[rows]])
+        every, sizes = np.arange(len(self._motions)), self._motions.descriptors[SIZE]
         smaller = [self._motions.measure_smallness(sizes[row], every) for row in rows.tolist()]
         scores = scores * np.array(smaller).reshape(scores.shape)
-        nearest = np.where(by_others, scores, np.inf).min(axis=1, initial=np.inf)
-        return np.asarray(nearest[np.isfinite(nearest)])
+        divers = np.array([each.diver for each in sides], dtype=np.str_)[self._motions.gestures]
+        owners = self._owners[self._motions.gestures]
+        return OthersScores.of(scores[taken], rows[taken], owners, divers)
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
@@ -221,6 +231,11 @@ class FusedVote:
     def limit(self) -> float:
         """The score beyond which a movement is rejected (`rejection`)."""
         return self._limit
+
+    @property
+    def others(self) -> OthersScores:
+        """The demonstrations' scores among those of other people, before weight factors."""
+        return self._others
 
     @property
     def references(self) -> MotionReferences:

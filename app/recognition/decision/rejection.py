@@ -11,9 +11,11 @@ limit of their own (`hand_references`).
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.poses.sequence import FloatArray
 
@@ -44,13 +46,71 @@ SCORE_FLOOR: Final = 0.02
 person."""
 
 
-def choose_limit(others: FloatArray, refused: float, *, arms: bool, alike: float = 1.0) -> float:
+@dataclass(frozen=True, eq=False)
+class OthersScores:
+    """Scores of a language's demonstrations among those of other people.
+
+    Attributes
+    ----------
+    people
+        Number of people who have shown movements; those who are not named count as one.
+    right
+        ``(N,)``: of each demonstration for its own gesture as other people have shown it; only of
+        those whose gesture others have shown.
+    foreign
+        ``(M,)``: of each demonstration the least score for the other gestures as other people have
+        shown them: how near a gesture is that the language lacks.
+
+    """
+
+    people: int = 0
+    right: FloatArray = field(default_factory=lambda: np.empty(0))
+    foreign: FloatArray = field(default_factory=lambda: np.empty(0))
+
+    @classmethod
+    def of(
+        cls,
+        scores: FloatArray,
+        taken: npt.NDArray[np.intp],
+        owners: npt.NDArray[np.intp],
+        divers: npt.NDArray[np.str_],
+    ) -> OthersScores:
+        """Find them in the scores of the demonstrations.
+
+        Parameters
+        ----------
+        scores
+            ``(N, R)``: of N demonstrations for R references; infinite where not comparable.
+        taken
+            ``(N,)``: the reference of each demonstration.
+        owners, divers
+            ``(R,)``: each reference's gesture, and who has shown it.
+
+        """
+        people = len(np.unique(divers))
+        if people < 2:
+            return cls(people)
+        by_others = divers[taken][:, None] != divers
+        same = owners[taken][:, None] == owners
+        right, foreign = (
+            np.where(by_others & which, scores, np.inf).min(axis=1, initial=np.inf)
+            for which in (same, ~same)
+        )
+        return cls(people, right[np.isfinite(right)], foreign[np.isfinite(foreign)])
+
+    @property
+    def suffice(self) -> bool:
+        """Whether they are enough to measure the limit."""
+        return len(self.right) >= FEWEST
+
+
+def choose_limit(others: OthersScores, refused: float, *, arms: bool, alike: float = 1.0) -> float:
     """Choose the limit of a language.
 
     Parameters
     ----------
     others
-        ``(N,)`` scores of demonstrations, each for its own gesture as other people have shown it.
+        Scores of the demonstrations among those of other people.
     refused
         Share of right takes that may be rejected.
     arms
@@ -60,8 +120,8 @@ def choose_limit(others: FloatArray, refused: float, *, arms: bool, alike: float
         do not differ less for that.
 
     """
-    if len(others) >= FEWEST:
-        return min(MOST, float(np.quantile(others, 1.0 - refused)))
+    if others.suffice:
+        return min(MOST, float(np.quantile(others.right, 1.0 - refused)))
     return alike * (LIMIT_OF_ARMS if arms else LIMIT_OF_HANDS)
 
 

@@ -30,6 +30,7 @@ from app.recognition.health.report import (
     GestureHealth,
     HealthReport,
     LandmarkHealth,
+    LimitHealth,
     PairHealth,
 )
 from app.recognition.health.second_divers import advise_second_divers
@@ -178,6 +179,7 @@ def check_health(
         places=embed_gestures(_estimate_far_distances(recognizer, distances)),
         neighbours=None if compared + 1 == len(gestures) else compared,
         trigger=trigger,
+        limit=LimitHealth.measure(recognizer),
     )
 
 
@@ -196,10 +198,10 @@ def _count_steps(progress: Progress, stage: str, total: int) -> Callable[[], Non
 def _demonstrated_distances(recognizer: Recognizer, neighbours: npt.NDArray[np.intp]) -> FloatArray:
     """Compute the distances of demonstrations to gestures: ``(G, G)``; infinite where unknown."""
     gestures, vote = recognizer.language.gestures, recognizer.vote
-    assert isinstance(vote, FusedVote)  # profile `full`
     distances = np.full((len(gestures), len(gestures)), np.inf)
     for index, (gesture, near) in enumerate(zip(gestures, neighbours, strict=True)):
         if gesture.trajectory is not None:
+            assert isinstance(vote, FusedVote)  # profile `full`
             among = vote if len(near) == len(gestures) else vote.among(near)
             distances[index, near] = among.compare(condense(gesture.trajectory)).scores
     return distances

@@ -50,8 +50,9 @@ def find_neighbours(recognizer: Recognizer) -> npt.NDArray[np.intp]:
 def measure_step_distances(recognizer: Recognizer) -> FloatArray:
     """Return the distances of the gestures' velocities, ``(G, G)``; infinite without any."""
     vote = recognizer.vote
-    assert isinstance(vote, FusedVote)  # profile `full`
     count = len(recognizer.language.gestures)
+    if not isinstance(vote, FusedVote):  # A language of pictures alone.
+        return np.full((count, count), np.inf)
     references, rows = vote.references, vote.references.as_shown
     # References beyond the language's gestures are further demonstrations and mirror images.
     rows = rows[references.gestures[rows] < count]

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.health.finding import Finding
 from app.recognition.health.remedy import is_worse
 from app.recognition.health.trigger_health import TriggerHealth
 from app.recognition.health.viewing_angles import AngleHealth
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.recognizer import Recognizer
 from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
 from app.recognition.simulation.variation import Person
 
@@ -140,6 +142,74 @@ class PairHealth:
         }
 
 
+@dataclass(frozen=True)
+class LimitHealth:
+    """The limit of a language and its two costs, measured by its own demonstrations.
+
+    Attributes
+    ----------
+    people
+        Number of people who have shown movements; those who are not named count as one.
+    most_refused
+        The dial: share of right takes that may be rejected.
+    limit
+        Score beyond which a movement is rejected.
+    measured
+        Whether the limit follows from the dial; otherwise it is a cautious constant.
+    refused
+        Rate of demonstrations that the other people's demonstrations of their gesture reject; None
+        where no gesture is shown by two people.
+    accepted
+        Rate of demonstrations that the other people's demonstrations of the other gestures accept:
+        of takes of a gesture that the language lacks. None where there are no such demonstrations.
+    takes
+        Numbers of demonstrations behind `refused` and `accepted`.
+
+    """
+
+    people: int
+    most_refused: float
+    limit: float
+    measured: bool
+    refused: RateEstimate | None
+    accepted: RateEstimate | None
+    takes: tuple[int, int]
+
+    @classmethod
+    def measure(cls, recognizer: Recognizer) -> LimitHealth | None:
+        """Measure the costs of a language's limit; None in a language without movements."""
+        vote = recognizer.vote
+        if not isinstance(vote, FusedVote) or not vote.others.people:
+            return None
+        others, limit = vote.others, vote.limit
+        takes = len(others.right), len(others.foreign)
+        refused, accepted = int((others.right > limit).sum()), int((others.foreign <= limit).sum())
+        return cls(
+            people=others.people,
+            most_refused=recognizer.language.most_refused,
+            limit=limit,
+            measured=others.suffice,
+            refused=RateEstimate.of_count(refused, takes[0]) if takes[0] else None,
+            accepted=RateEstimate.of_count(accepted, takes[1]) if takes[1] else None,
+            takes=takes,
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        refused, accepted = (
+            rate and {**rate.to_dict(), "n": count}
+            for rate, count in zip((self.refused, self.accepted), self.takes, strict=True)
+        )
+        return {
+            "people": self.people,
+            "most_refused": self.most_refused,
+            "limit": round(self.limit, DIGITS),
+            "measured": self.measured,
+            "refused": refused,
+            "accepted": accepted,
+        }
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HealthReport:
     """The result of a check.
@@ -164,6 +234,8 @@ class HealthReport:
         Number of nearest gestures that each one is compared with; None: with all of them.
     trigger
         Rates of the trigger where that is a pose of the arms or a gesture.
+    limit
+        The limit and its costs; None in a language without movements.
 
     """
 
@@ -177,6 +249,7 @@ class HealthReport:
     places: FloatArray
     neighbours: int | None = None
     trigger: TriggerHealth | None = None
+    limit: LimitHealth | None = None
 
     @property
     def ok(self) -> bool:
@@ -196,6 +269,7 @@ class HealthReport:
             "ok": self.ok,
             "neighbours": self.neighbours,
             "trigger": self.trigger and self.trigger.to_dict(),
+            "limit": self.limit and self.limit.to_dict(),
             "gestures": [gesture.to_dict() for gesture in self.gestures],
             "pairs": [pair.to_dict() for pair in self.pairs],
             "warnings": [finding.to_dict() for finding in self.findings],

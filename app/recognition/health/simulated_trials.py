@@ -157,7 +157,6 @@ def simulate_trials(
 
     """
     language, vote = recognizer.language, recognizer.vote
-    assert isinstance(vote, FusedVote)  # profile `full`
     performed = [
         index
         for index in (range(len(language.gestures)) if gestures is None else gestures)
@@ -168,6 +167,7 @@ def simulate_trials(
     scores = np.full((len(performed), count, rivals.shape[1]), np.inf)
     novelty = np.full((len(performed), count), np.nan)
     for row, index in enumerate(performed):
+        assert isinstance(vote, FusedVote)  # profile `full`
         among = vote if rivals.shape[1] == len(every) else vote.among(rivals[row])
         own = int(np.searchsorted(rivals[row], index))
         demonstrations = language.gestures[index].trajectories

@@ -993,6 +993,11 @@ export interface components {
             profile?: ("paper" | "full") | null;
             /** @description What differs from the profile; null: nothing */
             tuning?: components["schemas"]["TuningEntry"] | null;
+            /**
+             * Most Refused
+             * @description Share of right takes that may be refused, where several people have shown the gestures
+             */
+            most_refused?: number | null;
         };
         /**
          * LanguageDraft
@@ -1113,6 +1118,11 @@ export interface components {
              * @description The same for people: recognised ...
              */
             tuning_words: string;
+            /**
+             * Most Refused
+             * @description Share of right takes that may be refused; the limit follows from it where several people have shown the gestures
+             */
+            most_refused: number;
             /** @description What begins and ends a take; null: a salute */
             trigger: components["schemas"]["TriggerEntry"] | null;
             /**
@@ -2131,6 +2141,11 @@ export interface components {
              * @description Ids of takes that are answered worse than before: right is better than a pair with the right gesture, which is better than anything else
              */
             worse: string[];
+            /**
+             * Upgraded
+             * @description Whether the results before are of another version of the program, which may answer otherwise too
+             */
+            upgraded: boolean;
             /**
              * Waiting
              * @description Takes without a result of the newest revision

@@ -236,6 +236,19 @@ export interface HealthReport {
   bar: { missed: number; confusion: number };
   /** Rates of the trigger; null unless it is a pose of the arms. */
   trigger: TriggerEstimate | null;
+  /** The limit and its costs; null in a language without movements. */
+  limit: LimitCosts | null;
+}
+
+/** The limit of a language, with its two costs; null where one person has shown the gestures. */
+export interface LimitCosts {
+  people: number;
+  most_refused: number;
+  limit: number;
+  /** Whether the limit follows from `most_refused`; otherwise it is a cautious constant. */
+  measured: boolean;
+  refused: (Rate & { n: number }) | null;
+  accepted: (Rate & { n: number }) | null;
 }
 
 export interface TriggerEstimate {

@@ -235,7 +235,7 @@ function runControl({ waiting }) {
  * @param {TestedTake[]} takes
  */
 function summary(testSet, takes) {
-  const { overall, waiting } = testSet;
+  const { overall, waiting, upgraded } = testSet;
   const change = changeWords(testSet);
   return h(
     "div",
@@ -250,6 +250,7 @@ function summary(testSet, takes) {
           ]
         : "Nothing is recognised yet",
       change ? `; since the revision before: ${change}` : null,
+      upgraded ? ". The program was upgraded in between, which may change answers too" : null,
       waiting
         ? h("span", { className: "dim" }, `, ${plural(waiting, "take")} not by the newest revision`)
         : null,

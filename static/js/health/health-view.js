@@ -8,6 +8,7 @@ import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { batchSection } from "./clip-test-section.js";
 import { confusionGrid } from "./confusion-grid.js";
+import { dialSection } from "./dial.js";
 import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { estimateTable } from "./gesture-estimates.js";
@@ -329,6 +330,7 @@ function overview() {
     ),
     bar,
     body,
+    dialSection(),
     batchSection(),
   );
 }

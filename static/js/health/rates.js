@@ -1,6 +1,6 @@
 // Estimated rates as text.
 
-/** @import { Rate } from "../core/types.d.ts" */
+/** @import { LimitCosts, Rate } from "../core/types.d.ts" */
 
 /**
  * An estimated rate in per cent, rounded half to even, as in the texts of the findings. A rate
@@ -31,4 +31,23 @@ export const intervalText = ({ low, high }) =>
 export function rateText(estimate) {
   const interval = intervalText(estimate);
   return `${percent(estimate.rate)} %${interval && ` (${interval})`}`;
+}
+
+/**
+ * What the limit of a language costs, a sentence each.
+ *
+ * @param {LimitCosts} limit
+ */
+export function costWords({ people, measured, refused, accepted }) {
+  if (people < 2)
+    return [
+      "One person has shown this language. The limit is a cautious constant: ask two more people.",
+    ];
+  return [
+    measured ? "" : "Too few gestures are shown by two people: the limit is a cautious constant.",
+    refused ? `Of ${refused.n} right takes by other people, ${rateText(refused)} are refused.` : "",
+    accepted
+      ? `Of ${accepted.n} takes of missing gestures, ${rateText(accepted)} are accepted.`
+      : "",
+  ].filter(Boolean);
 }

@@ -87,3 +87,10 @@ def test_how_it_is_recognised_is_compared_in_words(circle: Gesture) -> None:
         "profile was “full”, is “paper”",
         "was recognised as the profile does, is without the voter hu",
     ]
+
+
+def test_another_share_of_refused_takes_is_said(circle: Gesture) -> None:
+    language = Language("pool", [circle])
+    assert describe_changes(language, replace(language, most_refused=0.1)) == [
+        "at most 5 % of right takes were refused, at most 10 % are"
+    ]

@@ -16,6 +16,7 @@ from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
+from tests.recognition.demonstrations import shown_by
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +129,43 @@ def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Libr
     expect(progress).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
     expect(cancelled).to_be_visible()
+
+
+def test_the_dial_is_turned_shows_both_costs_and_is_turned_back(
+    open_page: OpenPage, library: Library
+) -> None:
+    imported = library.client.post(
+        "/api/v1/languages/import?name=three", content=shown_by(("Ann", "Bo", "Cy")).to_json()
+    )
+    language = imported.json()["id"]
+    page = open_page({"view": "health", "language": language}, scene=False)
+    section = page.get_by_role("region", name="What is rejected")
+    dial = section.get_by_label("Right takes refused, at most")
+    expect(dial).to_have_value("0.05")
+    expect(section).to_contain_text("Of 12 right takes by other people, 8 % (1 to 35) are refused.")
+    expect(section).to_contain_text("Of 12 takes of missing gestures, 0 % (0 to 24) are accepted.")
+    assert faults(page) == []
+    dial.focus()
+    dial.select_option("0.2")
+    expect(section).to_contain_text("25 % (9 to 53) are refused")
+    expect(dial).to_be_focused()
+    newest = library.client.get(f"/api/v1/languages/{language}").json()
+    assert newest["change"] == "Refuse at most 20 % of right takes"
+    page.get_by_role("button", name="Undo", exact=True).click()
+    expect(page.get_by_text("Undone")).to_be_visible()
+    expect(dial).to_have_value("0.05")
+    expect(section).to_contain_text("8 % (1 to 35) are refused")
+
+
+def test_the_dial_of_one_persons_language_asks_for_two_more_people(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(health_of(library), scene=False)
+    section = page.get_by_role("region", name="What is rejected")
+    expect(section).to_contain_text(
+        "One person has shown this language. The limit is a cautious constant: ask two more people."
+    )
+    expect(section.get_by_label("Right takes refused, at most")).to_be_disabled()
 
 
 def test_a_language_without_gestures_says_what_to_do(open_page: OpenPage, library: Library) -> None:

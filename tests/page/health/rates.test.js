@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { percent, rateText } from "../../../static/js/health/rates.js";
+import { costWords, percent, rateText } from "../../../static/js/health/rates.js";
 
 test("a half is rounded to the even number, as in the findings' own words", () => {
   assert.deepEqual([0.005, 0.015, 0.025, 0.125, 0.135].map(percent), ["<1", "2", "2", "12", "14"]);
@@ -14,4 +14,36 @@ test("a rate above 0 is never written as 0", () => {
 test("an interval whose ends read the same is left out", () => {
   assert.equal(rateText({ rate: 0.001, low: 0.0005, high: 0.004 }), "<1 %");
   assert.equal(rateText({ rate: 0.2, low: 0.13, high: 0.26 }), "20 % (13 to 26)");
+});
+
+const LIMIT = {
+  people: 3,
+  most_refused: 0.05,
+  limit: 0.6,
+  measured: true,
+  refused: { n: 24, rate: 0.042, low: 0.01, high: 0.2 },
+  accepted: { n: 24, rate: 0.5, low: 0.31, high: 0.69 },
+};
+
+test("both costs of the limit are a sentence each, of at most fifteen words", () => {
+  const words = costWords(LIMIT);
+  assert.deepEqual(words, [
+    "Of 24 right takes by other people, 4 % (1 to 20) are refused.",
+    "Of 24 takes of missing gestures, 50 % (31 to 69) are accepted.",
+  ]);
+  for (const each of words) assert.ok(each.split(" ").length <= 15, each);
+});
+
+test("where one person has shown the gestures, the page asks for two more", () => {
+  const alone = { ...LIMIT, people: 1, measured: false, refused: null, accepted: null };
+  assert.deepEqual(costWords(alone), [
+    "One person has shown this language. The limit is a cautious constant: ask two more people.",
+  ]);
+});
+
+test("a limit that too few demonstrations measure is called a constant beside its costs", () => {
+  const [why, refused, ...more] = costWords({ ...LIMIT, measured: false, accepted: null });
+  assert.match(why, /cautious constant/);
+  assert.match(refused, /are refused/);
+  assert.deepEqual(more, []);
 });

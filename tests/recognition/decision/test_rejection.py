@@ -1,9 +1,14 @@
 """Rejection: what is no gesture of the language gets no label."""
 
+import itertools
 from dataclasses import replace
+from random import Random
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from app.recognition import Gesture, Language, LanguageError, Recognizer
 from app.recognition.decision.fused_vote import FusedVote
@@ -12,12 +17,13 @@ from app.recognition.decision.rejection import (
     LIMIT_OF_ARMS,
     LIMIT_OF_HANDS,
     MOST,
+    OthersScores,
     choose_limit,
 )
+from app.recognition.gestures.switches import Switches
 from app.recognition.poses.sequence import FloatArray
+from tests.recognition.demonstrations import TAUGHT, shown_by
 from tests.recognition.strategies import SHAPES, circle, recording
-
-TAUGHT = ("circle", "wedge", "infinity", "square")
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +84,7 @@ def test_a_take_much_smaller_than_its_gesture_is_more_novel(recognizer: Recogniz
 
 
 def test_one_person_leaves_a_cautious_limit_larger_where_elbows_are_seen() -> None:
-    few = np.full(FEWEST - 1, 0.2)
+    few = OthersScores(2, np.full(FEWEST - 1, 0.2))
     assert choose_limit(few, 0.05, arms=True) == LIMIT_OF_ARMS
     assert choose_limit(few, 0.05, arms=False) == LIMIT_OF_HANDS
 
@@ -86,27 +92,61 @@ def test_one_person_leaves_a_cautious_limit_larger_where_elbows_are_seen() -> No
 @pytest.mark.parametrize("refused", [0.02, 0.05, 0.1, 0.3])
 def test_with_several_people_the_limit_refuses_the_share_that_was_asked_for(refused: float) -> None:
     scores = np.random.default_rng(1).uniform(0.2, 0.9, 400)
-    limit = choose_limit(scores, refused, arms=True)
+    limit = choose_limit(OthersScores(2, scores), refused, arms=True)
     assert (scores > limit).mean() == pytest.approx(refused, abs=0.01)
 
 
 def test_no_limit_is_beyond_the_distance_of_two_gestures() -> None:
-    assert choose_limit(np.full(20, 3.0), 0.05, arms=True) == MOST
+    assert choose_limit(OthersScores(2, np.full(20, 3.0)), 0.05, arms=True) == MOST
 
 
-def shown_by(divers: tuple[str, ...]) -> Language:
-    """Return a language of which each diver has shown every gesture once, in another size."""
-    gestures = []
-    for name in TAUGHT:
-        takes = [
-            recording(SHAPES[name], frames=70 + 9 * at, torso=80 - 6 * at, jitter=0.01 * at)
-            for at in range(len(divers))
+@st.composite
+def scored(draw: st.DrawFn) -> tuple[FloatArray, list[int], list[str]]:
+    """Draw scores of demonstrations for each other, their gestures and who has shown them."""
+    count = draw(st.integers(1, 12))
+    score = st.floats(0.0, 3.0) | st.just(np.inf)
+    scores = draw(arrays(np.float64, (count, count), elements=score))
+    owners = draw(st.lists(st.integers(0, 3), min_size=count, max_size=count))
+    divers = draw(st.lists(st.sampled_from(["", "Ann", "Bo"]), min_size=count, max_size=count))
+    return scores, owners, divers
+
+
+def find(scores: FloatArray, owners: list[int], divers: list[str]) -> OthersScores:
+    return OthersScores.of(scores, np.arange(len(owners)), np.array(owners), np.array(divers))
+
+
+@given(scored())
+def test_a_demonstration_is_compared_with_those_of_other_people_only(
+    drawn: tuple[FloatArray, list[int], list[str]],
+) -> None:
+    scores, owners, divers = drawn
+    expected: dict[bool, list[float]] = {True: [], False: []}
+    for take, which in itertools.product(range(len(owners)), (True, False)):
+        by_others = [
+            scores[take, other]
+            for other in range(len(owners))
+            if divers[other] != divers[take] and (owners[other] == owners[take]) is which
         ]
-        gesture = Gesture.from_demonstration(name, takes[0], diver=divers[0])
-        for take, diver in zip(takes[1:], divers[1:], strict=True):
-            gesture = gesture.with_demonstration(take, diver)
-        gestures.append(gesture)
-    return Language("pool", gestures)
+        if np.isfinite(least := min(by_others, default=np.inf)):
+            expected[which].append(least)
+    found = find(scores, owners, divers)
+    assert found.people == len(set(divers))
+    assert found.right.tolist() == expected[True]
+    assert found.foreign.tolist() == expected[False]
+
+
+@given(scored(), st.randoms(use_true_random=False))
+def test_the_order_of_the_demonstrations_and_the_names_of_people_change_nothing(
+    drawn: tuple[FloatArray, list[int], list[str]], random: Random
+) -> None:
+    scores, owners, divers = drawn
+    order = [*range(len(owners))]
+    random.shuffle(order)
+    renamed = [{"": "Cy", "Ann": "", "Bo": "Ann"}[divers[index]] for index in order]
+    one = find(scores, owners, divers)
+    other = find(scores[np.ix_(order, order)], [owners[index] for index in order], renamed)
+    np.testing.assert_array_equal(np.sort(one.right), np.sort(other.right))
+    np.testing.assert_array_equal(np.sort(one.foreign), np.sort(other.foreign))
 
 
 def test_demonstrations_of_several_people_set_the_limit() -> None:
@@ -117,6 +157,16 @@ def test_demonstrations_of_several_people_set_the_limit() -> None:
         for share in (0.5, 0.01)
     )
     assert strict < limit_of(together) < lenient
+
+
+def test_mirror_images_are_no_demonstrations_of_their_own() -> None:
+    language = shown_by(("Ann", "Bo"))
+    images = [replace(each, switches=Switches(mirror="on")) for each in language.gestures]
+    mirrored = replace(language, gestures=images)
+    for each in (language, mirrored):
+        vote = Recognizer(each).vote
+        assert isinstance(vote, FusedVote)
+        assert len(vote.others.right) == len(vote.others.foreign) == 2 * len(TAUGHT)
 
 
 def test_one_persons_repetitions_do_not_set_the_limit() -> None:

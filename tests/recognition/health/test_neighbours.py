@@ -9,11 +9,16 @@ import pytest
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.health import check, neighbours
 from app.recognition.health.check import check_health
-from app.recognition.health.neighbours import MOST_TOGETHER, NEIGHBOURS, find_neighbours
+from app.recognition.health.neighbours import (
+    MOST_TOGETHER,
+    NEIGHBOURS,
+    find_neighbours,
+    measure_step_distances,
+)
 from app.recognition.health.simulated_trials import simulate_trials
 from app.recognition.poses.sequence import FloatArray
-from tests.recognition.demonstrations import shown
-from tests.recognition.strategies import Shape
+from tests.recognition.demonstrations import pool, shown
+from tests.recognition.strategies import Shape, circle
 
 
 def lissajous(across: int, down: int, phase: float) -> Shape:
@@ -112,3 +117,11 @@ def test_a_gesture_without_demonstration_is_no_rival_that_counts(large: Language
     assert trials.gestures.tolist() == [0]
     assert trials.performer(3) is None
     assert trials.performer(0) == 0
+
+
+def test_gestures_of_pictures_alone_are_infinitely_far() -> None:
+    (drawn,) = pool(circle=circle).gestures
+    pictures = [
+        Gesture(label=label, salient=drawn.salient, image=drawn.image) for label in ("one", "two")
+    ]
+    assert np.isinf(measure_step_distances(Recognizer(Language("pool", pictures), "full"))).all()

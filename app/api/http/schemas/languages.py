@@ -9,6 +9,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.schemas.gestures import GestureView
 from app.api.http.schemas.values import Author, Body, NewName
+from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.grammar_schema import GrammarEntry
@@ -31,6 +32,13 @@ class LanguageChange(Body):
     profile: ProfileName | None = Field(default=None, description="The voters that recognise it")
     tuning: TuningEntry | None = Field(
         default=None, description="What differs from the profile; null: nothing"
+    )
+    most_refused: float | None = Field(
+        default=None,
+        gt=0,
+        le=MOST_REFUSED_AT_ALL,
+        description="Share of right takes that may be refused, where several people have shown "
+        "the gestures",
     )
 
 
@@ -64,6 +72,10 @@ class LanguageView(LanguageSummary):
     profile: ProfileName = Field(description="The voters that recognise it")
     tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
     tuning_words: str = Field(description="The same for people: recognised ...")
+    most_refused: float = Field(
+        description="Share of right takes that may be refused; the limit follows from it where "
+        "several people have shown the gestures"
+    )
     trigger: TriggerEntry | None = Field(description="What begins and ends a take; null: a salute")
     trigger_words: str = Field(description="The same for people: takes lie ...")
 

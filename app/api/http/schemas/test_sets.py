@@ -97,4 +97,8 @@ class TestSetView(BaseModel):
         description="Ids of takes that are answered worse than before: right is better than a pair "
         "with the right gesture, which is better than anything else"
     )
+    upgraded: bool = Field(
+        description="Whether the results before are of another version of the program, which may "
+        "answer otherwise too"
+    )
     waiting: int = Field(description="Takes without a result of the newest revision")

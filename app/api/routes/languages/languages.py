@@ -104,6 +104,8 @@ def _describe(fields: Mapping[str, Any]) -> str:
         recognised.append(fields["tuning"].words)
     if recognised:
         sentences.append(f"Recognise {', '.join(recognised)}")
+    if "most_refused" in fields:
+        sentences.append(f"Refuse at most {100 * fields['most_refused']:.3g} % of right takes")
     return ", ".join(sentences)
 
 

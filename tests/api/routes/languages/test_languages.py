@@ -118,3 +118,27 @@ def test_an_export_is_described_before_it_is_taken_away(
         sent = client.get(f"{LANGUAGES}/{language_id}/export", params={"format": file["format"]})
         assert len(sent.content) == file["bytes"]
     assert [file["complete"] for file in contents["files"]] == [True, False, False]
+
+
+def test_the_share_of_refused_takes_is_a_revision_that_can_be_undone(
+    client: httpx.Client, language_id: str
+) -> None:
+    place = f"{LANGUAGES}/{language_id}"
+    assert client.get(place).json()["most_refused"] == 0.05
+    changed = client.patch(place, json={"most_refused": 0.1}).json()
+    assert (changed["most_refused"], changed["revision"]) == (0.1, 2)
+    assert changed["change"] == "Refuse at most 10 % of right takes"
+    assert client.get(f"{place}/export").json()["most_refused"] == 0.1
+    undone = client.post(f"{place}/revert", json={"revision": 1}).json()
+    assert undone["most_refused"] == 0.05
+    renamed = client.patch(place, json={"name": "sea", "most_refused": 0.025}).json()
+    assert renamed["change"] == "Rename to sea, Refuse at most 2.5 % of right takes"
+
+
+@pytest.mark.parametrize("share", [0, -0.1, 0.51, "many"])
+def test_a_share_of_refused_takes_that_is_none_is_refused(
+    client: httpx.Client, language_id: str, share: object
+) -> None:
+    answer = client.patch(f"{LANGUAGES}/{language_id}", json={"most_refused": share})
+    assert_problem(answer, 422, "request_invalid")
+    assert answer.json()["errors"][0]["pointer"] == "/most_refused"

@@ -91,6 +91,28 @@ def test_a_change_of_the_language_says_what_got_better_and_worse(
     assert (relaxed["better"], relaxed["worse"]) == ([take["id"]], [])
 
 
+def test_the_first_run_after_an_upgrade_says_so(
+    client: httpx.Client,
+    studio: Studio,
+    language_id: str,
+    place: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    clip = add_recorded_clip(studio, recording_of("circle"), "again.mp4")
+    labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    upgraded = []
+    for name, version in (
+        ("one", "0.2.0"),
+        ("two", "0.2.0"),
+        ("three", "0.3.0"),
+        ("four", "0.3.0"),
+    ):
+        monkeypatch.setattr("app.api.services.test_sets.__version__", version)
+        client.patch(f"{LANGUAGES}/{language_id}", json={"name": name}).raise_for_status()
+        upgraded.append(run(client, place)["upgraded"])
+    assert upgraded == [False, False, True, False]
+
+
 def test_a_pair_is_counted_on_its_own_and_lies_between_right_and_wrong(
     client: httpx.Client, studio: Studio
 ) -> None:
