@@ -10,19 +10,16 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.fusion import fuse
+from app.recognition.decision.shown_gesture import ShownGesture, describe_traversals
 from app.recognition.features.motion import (
     SHARES,
     SIZE,
-    Movement,
     build_movement,
     find_followed_landmarks,
-    find_hands,
     list_arm_landmarks,
-    uses_both_sides,
 )
-from app.recognition.features.traversals import Traversal, list_traversals
+from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.switches import Switch
 from app.recognition.matching.dtw import BAND, DtwBatch, DtwReferences
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.poses.sequence import FloatArray
@@ -85,66 +82,6 @@ LEAST_SHARED = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class _DescribedGesture:
-    """The traversals of one gesture, and their descriptors by voter's name."""
-
-    traversals: tuple[Traversal, ...]
-    descriptors: dict[str, FloatArray]
-
-
-@dataclass(frozen=True)
-class _ShownGesture:
-    """The parts of a gesture that its traversals depend on.
-
-    Attributes
-    ----------
-    trajectory, salient
-        The gesture's.
-    direction, mirror
-        Its switches.
-
-    """
-
-    trajectory: Trajectory | None
-    salient: tuple[str, ...]
-    direction: Switch
-    mirror: Switch
-
-    @classmethod
-    def of(cls, gesture: Gesture) -> _ShownGesture:
-        """Return the shown gesture of a gesture."""
-        switches = gesture.switches
-        return cls(gesture.trajectory, gesture.salient, switches.direction, switches.mirror)
-
-    def describe(self, landmarks: tuple[str, ...], *, every: bool) -> _DescribedGesture:
-        """Describe all traversals of the demonstration if `every`, else the demonstrated one only.
-
-        Cached for each set of landmarks that a language uses.
-        """
-        trajectory = self.trajectory
-        assert trajectory is not None
-        both_ways, either_way = self.direction != "on", self.direction == "off"
-        either_side = self.mirror == "auto" and uses_both_sides(self.salient)
-        hands = find_hands(self.salient)
-
-        def compute() -> _DescribedGesture:
-            shown = build_movement(trajectory, landmarks)
-            found = list_traversals(
-                shown,
-                hands=hands,
-                both_ways=both_ways,
-                either_way=either_way,
-                either_side=either_side,
-            )
-            found = found if every else found[:1]
-            return _DescribedGesture(found, _describe_traversals(shown, found, landmarks))
-
-        return trajectory.compute_once(
-            ("traversals", landmarks, hands, both_ways, either_way, either_side, every), compute
-        )
-
-
-@dataclass(frozen=True, eq=False)
 class NearestTraversals:
     """The traversals of G gestures that are nearest to a query.
 
@@ -193,10 +130,10 @@ class MotionReferences:
         References of the last few languages are cached, because the same gestures occur again with
         their thresholds, or with other drawings or weights.
         """
-        return _build_cached(tuple(_ShownGesture.of(gesture) for gesture in gestures))
+        return _build_cached(tuple(ShownGesture.of(gesture) for gesture in gestures))
 
     @classmethod
-    def of_shown(cls, gestures: Sequence[_ShownGesture]) -> MotionReferences:
+    def of_shown(cls, gestures: Sequence[ShownGesture]) -> MotionReferences:
         """Compute the references without cache."""
         landmarks = find_followed_landmarks([gesture.salient for gesture in gestures])
         every = len(gestures) <= MAX_GESTURES_TRAVERSED
@@ -442,35 +379,20 @@ class MotionReferences:
         return NearestTraversals(np.where(found, compared[chosen], -1), distances, corrected)
 
 
-def _describe_traversals(
-    shown: Movement, traversals: Sequence[Traversal], landmarks: Sequence[str]
-) -> dict[str, FloatArray]:
-    """Return the descriptors of R traversals of a movement, ``(R, ...)`` by voter's name."""
-    movements = [each.of(shown, landmarks) for each in traversals]
-    described = {
-        voter.name: np.array([voter.describe(each) for each in movements])
-        for voter in MOTION_VOTERS
-    }
-    return described | {
-        SHARES: np.array([each.shares for each in movements]),
-        SIZE: np.array([each.size for each in movements]),
-    }
-
-
 def _describe_turned(
     trajectory: Trajectory, landmarks: tuple[str, ...], traversals: Sequence[Traversal]
 ) -> dict[str, FloatArray]:
     """Return the descriptors ``(R, ...)`` by voter's name, cached."""
 
     def compute() -> dict[str, FloatArray]:
-        return _describe_traversals(build_movement(trajectory, landmarks), traversals, landmarks)
+        return describe_traversals(build_movement(trajectory, landmarks), traversals, landmarks)
 
     ways = tuple((each.order.tobytes(), each.exchanged) for each in traversals)
     return trajectory.compute_once(("traversals", landmarks, ways), compute)
 
 
 @lru_cache(maxsize=REMEMBERED)
-def _build_cached(gestures: tuple[_ShownGesture, ...]) -> MotionReferences:
+def _build_cached(gestures: tuple[ShownGesture, ...]) -> MotionReferences:
     return MotionReferences.of_shown(gestures)
 
 

@@ -67,7 +67,7 @@ def test_a_language_that_is_exported_and_dropped_again_is_the_same_and_undo_take
     open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
     name = "Zeichen für Höhlen, 2. Fassung ✋"
-    tuning = {"simplification": 2.5, "weights": {"fourier": 0.5}}
+    tuning = {"simplification": 2.5, "weights": {"velocity": 0.5}}
     change = {"name": name, "author": "Čeněk", "tuning": tuning}
     original = copy_of_the_sample_with_phrases(library, change)
     page = open_page({"view": "languages", "language": original}, scene=False)

@@ -55,7 +55,7 @@ def test_profile_and_weights_are_changed_undone_and_reset(
 
 
 def test_the_settings_fit_a_phone(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, scene=False, size=(390, 844))
+    page = open_page(library.address, scene=False, size=(390, 560))
     page.get_by_role("button", name="Settings", exact=True).click()
     dialog = page.get_by_role("dialog", name="How this language is recognised")
     # The dialog is higher than the window, but its buttons are visible.
