@@ -1,1 +1,1 @@
-"""Decision: from voters' distances to a label, by fusion, votes, thresholds and rejection."""
+"""Decision: from voters' distances to a label, by fusion, votes, rejection and asking back."""

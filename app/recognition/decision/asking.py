@@ -21,7 +21,7 @@ def find_answer(scores: FloatArray, novelty: FloatArray) -> tuple[int, ...]:
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable; one of them finite.
     novelty
-        ``(G,)``, above 1: rejected; NaN for a gesture without thresholds.
+        ``(G,)``, above 1: rejected; NaN where nothing is rejected.
 
     Returns
     -------

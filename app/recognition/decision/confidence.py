@@ -36,7 +36,7 @@ def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     Parameters
     ----------
     novelty
-        Novelty of the nearest gesture. NaN for a gesture without thresholds: then the score is
+        Novelty of the nearest gesture. NaN where nothing is rejected: then the score is
         used, which is about 1 for another gesture.
     nearest, second
         Scores by `fusion.fuse`. Without a second gesture `second` is infinite and counts as the

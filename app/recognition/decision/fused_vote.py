@@ -469,7 +469,7 @@ class FusedVote:
 
 
 def _measure_novelty(table: ScoreTable) -> float:
-    """Return the novelty of a query for its nearest gesture; 0 if that has no thresholds."""
+    """Return the novelty of a query for its nearest gesture; infinite if none is comparable."""
     if not np.isfinite(table.scores).any():
         return np.inf
     return float(np.nan_to_num(table.novelty[table.scores.argmin()], posinf=np.inf))

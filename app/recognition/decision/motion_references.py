@@ -128,7 +128,7 @@ class MotionReferences:
         """Return the references of all gestures with a demonstration, in all traversals.
 
         References of the last few languages are cached, because the same gestures occur again with
-        their thresholds, or with other drawings or weights.
+        other drawings, weights or limits.
         """
         return _build_cached(tuple(ShownGesture.of(gesture) for gesture in gestures))
 

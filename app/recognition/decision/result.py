@@ -62,13 +62,12 @@ class Recognition:
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
         the mean relative distance. Empty in results of earlier versions.
     novelty
-        ``(G,)``: distance relative to each gesture's thresholds; if that of `nearest` is above 1,
-        the take is rejected (`rejection`). NaN for a gesture without thresholds, all of profile
-        ``paper``.
+        ``(G,)``: score relative to the language's limit; if that of `nearest` is above 1, the take
+        is rejected (`rejection`). NaN in profile ``paper``.
     novelty_by_view
-        By cue group's name (`rejection.CUE_GROUPS`) the novelties ``(G,)`` in that group alone, of
-        which `novelty` is the largest; NaN where the group has no thresholds or cannot compare.
-        Empty for profile ``paper``, and in results of earlier versions.
+        By `rejection.NOVELTIES` the novelties ``(G,)`` of the movement and of the hand alone, of
+        which `novelty` is the larger; NaN where that is not compared. Empty for profile ``paper``,
+        and in results of earlier versions.
     facing
         Degrees by which the diver is turned from the camera, positive to the diver's own left; None
         where the poses have no depth, for profile ``paper``, and in results of earlier versions.
@@ -126,7 +125,7 @@ class Recognition:
 
     @property
     def nearest_novelty(self) -> float:
-        """The novelty of `nearest`; NaN without thresholds, and in results of earlier versions."""
+        """The novelty of `nearest`; NaN in profile ``paper`` and in results of earlier versions."""
         return (
             float(self.novelty[self.gestures.index(self.nearest)])
             if self.novelty.size

@@ -30,8 +30,8 @@ class Analysis:
         Scores of the expected gesture and of the other one, see `ScoreTable.scores`; infinite where
         not comparable.
     novelty
-        Distance of the query relative to the expected gesture's thresholds: above 1 it is
-        rejected; NaN without thresholds, as in profile ``paper``.
+        Score of the query for the expected gesture, relative to the limit: above 1 it is rejected;
+        NaN in profile ``paper``.
     fault
         Why the poses are too poor to recognise; None if they are not.
     votes

@@ -55,7 +55,7 @@ CLEARLY_LARGER = 1.0
 """Doublings of the size from which it differs; two people differ by a third of one."""
 
 BENT_OTHERWISE = 1.5
-"""Distance by `WristBend` from which the bend differs: about that voter's threshold, three times
+"""Distance by `WristBend` from which the bend differs: three times
 the difference between two people's takes of one gesture."""
 
 

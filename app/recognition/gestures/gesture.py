@@ -1,4 +1,4 @@
-"""Gestures: one demonstration or several, with the thresholds derived from them."""
+"""Gestures: one demonstration or several, with their label, command and switches."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ images and descriptors are computed again."""
 
 @dataclass(frozen=True, kw_only=True)
 class Rates:
-    """Estimated error rates of a gesture's thresholds.
+    """Estimated error rates of the thresholds in files of version 0.2 and before.
 
     Attributes
     ----------
@@ -108,11 +108,9 @@ class Gesture:
         when the gesture was imported from a file that has only images.
     descriptors
         Per voter's name its descriptor of the image; empty when the image is.
-    thresholds
-        Per voter's name the distance at which the gesture is rejected, if the others exceed theirs
-        by the same factor (`rejection`); empty until its language is calibrated.
-    rates
-        Estimated error rates of the thresholds; None where not known.
+    thresholds, rates
+        Of files of version 0.2 and before, which reject by them; kept for robots of these versions,
+        and not used.
     description
         What the gesture looks like or means, in words.
     command

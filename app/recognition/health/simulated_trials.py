@@ -52,7 +52,7 @@ class SimulatedTrials:
         where not comparable.
     novelty
         ``(P, N)``: novelty of each take for its own gesture; above 1 it is rejected. NaN for a
-        gesture without thresholds.
+        gesture that is not compared.
     bias
         The performer's entry of `VARIANT_BIASES`.
 
@@ -119,7 +119,7 @@ class SimulatedTrials:
         return np.asarray(rivals.min(axis=1, initial=WIDEST_MARGIN))
 
     def _to_refusal(self, performer: int) -> FloatArray:
-        """Return ``(N,)`` margins to the thresholds, as logarithms."""
+        """Return ``(N,)`` margins to the limit, as logarithms."""
         novelty = np.nan_to_num(self.novelty[performer], nan=0.0)
         margins = -np.log(np.maximum(novelty, np.exp(-WIDEST_MARGIN)))
         return np.asarray(np.maximum(margins, -WIDEST_MARGIN))
