@@ -204,11 +204,6 @@ class FusedVote:
             found.setdefault(self._shown.gestures[index].salient, []).append(index)
         return {salient: np.array(rows, dtype=np.intp) for salient, rows in found.items()}
 
-    @property
-    def unnormalized_weights(self) -> dict[str, float]:
-        """Each voter's weight before normalisation; 0 if it does not separate the gestures."""
-        return dict(zip(VOTER_NAMES, self._weights.tolist(), strict=True))
-
     @cached_property
     def weights(self) -> Mapping[str, float]:
         """Each voter's weight in the decision, summing to 1."""
