@@ -162,8 +162,7 @@ class FusedVote:
         # A mirror image stands for its demonstration, and is no take by itself.
         taken = np.flatnonzero(~self._shown.mirrored[self._motions.gestures[rows]])
         every, sizes = np.arange(len(self._motions)), self._motions.descriptors[SIZE]
-        smaller = [self._motions.measure_smallness(sizes[row], every) for row in rows.tolist()]
-        scores = scores * np.array(smaller).reshape(scores.shape)
+        scores = scores * self._motions.measure_smallness(sizes[rows][:, None], every)
         divers = np.array([each.diver for each in sides], dtype=np.str_)[self._motions.gestures]
         owners = self._owners[self._motions.gestures]
         return OthersScores.of(scores[taken], rows[taken], owners, divers)
@@ -284,7 +283,8 @@ class FusedVote:
     def _compare_movements(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a movement with those of the language."""
         views = self._views.list_for(trajectory.facing)
-        tables = [self._compare_in(view, trajectory) for view in views]
+        comparable = self._find_comparable(trajectory)
+        tables = [self._compare_in(view, trajectory, comparable) for view in views]
         return min(tables, key=lambda table: float(table.scores.min()))
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
@@ -311,8 +311,10 @@ class FusedVote:
             novelty_by_view=novelty,
         )
 
-    def _compare_in(self, view: View, trajectory: Trajectory) -> ScoreTable:
-        nearest = self._compare_sides(view, trajectory)
+    def _compare_in(
+        self, view: View, trajectory: Trajectory, comparable: npt.NDArray[np.bool_]
+    ) -> ScoreTable:
+        nearest = self._compare_sides(view, trajectory, comparable)
         distances, rows = nearest.distances, nearest.rows
         shares = nearest.corrections * weigh_distances(distances, self._weights, self._between)
         factors, scores = np.ones(len(rows)), shares.sum(axis=0)
@@ -440,10 +442,11 @@ class FusedVote:
             return MappingProxyType(dict.fromkeys(VOTER_NAMES, 0.0) | of_hand)
         return MappingProxyType(dict.fromkeys(HAND_VOTER_NAMES, 0.0) | {**self.weights})
 
-    def _compare_sides(self, view: View, trajectory: Trajectory) -> NearestTraversals:
+    def _compare_sides(
+        self, view: View, trajectory: Trajectory, comparable: npt.NDArray[np.bool_]
+    ) -> NearestTraversals:
         """Return the nearest traversal of every reference; infinite where not comparable."""
         count = len(self._owners)
-        comparable = self._find_comparable(trajectory)
         if not comparable.any():
             distances = np.full((len(VOTER_NAMES), count), np.inf)
             return NearestTraversals(np.full(count, -1), distances, np.ones(count))

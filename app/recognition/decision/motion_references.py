@@ -226,17 +226,17 @@ class MotionReferences:
         Parameters
         ----------
         size
-            ``(2,)``: `Movement.size` of the movement.
+            ``(2,)``: `Movement.size` of the movement; ``(S, 1, 2)`` of S movements.
         rows
             Indices of M of the rows.
 
         Returns
         -------
-        ``(M,)`` >= 1; 1 where either size is not known.
+        ``(M,)``, or ``(S, M)``, >= 1; 1 where either size is not known.
 
         """
         smaller = np.nan_to_num(self.descriptors[SIZE][rows] - size)
-        return np.asarray(1 + 2 * np.maximum(smaller - SMALLER, 0.0).sum(axis=1))
+        return np.asarray(1 + 2 * np.maximum(smaller - SMALLER, 0.0).sum(axis=-1))
 
     @property
     def sees_arms(self) -> bool:

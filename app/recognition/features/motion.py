@@ -116,12 +116,18 @@ class Movement:
         return np.asarray(away / max(away.max(), 1e-9))
 
     @cached_property
+    def _flat_places(self) -> FloatArray:
+        """``(N, 2 A)``: `places`; landmarks that were not seen are 0, as if they did not move."""
+        return np.nan_to_num(self.places).reshape(len(self.places), -1)
+
+    @cached_property
     def shares(self) -> FloatArray:
         """``(2, 2 A)``: how much each coordinate of `places` moves, by its path and its extent.
 
-        Both are unit vectors; 0 for landmarks that were not seen (`measure_other_joints`).
+        Both are unit vectors; 0 for landmarks that were not seen. They give the correction factor
+        of a score (`MotionReferences.correct`).
         """
-        flat = np.nan_to_num(self.places).reshape(len(self.places), -1)
+        flat = self._flat_places
         moved = np.stack([np.abs(np.diff(flat, axis=0)).sum(axis=0), np.ptp(flat, axis=0)])
         return np.asarray(moved / np.maximum(np.linalg.norm(moved, axis=1, keepdims=True), 1e-9))
 
@@ -133,7 +139,7 @@ class Movement:
         """
         if not self.relative_to_body:
             return np.full(2, np.nan)
-        flat = np.nan_to_num(self.places).reshape(len(self.places), -1)
+        flat = self._flat_places
         steps = np.diff(flat, axis=0)
         length = float(np.sqrt(np.vecdot(steps, steps)).sum())
         extent = float(np.linalg.norm(np.ptp(flat, axis=0)))
