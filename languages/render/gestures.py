@@ -96,7 +96,10 @@ DRAWINGS = {
         polygon((-0.88, 0.88), (0.88, 0.88), (0.88, -0.88), (-0.88, -0.88), (-0.88, 0.88))
     ),
     "line": Drawing((straight((1.35, 0), (-1.35, 0)),)),
+    "corner": Drawing(polygon((-0.8, 1), (-0.8, -0.9), (0.9, -0.9))),
+    "zigzag": Drawing(polygon((-0.9, 0.8), (0.9, 0.8), (-0.9, -0.8), (0.9, -0.8))),
     "unfinished triangle": Drawing(polygon((-0.9, 0.85), (0.05, -0.95), (0.95, 0.8), (0.4, 0.83))),
 }
-"""Gestures by label; the first three are Table 1 (Joshi and Sattar 2025), and the last one is a
-triangle by a diver in a hurry: point down, and the third side broken off."""
+"""Gestures by label; the first three are Table 1 and the first eight Table 2 (Joshi and Sattar
+2025); corner and zigzag are open figures with straight ends, and the last one is a triangle by a
+diver in a hurry: point down, and the third side broken off."""

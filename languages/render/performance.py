@@ -22,6 +22,10 @@ REST = ArmTarget(np.array([-0.15, -0.09, -0.46]), DOWN, TO_THIGH, HAND_SHAPES["r
 """The arm hangs beside the body."""
 SALUTE = ArmTarget(np.array([-0.19, -0.28, 0.10]), UP, TO_CAMERA, HAND_SHAPES["salute"])
 """Beside the face, palm to the camera, clear of the head and of the body."""
+SALUTE_ASIDE = replace(SALUTE, wrist=np.array([-0.34, -0.24, -0.04]))
+"""Out to the side, at the height of the shoulder."""
+SALUTE_BEFORE_THE_CHEST = replace(SALUTE, wrist=np.array([-0.02, -0.36, -0.16]))
+"""In front of the breastbone."""
 ON_THE_HEAD = ArmTarget(
     np.array([0.13, -0.05, 0.36]), np.array([0.9, 0.0, 0.25]), DOWN, HAND_SHAPES["flat"]
 )
@@ -31,7 +35,13 @@ ON_THE_BELLY = ArmTarget(
 )
 """The forearm lies across the belly, palm to the body."""
 
-OPENINGS = {"salute": (SALUTE, REST), "head": (REST, ON_THE_HEAD), "belly": (REST, ON_THE_BELLY)}
+OPENINGS = {
+    "salute": (SALUTE, REST),
+    "salute aside": (SALUTE_ASIDE, REST),
+    "salute before the chest": (SALUTE_BEFORE_THE_CHEST, REST),
+    "head": (REST, ON_THE_HEAD),
+    "belly": (REST, ON_THE_BELLY),
+}
 """Right and left arm before and after the gesture, by name."""
 
 
@@ -59,6 +69,8 @@ class Manner:
         Metres the body drifts to either side.
     hold
         Seconds each salute is held.
+    pause
+        Seconds the hand rests where a stroke begins and ends; people do before and after writing.
     opening, closing
         What is held before and after the gesture, names in `OPENINGS`.
 
@@ -73,6 +85,7 @@ class Manner:
     lean: float = 0.0
     drift: float = 0.015
     hold: float = 0.9
+    pause: float = 0.2
     opening: str = "salute"
     closing: str = "salute"
 
@@ -149,8 +162,6 @@ class Performance:
         return len(self.right)
 
 
-PAUSE = 0.2
-"""Seconds the hand rests where a stroke begins and ends; people do before and after writing."""
 CORNER = 0.1
 """Seconds at a corner, where one minimum-jerk movement ends and the next begins."""
 
@@ -181,9 +192,11 @@ def perform(drawing: Drawing, manner: Manner, rate: float, seed: int) -> Perform
     timeline.hold("salute", manner.hold)
     left = _left_of(first, drawing)
     timeline.move("transit", _transit_time(opening[0], first, manner), first, left)
-    timeline.hold("pause", PAUSE)
+    if manner.pause:
+        timeline.hold("pause", manner.pause)
     _draw(timeline, strokes, drawing, manner)
-    timeline.hold("pause", PAUSE)
+    if manner.pause:
+        timeline.hold("pause", manner.pause)
     timeline.move("transit", _transit_time(closing[0], last, manner), *closing)
     timeline.hold("salute", manner.hold)
     timeline.move("lower", 0.75 / manner.tempo, REST, REST)

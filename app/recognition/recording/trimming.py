@@ -6,20 +6,21 @@ more alike (as in every image of the published language files).
 
 People move in strokes with a bell-shaped speed (Flash and Hogan 1985), and a reach to a point is
 nearly straight. So the take is split where the speed of the moving wrists has a clear minimum; the
-first and the last piece are transits if they are straight, short, and not the whole movement. In
-doubt nothing is cut: a stroke with a reach is still recognised, half a stroke is not.
+first and the last piece are transits if they last short and are straight, or so small that neither
+cutting nor keeping them decides (`matching.dtw.OPEN_ENDS`). In doubt nothing is cut: a stroke with
+a reach is still recognised, half a stroke is not.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.poses.landmarks import SHOULDERS, WRISTS
+from app.recognition.poses.landmarks import WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 
@@ -59,13 +60,6 @@ PAUSE = 0.1
 """Share of a neighbouring peak below which the hand pauses; this cuts off less than a hundredth of
 a minimum-jerk stroke."""
 
-FRONTAL = 0.25
-"""Least torso lengths between the shoulders at which they show left and right; from the side they
-are too close together."""
-
-SHOULDERS_KEPT = 0.6
-"""Share of their usual distance in the image that the shoulders keep: turning by 50 degrees."""
-
 TREMOR = 0.05
 """Least extent of a movement, torso lengths: 2.5 cm. A hand held still in water drifts and trembles
 less."""
@@ -73,6 +67,10 @@ less."""
 STRAIGHT_REACH = 0.85
 """Least ratio of distance to path length of a reach. Reaches are straight within a few per cent; a
 half circle has 0.64; a quarter circle has 0.90 but is no whole piece of a stroke."""
+
+SMALL_REACH = 0.15
+"""Largest share of all pieces' path that a reach may have without being straight: a hand that
+salutes beside the place where it draws gets there in any way."""
 
 LONGEST_REACH = 1.5
 """Most seconds of a reach. Reaches take 0.5 to 1 s (Flash and Hogan 1985); in water somewhat
@@ -186,8 +184,9 @@ def find_stroke(
         # Two pieces, there and back, may be the whole gesture: a line drawn twice.
         return whole
     moving = float(motion.time[pieces[-1].last] - motion.time[pieces[0].first])
-    goes = _is_reach(motion, pieces[0], moving)
-    comes = last_salute is not None and _is_reach(motion, pieces[-1], moving)
+    small = SMALL_REACH * sum(_measure_way(motion, piece) for piece in pieces)
+    goes = _is_reach(motion, pieces[0], moving, small)
+    comes = last_salute is not None and _is_reach(motion, pieces[-1], moving, small)
     return Span(
         start=max(whole.start, float(motion.time[pieces[1].first])) if goes else whole.start,
         end=min(whole.end, float(motion.time[pieces[-2].last])) if comes else whole.end,
@@ -198,10 +197,9 @@ def _hand_motion(poses: PoseSequence) -> Motion | None:
     """Measure the motion of the moving wrists; None where none moves or is seen."""
     count = int(np.ceil(poses.duration / GRID_STEP)) + 1
     wrists = [name for name in WRISTS if name in poses.landmarks]
-    seen = _drop_side_swaps(poses)
-    if count < 3 or not any(np.isfinite(seen.column(name)).any() for name in wrists):
+    if count < 3 or not any(np.isfinite(poses.column(name)).any() for name in wrists):
         return None
-    trajectory = Trajectory.from_poses(seen).select(wrists).fill_gaps().resample_in_time(count)
+    trajectory = Trajectory.from_poses(poses).select(wrists).fill_gaps().resample_in_time(count)
     moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
     return measure_motion(moving, trajectory.time + poses.time[0])
 
@@ -233,24 +231,6 @@ def measure_motion(paths: Sequence[FloatArray], time: FloatArray) -> Motion | No
     )
     speed = np.linalg.norm(np.gradient(smooth, time, axis=0), axis=1)
     return Motion(time=time, xy=smooth, speed=speed, known=known)
-
-
-def _drop_side_swaps(poses: PoseSequence) -> PoseSequence:
-    """Remove frames with side swaps, in which the shoulders cross or come near each other.
-
-    The model's smoothing also blends the frames beside swapped ones.
-    """
-    length = poses.torso_length()
-    if length is None or not set(SHOULDERS) <= set(poses.landmarks):
-        return poses
-    across = poses.column(SHOULDERS[0])[:, 0] - poses.column(SHOULDERS[1])[:, 0]
-    usual = float(np.nanmedian(across)) if np.isfinite(across).any() else 0.0
-    if abs(usual) < FRONTAL * length:
-        return poses
-    exchanged = across * np.sign(usual) < SHOULDERS_KEPT * abs(usual)
-    xy = poses.xy.copy()
-    xy[exchanged] = np.nan
-    return replace(poses, xy=xy)
 
 
 def _extent(path: FloatArray) -> float:
@@ -328,20 +308,26 @@ def _drop_pauses(speed: FloatArray, first: int, last: int, pause: float) -> Piec
     return Piece(first + int(fast[0]), first + int(fast[-1])) if len(fast) else Piece(first, last)
 
 
-def _is_reach(motion: Motion, piece: Piece, moving: float) -> bool:
-    """Return whether a piece is a straight, short movement of hands in view.
+def _is_reach(motion: Motion, piece: Piece, moving: float, small: float) -> bool:
+    """Return whether a piece is a short movement of hands in view, straight or small.
 
-    `moving` is the duration of all movement between the salutes, in seconds.
+    `moving` is the duration of all movement between the salutes, in seconds; `small` the longest
+    way that need not be straight, in torso lengths.
     """
     lasts = float(motion.time[piece.last] - motion.time[piece.first])
     return (
         lasts <= min(LONGEST_REACH, LARGEST_SHARE * moving)
-        and _is_straight(motion, piece)
+        and (_measure_way(motion, piece) <= small or _is_straight(motion, piece))
         and bool(motion.known[piece.first : piece.last + 1].all())
     )
 
 
+def _measure_way(motion: Motion, piece: Piece) -> float:
+    """Return the length of a piece's path in torso lengths."""
+    steps = np.diff(motion.xy[piece.first : piece.last + 1], axis=0)
+    return float(np.linalg.norm(steps, axis=1).sum())
+
+
 def _is_straight(motion: Motion, piece: Piece) -> bool:
-    path = motion.xy[piece.first : piece.last + 1]
-    way = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-    return bool(0 < STRAIGHT_REACH * way <= np.linalg.norm(path[-1] - path[0]))
+    apart = float(np.linalg.norm(motion.xy[piece.last] - motion.xy[piece.first]))
+    return 0 < STRAIGHT_REACH * _measure_way(motion, piece) <= apart

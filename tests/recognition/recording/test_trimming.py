@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.trimming import LARGEST_SHARE, Span, find_stroke
 from tests.recognition.motions import (
     RESTING_PLACE,
@@ -233,6 +234,25 @@ def test_a_bent_way_is_no_reach() -> None:
     )
 
 
+def test_a_short_reach_need_not_be_straight() -> None:
+    beside = moved(SALUTE_PLACE, 0.2, -0.1)
+    bent = np.array([moved(SALUTE_PLACE, 0.0, -0.2), beside])
+    performance = perform(
+        [
+            still(SALUTE_PLACE, HOLD),
+            Movement(bent, 0.6),
+            still(beside, 0.1),
+            Movement(circle(beside), 1.6),
+            still(beside, 0.1),
+            Movement(bent[::-1], 0.6),
+            Movement(SALUTE_PLACE, 0.2),
+            still(SALUTE_PLACE, HOLD),
+        ]
+    )
+    found = stroke_of(performance)
+    assert found.start == pytest.approx(performance.moments[3], abs=0.2)
+
+
 def test_a_long_slow_way_is_no_reach() -> None:
     far = moved(SALUTE_PLACE, 1.5, 0.8)
     assert untouched(
@@ -268,7 +288,8 @@ def test_a_frame_with_left_and_right_exchanged_does_not_split_a_reach(frame: int
     performance = gesture(STROKES["circle"])
     xy = performance.poses.xy.copy()
     xy[frame] = xy[frame][[1, 0, 3, 2, 5, 4]]
-    found = find_stroke(replace(performance.poses, xy=xy), *salutes(performance))
+    repaired = repair_poses(replace(performance.poses, xy=xy)).poses
+    found = find_stroke(repaired, *salutes(performance))
     expected = stroke_of(performance)
     assert (found.start, found.end) == pytest.approx((expected.start, expected.end), abs=0.1)
 
