@@ -64,6 +64,15 @@ TREMOR = 0.05
 """Least extent of a movement, torso lengths: 2.5 cm. A hand held still in water drifts and trembles
 less."""
 
+UNREST = 0.1
+"""Least extent of a movement within a salute, torso lengths, that may be the way from or to it."""
+
+SETTING_OUT = 0.15
+"""Most seconds between a salute that is no longer seen and its way from it, or a way and the salute
+that is not yet seen. The fingers change while the hand travels: in 60 takes of renderings the way
+begins at most 0.07 s after the salute, and mostly before its end. Where a stroke begins or ends at
+the place of the salute, the hand rests while they change, and no way is cut off."""
+
 STRAIGHT_REACH = 0.85
 """Least ratio of distance to path length of a reach. Reaches are straight within a few per cent; a
 half circle has 0.64; a quarter circle has 0.90 but is no whole piece of a stroke."""
@@ -153,8 +162,8 @@ def find_stroke(
         When the salutes were seen. The hand may keep the shape while it leaves, and form it before
         it arrives. `last_salute` None: the take was not closed, and only its beginning is trimmed.
     posed
-        Whether the triggers are poses of the arms. A movement entirely within a pose is unrest, no
-        reach.
+        Whether the triggers are poses of the arms. Any movement entirely within a pose is unrest,
+        within a salute a small one only.
 
     Returns
     -------
@@ -172,12 +181,12 @@ def find_stroke(
         motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
     )
     pieces = split_pieces(motion)
-    if posed:
-        pieces = [
-            piece
-            for piece in pieces
-            if motion.time[piece.last] > whole.start and motion.time[piece.first] < whole.end
-        ]
+    pieces = [
+        piece
+        for piece in pieces
+        if (motion.time[piece.last] > whole.start and motion.time[piece.first] < whole.end)
+        or not (posed or _extent(motion.xy[piece.first : piece.last + 1]) < UNREST)
+    ]
     if len(pieces) < 2:
         return whole
     if len(pieces) == 2 and all(_is_straight(motion, piece) for piece in pieces):
@@ -185,8 +194,14 @@ def find_stroke(
         return whole
     moving = float(motion.time[pieces[-1].last] - motion.time[pieces[0].first])
     small = SMALL_REACH * sum(_measure_way(motion, piece) for piece in pieces)
-    goes = _is_reach(motion, pieces[0], moving, small)
-    comes = last_salute is not None and _is_reach(motion, pieces[-1], moving, small)
+    goes = motion.time[pieces[0].first] <= whole.start + SETTING_OUT and _is_reach(
+        motion, pieces[0], moving, small
+    )
+    comes = (
+        last_salute is not None
+        and motion.time[pieces[-1].last] >= whole.end - SETTING_OUT
+        and _is_reach(motion, pieces[-1], moving, small)
+    )
     return Span(
         start=max(whole.start, float(motion.time[pieces[1].first])) if goes else whole.start,
         end=min(whole.end, float(motion.time[pieces[-2].last])) if comes else whole.end,

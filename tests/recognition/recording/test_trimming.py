@@ -234,6 +234,40 @@ def test_a_bent_way_is_no_reach() -> None:
     )
 
 
+def test_a_hand_that_stirs_while_it_salutes_sets_out_later() -> None:
+    stirred = moved(SALUTE_PLACE, 0.05, 0.05)
+    performance = perform(
+        [
+            still(SALUTE_PLACE, 0.3),
+            Movement(stirred, 0.15),
+            still(stirred, 0.2),
+            Movement(TOP, 0.5),
+            Movement(circle(TOP), 1.6),
+            Movement(SALUTE_PLACE, 0.5),
+            still(SALUTE_PLACE, HOLD),
+        ]
+    )
+    moments = performance.moments
+    found = find_stroke(performance.poses, Span(0.0, moments[3]), Span(moments[-2], moments[-1]))
+    assert (found.start, found.end) == pytest.approx((moments[4], moments[5]), abs=0.2)
+
+
+def test_straight_sides_that_begin_and_end_at_the_salute_are_no_reaches() -> None:
+    """The fingers change while the hand rests, which no reach lets them do."""
+    corners = moved(SALUTE_PLACE, 0.5, 0.8), moved(SALUTE_PLACE, -0.3, 0.8)
+    changing = 0.3
+    performance = perform(
+        [
+            still(SALUTE_PLACE, HOLD),
+            still(SALUTE_PLACE, changing),
+            *(Movement(place, 0.7) for place in (*corners, SALUTE_PLACE)),
+            still(SALUTE_PLACE, changing),
+            still(SALUTE_PLACE, HOLD),
+        ]
+    )
+    assert untouched(performance)
+
+
 def test_a_short_reach_need_not_be_straight() -> None:
     beside = moved(SALUTE_PLACE, 0.2, -0.1)
     bent = np.array([moved(SALUTE_PLACE, 0.0, -0.2), beside])
