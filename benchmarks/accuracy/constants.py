@@ -49,7 +49,7 @@ from benchmarks.sets.whole_body_sets import far_movements
 TRIED: Final[Sequence[tuple[Any, str, tuple[float, ...]]]] = (
     (velocity, "SLOW", (0.1, 0.2, 0.3, 0.5, 1.0)),
     (Place, "prior", (0.5, 1.0, 1.5, 2.0)),
-    (Place, "within", (0.5, 0.6, 0.69, 0.8)),
+    (Place, "within", (0.5, 0.57, 0.64, 0.75)),
     (Path, "prior", (0.0, 0.25, 0.5, 1.0)),
     (motion, "RESTING_SHARE", (0.0, 0.02, 0.04, 0.07)),
     (traversals, "BACKWARD_PENALTY", (1.2, 1.4, 1.7, 2.0, 2.5)),

@@ -9,7 +9,7 @@ import numpy as np
 from app.recognition.decision.rejection import is_rejected
 from app.recognition.poses.sequence import FloatArray
 
-ASK_RATIO: Final = 1.14
+ASK_RATIO: Final = 1.16
 """Largest ratio of a gesture's score to the nearest one's at which the take may be either."""
 
 

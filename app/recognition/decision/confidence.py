@@ -10,12 +10,11 @@ import math
 
 from app.recognition.decision.rejection import SCORE_FLOOR
 
-CONFIDENCE_AT_ONE = -1.65
-CONFIDENCE_PER_NOVELTY = -3.7
-CONFIDENCE_PER_SHARE = -2.25
-"""Coefficients of `estimate_confidence`, fitted on eight sets, in languages of half of the classes.
-Coefficients fitted on seven of the sets differ by at most 0.4, except those fitted without
-`utkinect` (`benchmarks/studies/people.md`)."""
+CONFIDENCE_AT_ONE = -2.2
+CONFIDENCE_PER_NOVELTY = -2.6
+CONFIDENCE_PER_SHARE = -2.9
+"""Coefficients of `estimate_confidence`, fitted on thirteen sets, in languages of half the classes.
+Without any one of the sets they differ by at most 0.6 (`benchmarks/studies/cutting.md`)."""
 
 TIE_EXPONENT = 9.0
 """Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of

@@ -20,7 +20,7 @@ from app.recognition.features.motion import (
 )
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.matching.dtw import BAND, DtwBatch, DtwReferences
+from app.recognition.matching.dtw import BAND, OPEN_ENDS, DtwBatch, DtwReferences
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -301,7 +301,9 @@ class MotionReferences:
     @cached_property
     def _dtw_batch(self) -> DtwBatch:
         """The references of the DTW voters."""
-        return DtwBatch(tuple(DtwReferences(self.descriptors[name], BAND) for name in _DTW))
+        return DtwBatch(
+            tuple(DtwReferences(self.descriptors[name], BAND, OPEN_ENDS) for name in _DTW)
+        )
 
     @cached_property
     def penalties(self) -> FloatArray:

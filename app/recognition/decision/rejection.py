@@ -22,11 +22,11 @@ from app.recognition.poses.sequence import FloatArray
 NOVELTIES: Final = ("movement", "hand")
 """What may be too far from a gesture: its movement, or the shape of the hand."""
 
-LIMIT_OF_ARMS: Final = 0.82
+LIMIT_OF_ARMS: Final = 0.85
 """Limit of languages of whole arms that one person has shown: of what people do when they do not
 sign, 5 % is accepted at most on every set left out (`benchmarks/studies/people.md`)."""
 
-LIMIT_OF_HANDS: Final = 0.48
+LIMIT_OF_HANDS: Final = 0.44
 """The same where no elbow is seen: the paths of hands differ less between people than arms do."""
 
 MOST: Final = 1.0

@@ -12,6 +12,7 @@ from app.recognition.explanation.alignment import Example
 from app.recognition.features.motion import Movement, build_movement, find_hands
 from app.recognition.features.traversals import Traversal, list_traversals
 from app.recognition.gestures.gesture import Gesture
+from app.recognition.matching.dtw import BAND, dtw_distances
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -88,10 +89,9 @@ class Pairing:
         return self.distance(self.query.paths, [self.example.movement.paths])
 
     def distance(self, paths: FloatArray, others: Sequence[FloatArray]) -> float:
-        """Return the least path distance of ``(N, L, 2)`` to any of the others."""
-        voter = Path()
-        described = [voter.describe(replace(self.query, paths=each)) for each in (paths, *others)]
-        return float(voter.distances(described[0], np.stack(described[1:])).min())
+        """Return the least path distance of ``(N, L, 2)`` to any of the others, ends included."""
+        described = [Path().describe(replace(self.query, paths=each)) for each in (paths, *others)]
+        return float(dtw_distances(described[0], np.stack(described[1:]), BAND).min())
 
     def share(self, left: float) -> float:
         """Return the share of the path distance that undoing a difference removes.

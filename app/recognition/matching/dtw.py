@@ -13,7 +13,11 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.matching.dtw_kernel import StepCosts, compute_alignment_costs, count_half_steps
+from app.recognition.matching.dtw_kernel import (
+    StepCosts,
+    compute_alignment_costs,
+    count_half_steps,
+)
 from app.recognition.matching.step_distances import (
     Precision,
     for_query,
@@ -26,6 +30,10 @@ from app.recognition.poses.sequence import FloatArray
 BAND = 8
 """Steps of 32 that one movement may be ahead of the other (Sakoe-Chiba band): a quarter, where
 accuracy on drawn figures levels off; without a band, a loop could match a corner."""
+
+OPEN_ENDS = 3
+"""Steps of 32 at either end of either movement that may be left out: a tenth. A part of the way to
+or from the gesture, on one side only, then does not decide (`benchmarks/studies/cutting.md`)."""
 
 
 def dtw_distances(query: FloatArray, references: FloatArray, band: int) -> FloatArray:
@@ -65,11 +73,15 @@ class DtwReferences:
         ``(R, N, D)``, with NaN as for `dtw_distances`.
     band
         As for `dtw_distances`.
+    ends
+        Steps at either end of either sequence that cost nothing where the other one has not begun,
+        or has ended.
 
     """
 
     sequences: FloatArray
     band: int
+    ends: int = 0
 
     def distances(self, query: FloatArray) -> FloatArray:
         """Return the DTW distances of ``(N, D)`` to all references, ``(R,)``."""
@@ -108,7 +120,7 @@ class DtwReferences:
             right = self._sides_of(rows).reshape(2, -1, count * pairs)
             np.matmul(left, right, out=out.reshape(2, count, count * pairs))
             take_root(out)
-            return out
+            return _open_ends(out, self.ends)
         references = self.sequences if rows is None else self.sequences[rows]
         known = np.isfinite(query).any(axis=0) & np.isfinite(references).any(axis=(0, 1))
         step_distances(
@@ -116,7 +128,7 @@ class DtwReferences:
             _from_both_ends(references[..., known], count),
             out,
         )
-        return out
+        return _open_ends(out, self.ends)
 
     @cached_property
     def known(self) -> npt.NDArray[np.intp]:
@@ -212,6 +224,7 @@ class DtwBatch:
                 out=costs[:, index].reshape(2, count, count * pairs),
             )
             take_root(costs[:, index])
+            _open_ends(costs[:, index], self.views[index].ends)
 
     @cached_property
     def _known(self) -> npt.NDArray[np.intp]:
@@ -252,6 +265,13 @@ class DtwBatch:
     def _sides_by_row(self) -> StepCosts:
         """The right sides of the joined views, one below the other."""
         return np.concatenate([self.views[index].sides_by_row for index in self._joined], axis=2)
+
+
+def _open_ends(costs: StepCosts, ends: int) -> StepCosts:
+    """Let the first steps of ``(..., H, H, M)`` cost nothing against the other's first step."""
+    for border in (costs[..., :ends, :1, :], costs[..., :1, :ends, :]):
+        np.copyto(border, 0.0, where=np.isfinite(border))
+    return costs
 
 
 def _from_both_ends(sequences: npt.NDArray[Precision], count: int) -> npt.NDArray[Precision]:

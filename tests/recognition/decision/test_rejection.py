@@ -32,9 +32,9 @@ def recognizer() -> Recognizer:
     return Recognizer(Language("pool", gestures))
 
 
-def zigzag(share: FloatArray) -> FloatArray:
-    height = 0.4 * np.abs((6 * share) % 2 - 1)
-    return np.stack([-1.2 + share, height], axis=1)
+def bounce(share: FloatArray) -> FloatArray:
+    height = 0.8 - 1.2 * np.abs(np.sin(9 * share))
+    return np.stack([-0.8 + 0.1 * np.sin(30 * share), height], axis=1)
 
 
 def limit_of(recognizer: Recognizer) -> float:
@@ -43,7 +43,7 @@ def limit_of(recognizer: Recognizer) -> float:
 
 
 def test_a_foreign_movement_has_no_label_but_a_nearest_gesture(recognizer: Recognizer) -> None:
-    result = recognizer.recognize(recording(zigzag, jitter=0.01))
+    result = recognizer.recognize(recording(bounce, jitter=0.01))
     assert result.label is None
     nearest = result.gestures.index(result.nearest)
     assert result.scores[nearest] == result.scores.min()
@@ -60,13 +60,13 @@ def test_another_take_is_far_from_being_rejected(recognizer: Recognizer, name: s
 
 
 def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
-    result = Recognizer(recognizer.language, "paper").recognize(recording(zigzag))
+    result = Recognizer(recognizer.language, "paper").recognize(recording(bounce))
     assert result.label == result.nearest
     assert np.isnan(result.novelty).all()
 
 
 def test_novelty_is_the_score_over_one_limit_for_all_gestures(recognizer: Recognizer) -> None:
-    result = recognizer.recognize(recording(zigzag, jitter=0.01))
+    result = recognizer.recognize(recording(bounce, jitter=0.01))
     # A take as large as its gesture has no further factor.
     np.testing.assert_allclose(result.novelty, result.scores / limit_of(recognizer))
     np.testing.assert_array_equal(result.novelty, result.novelty_by_view["movement"])

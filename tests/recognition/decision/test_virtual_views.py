@@ -53,7 +53,7 @@ def test_the_turn_is_what_helps(recognizer: Recognizer) -> None:
     query = show(SHAPES["circle"], 60.0)
     at = recognizer.language.labels.index("circle")
     turned, as_shown = recognizer.recognize(query), flat.recognize(query)
-    assert turned.scores[at] < 0.5 * as_shown.scores[at]
+    assert turned.scores[at] < 0.65 * as_shown.scores[at]
     assert not as_shown.views.any()
 
 

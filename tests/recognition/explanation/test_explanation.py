@@ -45,7 +45,7 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_the_alignments_cost_what_the_path_voter_measures(profile: str) -> None:
+def test_the_alignments_cost_what_the_path_voter_measures_and_their_ends(profile: str) -> None:
     explanation = why(recording(wedge, jitter=0.02), "circle", profile)
     measured = {verdict.voter: verdict for verdict in explanation.verdicts}
     for alignment in explanation.alignments:
@@ -53,7 +53,8 @@ def test_the_alignments_cost_what_the_path_voter_measures(profile: str) -> None:
             verdict = measured[alignment.voter]
             expected = alignment.label == "circle"
             distance = verdict.distance if expected else verdict.other_distance
-            assert alignment.distance == pytest.approx(distance, abs=1e-5)  # single precision
+            assert distance is not None
+            assert distance - 1e-5 <= alignment.distance < 2 * distance
         assert alignment.costs.min() >= 0.0
     voters = {"full": 2, "paper": 1}[profile]
     assert [each.label for each in explanation.alignments] == ["circle"] * voters + [

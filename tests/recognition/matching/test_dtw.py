@@ -142,6 +142,24 @@ def test_a_prepared_sequence_is_at_distance_zero_from_itself(drawn: FloatArray, 
     assert DtwReferences(sized, band).distances(sized[1])[1] == 0.0
 
 
+@pytest.mark.parametrize("hook", [1, 2, 3])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_open_ends_leave_out_what_one_sequence_has_in_addition(hook: int, backwards: bool) -> None:
+    generator = np.random.default_rng(hook)
+    shown = generator.normal(size=(20, 2))
+    hooked = np.concatenate([generator.normal(size=(hook, 2)), shown[:-hook]])
+    query, reference = (hooked[::-1], shown[::-1]) if backwards else (hooked, shown)
+    for one, other in ((query, reference), (reference, query)):
+        assert DtwReferences(other[None], 5, ends=hook).distances(one)[0] == 0.0
+        assert DtwReferences(other[None], 5, ends=hook - 1).distances(one)[0] > 0.0
+
+
+@given(sequences(4), st.integers(0, 15), st.integers(0, 3))
+def test_open_ends_never_add_a_cost(drawn: FloatArray, band: int, ends: int) -> None:
+    closed = DtwReferences(drawn[1:], band).distances(drawn[0])
+    assert (DtwReferences(drawn[1:], band, ends).distances(drawn[0]) <= closed).all()
+
+
 def test_components_that_no_reference_knows_are_left_out_before() -> None:
     generator = np.random.default_rng(5)
     query, references = generator.normal(size=(9, 4)), generator.normal(size=(3, 9, 4))
@@ -161,7 +179,7 @@ def test_views_asked_together_answer_as_each_does_alone(
     generator = np.random.default_rng(6)
     sizes = (2, 3, 4)
     queries = [generator.normal(size=(9, size)) for size in sizes]
-    views = [DtwReferences(generator.normal(size=(4, 9, size)), 3) for size in sizes]
+    views = [DtwReferences(generator.normal(size=(4, 9, size)), 3, ends=2) for size in sizes]
     for index in hidden:
         views[index].sequences[1, 4:, 0] = np.nan
     views[2].sequences[..., 3] = np.nan

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 
 from app.recognition.features.motion import Movement
-from app.recognition.matching.dtw import BAND, DtwReferences
+from app.recognition.matching.dtw import BAND, OPEN_ENDS, DtwReferences
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.voters.voter import Voter
 
@@ -26,4 +26,4 @@ class DtwVoter(MotionVoter):
 
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return the DTW distances, ``(M,)``; infinite where nothing can be compared."""
-        return DtwReferences(references, BAND).distances(query)
+        return DtwReferences(references, BAND, OPEN_ENDS).distances(query)

@@ -21,7 +21,7 @@ class Path(DtwVoter):
     unit = "mean distance along the alignment, in sizes of the gesture"
     prior = 0.5
     within = 0.0
-    between = 0.8
+    between = 0.67
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 L)`` coordinates in sizes."""

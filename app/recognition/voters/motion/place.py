@@ -19,8 +19,8 @@ class Place(DtwVoter):
     name = "place"
     unit = "mean distance along the alignment, in torso lengths"
     prior = 1.5
-    within = 0.69
-    between = 1.4
+    within = 0.64
+    between = 1.35
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` places, NaN where not seen or where no torso is seen."""

@@ -29,7 +29,7 @@ class Velocity(DtwVoter):
     unit = "mean difference along the alignment, of compressed velocities below 1"
     prior = 1.0
     within = 0.0
-    between = 0.7
+    between = 0.6
 
     def describe(self, movement: Movement) -> FloatArray:
         """Return ``(N, 2 A)`` compressed velocities, NaN where not seen."""
