@@ -22,7 +22,7 @@ from app.recognition.poses.sequence import FloatArray
 NOVELTIES: Final = ("movement", "hand")
 """What may be too far from a gesture: its movement, or the shape of the hand."""
 
-LIMIT_OF_ARMS: Final = 0.85
+LIMIT_OF_ARMS: Final = 0.82
 """Limit of languages of whole arms that one person has shown: of what people do when they do not
 sign, 5 % is accepted at most on every set left out (`benchmarks/studies/people.md`)."""
 
