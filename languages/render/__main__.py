@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Sequence
-from dataclasses import asdict, astuple
+from dataclasses import asdict, astuple, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +17,20 @@ from languages.render.body import Array
 from languages.render.cast import (
     CLIPS,
     DIVERS,
+    PAIR_CLIPS,
     POSED_CLIPS,
     SHAPED_CLIPS,
     SIGN_CLIPS,
     TESTS_OF_SIGNS,
     WATERS,
+    Buddy,
     Clip,
 )
 from languages.render.encode import encode_within_limit
 from languages.render.gestures import DRAWINGS
-from languages.render.performance import Performance, move_about, perform, perform_sign
+from languages.render.performance import Performance, move_about, perform, perform_sign, stand_by
 from languages.render.posture import hand_points, pose_body
-from languages.render.scene import Scene
+from languages.render.scene import WIDTH, Scene
 from languages.render.signs import SIGNS
 from languages.render.water import Bubble, breath
 
@@ -64,26 +66,82 @@ def render(clip: Clip) -> tuple[bytes, dict[str, Any]]:
         _breaths(performance, clip.seed),
         clip.seed,
     )
+    buddies = [_Buddy.of(buddy, clip, number) for number, buddy in enumerate(clip.buddies, 1)]
+    buddies.sort(key=lambda buddy: -buddy.distance)
     frames = []
     hands: dict[str, list[Any]] = {"L": [], "R": []}
-    for number, (motion, right, left) in enumerate(
-        zip(performance.body, performance.right, performance.left, strict=True)
-    ):
-        joints = pose_body(scene.body, motion, right, left)
-        frame = scene.render(joints, number / RATE)
+    first = round(clip.begins * RATE)
+    ends = [first + len(performance), *(buddy.last for buddy in buddies)]
+    for number in range(max(ends)):
+        row = min(max(number - first, 0), len(performance) - 1)
+        joints = pose_body(
+            scene.body, performance.body[row], performance.right[row], performance.left[row]
+        )
+        shift = _shift_at(clip.path, number)
+        layers = [(buddy.distance, buddy.layer(number)) for buddy in buddies]
+        frame = scene.render(
+            joints,
+            number / RATE,
+            shift=shift,
+            behind=[layer for distance, layer in layers if distance > clip.view.distance],
+            before=[layer for distance, layer in layers if distance <= clip.view.distance],
+        )
         for side, points in hands.items():
-            place = scene.pixels(hand_points(scene.body, joints, side))
+            place = scene.pixels(hand_points(scene.body, joints, side)) + (shift, 0)
             points.append(place.round(2).tolist())
             if clip.mittens:
                 cover_hand(frame, place, DIVERS[clip.diver].suit.panel)
         frames.append(frame)
     truth = {
         "rate": RATE,
-        "phases": [asdict(phase) for phase in performance.phases],
+        "phases": [
+            asdict(replace(phase, start=phase.start + clip.begins, end=phase.end + clip.begins))
+            for phase in performance.phases
+        ],
         "right_hand": hands["R"],
         "left_hand": hands["L"],
     }
     return encode_within_limit(frames, RATE), truth
+
+
+class _Buddy:
+    """Another diver of a clip, frame by frame."""
+
+    def __init__(self, buddy: Buddy, performance: Performance, scene: Scene, first: int) -> None:
+        self._buddy, self._performance, self._scene = buddy, performance, scene
+        self._first = first
+        self.distance = buddy.view.distance
+
+    @classmethod
+    def of(cls, buddy: Buddy, clip: Clip, number: int) -> _Buddy:
+        """Prepare the buddy with this number in a clip."""
+        seed = 1000 * number + clip.seed
+        begins = buddy.begins or 0.0
+        if buddy.gesture is None:
+            performance, first = stand_by(buddy.manner, RATE, seed, 4.0, buddy.begins), 0
+        else:
+            performance = perform(DRAWINGS[buddy.gesture], buddy.manner, RATE, seed)
+            first = round(begins * RATE)
+        scene = Scene(DIVERS[buddy.diver], WATERS[clip.water], buddy.view, [], seed)
+        return cls(buddy, performance, scene, first)
+
+    @property
+    def last(self) -> int:
+        """The number of frames until the gesture ends; 0 for a buddy who stands by."""
+        return self._first + len(self._performance) if self._buddy.gesture else 0
+
+    def layer(self, number: int) -> Array:
+        """Draw the buddy in a frame of the clip."""
+        row = min(max(number - self._first, 0), len(self._performance) - 1)
+        made = self._performance
+        joints = pose_body(self._scene.body, made.body[row], made.right[row], made.left[row])
+        return self._scene.layer(joints, number / RATE, _shift_at(self._buddy.path, number))
+
+
+def _shift_at(path: Sequence[tuple[float, float]], number: int) -> float:
+    """Return how many pixels to the right of the view's place a diver is in a frame."""
+    times, shares = zip(*path, strict=True)
+    return float(WIDTH * np.interp(number / RATE, times, shares))
 
 
 def cover_hand(frame: npt.NDArray[np.uint8], points: Array, colour: Sequence[float]) -> None:
@@ -119,7 +177,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the clips")
     parser.add_argument("--truth", type=Path, help="folder for where the hands truly are, as JSON")
     arguments = parser.parse_args()
-    every = (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS, *SHAPED_CLIPS)
+    every = (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS, *SHAPED_CLIPS, *PAIR_CLIPS)
     known = {clip.name: clip for clip in every}
     if unknown := set(arguments.names) - known.keys():
         parser.error(

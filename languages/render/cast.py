@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from languages.render.gear import Kit
 from languages.render.performance import Manner
@@ -107,6 +107,36 @@ WATERS = {
 """Places; the harbour is the murkiest."""
 
 
+Route = tuple[tuple[float, float], ...]
+"""Seconds, and how far to the right of the place in the view a diver is then, in image widths."""
+
+
+@dataclass(frozen=True)
+class Buddy:
+    """Another diver in a clip.
+
+    Parameters
+    ----------
+    diver, view, manner
+        As in `Clip`.
+    gesture
+        A label of `DRAWINGS`; None: the buddy stands by.
+    begins
+        Seconds from the clip's beginning at which the gesture, or the one salute of a buddy who
+        stands by, begins; None: no salute.
+    path
+        Where the buddy is.
+
+    """
+
+    diver: str
+    view: View
+    manner: Manner = field(default_factory=Manner)
+    gesture: str | None = None
+    begins: float | None = None
+    path: Route = ((0.0, 0.0),)
+
+
 @dataclass(frozen=True)
 class Clip:
     """One clip to render.
@@ -127,6 +157,12 @@ class Clip:
         Whether the gesture is a divers' sign.
     mittens
         Whether mittens hide the fingers.
+    begins
+        Seconds at rest before the performance begins.
+    path
+        Where the diver is.
+    buddies
+        Other divers; those nearer to the camera hide the others.
 
     """
 
@@ -139,6 +175,9 @@ class Clip:
     seed: int
     is_sign: bool = False
     mittens: bool = False
+    begins: float = 0.0
+    path: Route = ((0.0, 0.0),)
+    buddies: tuple[Buddy, ...] = ()
 
 
 UPPER_BODY = View(1.72, aim=(0, -0.06))
@@ -381,3 +420,80 @@ SHAPED_CLIPS = (
     _shaped("flat", 3, "engineer", "pool", _OBLIQUE, _SMALL),
 )
 """One movement with several hand shapes, for tests alone; the first two demonstrate it."""
+
+_LEFT, _RIGHT = View(2.2, aim=(0.45, -0.1)), View(2.2, aim=(-0.45, -0.1))
+"""Places beside each other for two divers."""
+
+PAIR_CLIPS = (
+    Clip(
+        "square-with-buddy-first",
+        "square",
+        "engineer",
+        "lagoon",
+        View(1.8, aim=(0.2, -0.06)),
+        Manner(tempo=1.1),
+        501,
+        begins=1.6,
+        path=((0.0, -0.9), (0.6, -0.9), (1.6, 0.0)),
+        buddies=(Buddy("surveyor", View(3.6, aim=(-0.95, -0.1))),),
+    ),
+    Clip(
+        "circle-with-buddy-between",
+        "circle",
+        "biologist",
+        "reef",
+        View(2.1, aim=(0.0, -0.06)),
+        Manner(tempo=0.9),
+        502,
+        buddies=(
+            Buddy(
+                "surveyor",
+                View(1.7, aim=(0.0, 0.0)),
+                path=((0.0, 1.0), (2.6, 1.0), (5.0, -1.0), (9.0, -1.0)),
+            ),
+        ),
+    ),
+    Clip(
+        "infinity-with-buddy-nearer",
+        "infinity",
+        "student",
+        "pool",
+        View(2.6, aim=(0.6, -0.1)),
+        Manner(),
+        503,
+        buddies=(Buddy("archaeologist", View(1.6, aim=(-0.4, -0.15))),),
+    ),
+    Clip(
+        "wedge-with-buddy-answering",
+        "wedge",
+        "instructor",
+        "lagoon",
+        _LEFT,
+        Manner(),
+        504,
+        buddies=(Buddy("biologist", _RIGHT, begins=2.4),),
+    ),
+    Clip(
+        "square-with-buddy-saluting-first",
+        "square",
+        "surveyor",
+        "pool",
+        _RIGHT,
+        Manner(tempo=1.1),
+        505,
+        begins=2.6,
+        buddies=(Buddy("student", _LEFT, begins=0.3),),
+    ),
+    Clip(
+        "circle-then-line-by-buddy",
+        "circle",
+        "biologist",
+        "reef",
+        _LEFT,
+        Manner(tempo=1.2),
+        506,
+        buddies=(Buddy("engineer", _RIGHT, Manner(tempo=1.2), gesture="line", begins=6.0),),
+    ),
+)
+"""Two divers in view, for the tests of whose body counts: a buddy who is there first, who passes
+between, who is nearer, who salutes in between or before, and who gestures afterwards."""

@@ -265,6 +265,24 @@ def move_about(manner: Manner, rate: float, seed: int) -> Performance:
     return _animate(timeline, manner, np.random.default_rng(seed))
 
 
+def stand_by(
+    manner: Manner, rate: float, seed: int, seconds: float, salutes: float | None = None
+) -> Performance:
+    """Compose what a buddy does: nothing, or one salute from `salutes` seconds on.
+
+    Other parameters are those of `perform`.
+    """
+    timeline = Timeline(rate)
+    still = [REST] * timeline.frames(seconds if salutes is None else salutes)
+    timeline.add("rest", still, still)
+    if salutes is not None:
+        timeline.move("raise", 0.75 / manner.tempo, SALUTE, REST)
+        timeline.hold("salute", manner.hold)
+        timeline.move("lower", 0.75 / manner.tempo, REST, REST)
+        timeline.hold("rest", seconds)
+    return _animate(timeline, manner, np.random.default_rng(seed))
+
+
 def _animate(timeline: Timeline, manner: Manner, random: np.random.Generator) -> Performance:
     """Add what nobody does on purpose: tremor of the hands, drift and sway of the body."""
     time = np.arange(len(timeline.right)) / timeline.rate

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import cv2
@@ -93,14 +94,32 @@ class Scene:
             count += len(part.vertices)
         return np.concatenate(triangles), np.concatenate(colours).astype(np.float32)
 
-    def render(self, joints: Joints, time: float) -> npt.NDArray[np.uint8]:
-        """Draw one frame, ``(480, 640, 3)`` RGB."""
-        layer = cv2.resize(
-            self._diver_layer(joints, time), (WIDTH, HEIGHT), None, 0, 0, cv2.INTER_AREA
-        )
+    def layer(self, joints: Joints, time: float, shift: float = 0.0) -> Array:
+        """Draw the diver alone, ``(480, 640, 4)`` RGB and coverage, `shift` pixels to the right."""
+        fine = self._diver_layer(joints, time)
+        layer: Array = np.empty((HEIGHT, WIDTH, 4), np.float32)
+        cv2.resize(fine, (WIDTH, HEIGHT), layer, 0, 0, cv2.INTER_AREA)
+        if not shift:
+            return layer
+        move = np.array([[1.0, 0.0, shift], [0.0, 1.0, 0.0]])
+        moved = np.empty_like(layer)
+        cv2.warpAffine(layer, move, (WIDTH, HEIGHT), moved)
+        return moved
+
+    def render(
+        self,
+        joints: Joints,
+        time: float,
+        *,
+        shift: float = 0.0,
+        behind: Sequence[Array] = (),
+        before: Sequence[Array] = (),
+    ) -> npt.NDArray[np.uint8]:
+        """Draw one frame, ``(480, 640, 3)`` RGB; layers of other divers come farthest first."""
         image = self._backdrop.at(time)
-        image *= 1 - layer[..., 3:]
-        image += layer[..., :3]
+        for layer in (*behind, self.layer(joints, time, shift), *before):
+            image *= 1 - layer[..., 3:]
+            image += layer[..., :3]
         breath = self._carry(joints, "head", self._mouth[None])[0]
         draw_bubbles(image, self.camera, self.bubbles, breath, time)
         frame: npt.NDArray[np.uint8] = np.clip(image + 0.5, 0, 255).astype(np.uint8)
