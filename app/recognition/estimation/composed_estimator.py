@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import Protocol
 
 from app.recognition.estimation.estimator import check_image
@@ -10,13 +12,13 @@ from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 
 
 class BodyFinder(Protocol):
-    """Finds one person's body in the frames of one clip, in order."""
+    """Finds bodies in the frames of one clip, in order, and follows one of them."""
 
-    def track(self, image: Image, time: float) -> Body | None:
-        """Return the body in `image`, taken at `time` seconds, or None where none is seen."""
+    def track(self, image: Image, time: float) -> FrameLandmarks:
+        """Return the bodies in `image`, taken at `time` seconds, without hands."""
         ...
 
-    def examine(self, image: Image) -> Body | None:
+    def examine(self, image: Image) -> FrameLandmarks:
         """Return the body in `image` alone, without effect on the tracking."""
         ...
 
@@ -26,13 +28,13 @@ class BodyFinder(Protocol):
 
 
 class HandFinder(Protocol):
-    """Finds that person's hands in the same frames."""
+    """Finds the hands in the same frames."""
 
-    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
-        """Return up to two hands in `image`, larger first, given the body in it."""
+    def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
+        """Return up to two hands a person in `image`, larger first, given the bodies in it."""
         ...
 
-    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+    def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return those in `image` alone, without effect on the tracking."""
         ...
 
@@ -55,13 +57,13 @@ class TrackedHands:
     def __init__(self, tracker: HandTracker) -> None:
         self._tracker = tracker
 
-    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
-        """Return up to two hands in `image`, larger first."""
-        return self._tracker.complete(image, self._tracker.follow(image), body)
+    def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
+        """Return up to two hands a person in `image`, larger first."""
+        return self._tracker.complete(image, self._tracker.follow(image), bodies)
 
-    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
-        """Return up to two hands in `image` alone; tracking is left as it is."""
-        return TrackedHands(self._tracker.renew()).find(image, body)
+    def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
+        """Return up to two hands a person in `image` alone; tracking is left as it is."""
+        return TrackedHands(self._tracker.renew()).find(image, bodies)
 
     def reset(self) -> None:
         """Reset the tracking."""
@@ -74,7 +76,7 @@ class ComposedEstimator:
     Parameters
     ----------
     body
-        Finds the body.
+        Finds the bodies.
     hands
         Finds the hands; None: no hands, hence no salutes.
     landmarks
@@ -90,7 +92,7 @@ class ComposedEstimator:
         self.finds_hands = hands is not None
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
-        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+        """Find bodies and hands in `image`, taken `time` seconds after any fixed moment.
 
         Raises
         ------
@@ -98,8 +100,9 @@ class ComposedEstimator:
             When `image` is not an RGB image of 8 bits.
 
         """
-        body = self._body.track(image, time)
-        return FrameLandmarks(body, self._hands.find(image, body) if self._hands else ())
+        found = self._body.track(image, time)
+        hands = self._hands.find(image, found.bodies) if self._hands else ()
+        return replace(found, hands=hands)
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking.
@@ -111,8 +114,9 @@ class ComposedEstimator:
 
         """
         check_image(image)
-        body = self._body.examine(image)
-        return FrameLandmarks(body, self._hands.examine(image, body) if self._hands else ())
+        found = self._body.examine(image)
+        hands = self._hands.examine(image, found.bodies) if self._hands else ()
+        return replace(found, hands=hands)
 
     def reset(self) -> None:
         """Reset the tracking; call it before another clip."""

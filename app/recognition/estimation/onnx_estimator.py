@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
 
 from app.recognition.errors import EstimatorError
 from app.recognition.estimation.estimator import check_image
+from app.recognition.estimation.landmark_models.arms import find_stray_wrist
 from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
@@ -34,7 +36,7 @@ model save at most a third of the time, threads beyond the machine's cores nothi
 
 
 class OnnxPoseEstimator:
-    """Body and hands from images, tracked from frame to frame; a `PoseEstimator`.
+    """Bodies and hands from images, tracked from frame to frame; a `PoseEstimator`.
 
     Parameters
     ----------
@@ -80,7 +82,7 @@ class OnnxPoseEstimator:
         self._helper = ThreadPoolExecutor(1, "hands") if threads > 1 else None
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
-        """Find the body and the hands in `image`, taken `time` seconds after any fixed moment.
+        """Find bodies and hands in `image`, taken `time` seconds after any fixed moment.
 
         Parameters
         ----------
@@ -97,12 +99,14 @@ class OnnxPoseEstimator:
         """
         check_image(image)
         if self._helper is None:
-            body, followed = self._body.track(image, time), self._hands.follow(image)
+            found, followed = self._body.track(image, time), self._hands.follow(image)
         else:
             following = self._helper.submit(self._hands.follow, image)
-            body = self._body.track(image, time)
+            found = self._body.track(image, time)
             followed = following.result()
-        return FrameLandmarks(body, self._hands.complete(image, followed, body))
+        hands = self._hands.complete(image, followed, found.bodies)
+        self._body.seek(find_stray_wrist(hands, found.bodies))
+        return replace(found, hands=hands)
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking.
@@ -114,8 +118,8 @@ class OnnxPoseEstimator:
 
         """
         check_image(image)
-        body, hands = self._body.examine(image), self._hands.renew()
-        return FrameLandmarks(body, hands.complete(image, hands.follow(image), body))
+        found, hands = self._body.examine(image), self._hands.renew()
+        return replace(found, hands=hands.complete(image, hands.follow(image), found.bodies))
 
     def reset(self) -> None:
         """Reset tracking and smoothing; call it before another clip."""

@@ -20,8 +20,8 @@ from app.recognition.estimation.landmark_models.letterbox import Letterbox
 from app.recognition.estimation.landmark_models.onnx_session import Provider
 from app.recognition.estimation.landmark_models.planar_model import PlanarModel
 from app.recognition.estimation.landmark_models.suppression import select_best
-from app.recognition.estimation.person_tracker import PersonTracker
-from app.recognition.poses.frame import Body, Image
+from app.recognition.estimation.person_tracker import PersonTracker, measure_prominence
+from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import COCO_17
@@ -35,6 +35,9 @@ LEAST_SCORE: Final = 0.25
 
 MOST_OVERLAP: Final = 0.7
 """Intersection over union above which two candidates are one person; Ultralytics' default too."""
+
+MOST_OTHERS: Final = 2
+"""Most people beside the one who is followed, as `landmark_models.body.MOST_PEOPLE` counts them."""
 
 LEAST_VISIBILITY: Final = 0.5
 """Visibility below which a keypoint is NaN, as in Ultralytics' own results: its position is a guess
@@ -73,7 +76,7 @@ class People:
 
 
 class YoloPose:
-    """Finds one person's keypoints in an image; a `BodyFinder`.
+    """Finds people's keypoints in an image, and follows one of them; a `BodyFinder`.
 
     Parameters
     ----------
@@ -105,8 +108,8 @@ class YoloPose:
         self._subject = PersonTracker()
         decode_people(self._model.blank(), self._model.path)
 
-    def track(self, image: Image, time: float) -> Body | None:
-        """Return the body in `image`, taken at `time` seconds, or None where none is seen.
+    def track(self, image: Image, time: float) -> FrameLandmarks:
+        """Return the bodies in `image`, taken at `time` seconds; of others the most prominent.
 
         Landmarks that COCO does not have, or that are not visible, are NaN with visibility 0.
 
@@ -118,8 +121,8 @@ class YoloPose:
         """
         return self._look(image, self._subject, time)
 
-    def examine(self, image: Image) -> Body | None:
-        """Return the most prominent body in `image` alone; the tracking is left as it is.
+    def examine(self, image: Image) -> FrameLandmarks:
+        """Return the bodies in `image` alone, the most prominent first; tracking is left as it is.
 
         Raises
         ------
@@ -133,15 +136,23 @@ class YoloPose:
         """Reset the tracking."""
         self._subject.reset()
 
-    def _look(self, image: Image, subject: PersonTracker, time: float) -> Body | None:
+    def _look(self, image: Image, subject: PersonTracker, time: float) -> FrameLandmarks:
         check_image(image)
         letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._model.input_size)
         planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
         people = decode_people(self._model.run(planes), self._model.path)
         chosen = subject.choose(people.boxes, people.scores, time)
-        if chosen is None:
-            return None
-        return _body(people.keypoints[chosen], float(people.scores[chosen]), letterbox)
+        bodies = [
+            _body(keypoints, float(score), letterbox)
+            for keypoints, score in zip(people.keypoints, people.scores, strict=True)
+        ]
+        others = [
+            bodies[index]
+            for index in np.argsort(-measure_prominence(people.boxes, people.scores))
+            if index != chosen
+        ]
+        followed = None if chosen is None else bodies[chosen]
+        return FrameLandmarks(followed, (), tuple(others[:MOST_OTHERS]))
 
 
 def decode_people(outputs: list[npt.NDArray[np.float32]], path: Path) -> People:

@@ -71,7 +71,24 @@ class Hand:
 
 @dataclass(frozen=True, eq=False)
 class FrameLandmarks:
-    """The landmarks of one frame: at most one body, and up to two hands, the larger first."""
+    """The landmarks of one frame.
+
+    Attributes
+    ----------
+    body
+        The body of the person whom the estimator follows; None where they are not seen.
+    hands
+        Up to two hands of each person seen, the larger first.
+    others
+        The bodies of other people in the frame.
+
+    """
 
     body: Body | None
     hands: tuple[Hand, ...]
+    others: tuple[Body, ...] = ()
+
+    @property
+    def bodies(self) -> tuple[Body, ...]:
+        """All bodies in the frame, the followed one first."""
+        return (() if self.body is None else (self.body,)) + self.others

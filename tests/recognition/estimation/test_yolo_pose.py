@@ -55,7 +55,7 @@ def picture(*bodies: FloatArray, size: tuple[int, int] = (640, 360), radius: flo
 
 
 def found(model: YoloPose, image: Image, time: float = 0.0) -> Body:
-    body = model.track(image, time)
+    body = model.track(image, time).body
     assert body is not None
     return body
 
@@ -94,7 +94,7 @@ def test_a_keypoint_that_is_hidden_is_not_seen_and_the_others_stay(model: YoloPo
 
 def test_without_a_person_there_is_no_body(model: YoloPose) -> None:
     model.reset()
-    assert model.track(picture(), 0.0) is None
+    assert model.track(picture(), 0.0).bodies == ()
 
 
 def test_of_two_people_the_larger_one_is_followed_and_kept(small: YoloPose) -> None:
@@ -189,7 +189,7 @@ def test_an_examination_finds_who_is_most_prominent_and_follows_the_one_before(
     small.reset()
     near, larger = body_at(30, 50), body_at(400, 30, spacing=60)
     found(small, picture(near))
-    examined = small.examine(picture(near, larger))
+    examined = small.examine(picture(near, larger)).body
     assert examined is not None
     np.testing.assert_allclose(examined.xy[COLUMNS], larger, atol=1.5)
     again = found(small, picture(near, larger), 0.1)

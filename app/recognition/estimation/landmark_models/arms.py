@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,7 @@ from app.recognition.estimation.landmark_models.hand_regions import palm_size, u
 from app.recognition.estimation.landmark_models.region import Region, upright
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 
 LEAST_VISIBILITY: Final = 0.1
 """Least visibility of a wrist whose hand is searched, as in MediaPipe Holistic."""
@@ -39,6 +41,11 @@ FOREARM_REACH: Final = 0.6
 REACH: Final = 1.0
 """Largest distance between the pose's wrist and the hand's own, in palm sizes. Of hands on the
 tracked body's arms 95 % are nearer than 0.6; those of bystanders are several palms away."""
+
+
+OWN_REACH: Final = 1.5
+"""As `REACH`, for a hand that belongs to the nearest of several people: the smoothed wrist of a
+fast arm lags behind its hand by up to half a palm."""
 
 
 def region_of_wrist(body: Body, side: Side) -> Region | None:
@@ -107,3 +114,21 @@ def wrist_distance(hand: Hand, body: Body, side: Side) -> float:
     """Return the distance between the hand's wrist and the arm's, in sizes of the hand's palm."""
     wrist = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
     return float(np.linalg.norm(hand.xy[0] - wrist)) / max(palm_size(hand.xy), 1e-9)
+
+
+def find_owner(hand: Hand, bodies: Sequence[Body]) -> int | None:
+    """Return which of several bodies a hand belongs to; None where no wrist is within reach."""
+    far = [min(_reach_of(hand, body, side) for side in SIDES) for body in bodies]
+    nearest = min(range(len(far)), key=far.__getitem__, default=None)
+    return nearest if nearest is not None and far[nearest] <= OWN_REACH else None
+
+
+def find_stray_wrist(hands: Iterable[Hand], bodies: Sequence[Body]) -> FloatArray | None:
+    """Return the wrist ``(2,)`` of the largest hand that belongs to none of the bodies."""
+    stray = [hand for hand in hands if bodies and find_owner(hand, bodies) is None]
+    return max(stray, key=lambda hand: hand.size).xy[0] if stray else None
+
+
+def _reach_of(hand: Hand, body: Body, side: Side) -> float:
+    far = wrist_distance(hand, body, side)
+    return far if np.isfinite(far) else np.inf

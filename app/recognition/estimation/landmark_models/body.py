@@ -1,15 +1,21 @@
-"""Body tracker: finds a body with the person detector, then tracks it from frame to frame."""
+"""Body tracker: finds people with the person detector, then tracks them from frame to frame."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from typing import Final
 
+import numpy as np
+
 from app.recognition.estimation.landmark_models.body_model import MARGIN, BodyModel, SeenBody
-from app.recognition.estimation.landmark_models.body_search import BodySearch
-from app.recognition.estimation.landmark_models.detector import Detector
+from app.recognition.estimation.landmark_models.body_search import TORSO, WEAK_SCORE, BodySearch
+from app.recognition.estimation.landmark_models.detector import LEAST_SCORE, Detector
 from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
-from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.frame import Body, FrameLandmarks, Image
+from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
+from app.recognition.poses.sequence import FloatArray
 
 SEARCH_PAUSE: Final = 10
 """Consecutive frames without a person before another search; the first frame is searched at once.
@@ -17,18 +23,69 @@ The detector finds most people within these frames, and they are tracked from th
 costs as much as five detections, so frames without a person cost half as much again, and others no
 more."""
 
+MOST_PEOPLE: Final = 3
+"""Most people tracked at once: a diver, a buddy and somebody who passes. Each beyond the first
+costs a run of the body model per frame."""
+
+WATCH_PAUSE: Final = 50
+"""Frames between two looks for further people, two seconds. A look costs a third of a frame, so
+while one person is seen all of them cost a hundredth."""
+
+HURRIED_PAUSE: Final = 5
+"""The same while a hand is seen that belongs to nobody, and after somebody was lost: a salute is
+held for three such pauses."""
+
+HURRY: Final = 75
+"""Frames for which somebody who was lost is looked for, three seconds: who swims past hides a diver
+for less."""
+
+SAME_TORSO: Final = 0.5
+"""Mean distance of two torsos' corners, in the larger torso's size, below which two results show
+one person: two people so near hide each other."""
+
+SAME_REGION: Final = 0.2
+"""Distance of the hips in a detection from those of a tracked person, in sides of the larger
+region, below which no look is needed to know who it is: the detector errs by 0.07 to 0.22, and two
+people beside each other are at least 0.23 apart."""
+
 VISIBILITY_WEIGHT: Final = 0.1
 """Weight of a new visibility in MediaPipe's smoothing, which lags by about ten frames."""
 
+_WRISTS: Final = [POSE_LANDMARKS.index(name) for name in WRISTS]
+
+
+@dataclass(eq=False)
+class _Person:
+    """A person who is tracked: the newest result, and the filters of the landmarks."""
+
+    seen: SeenBody
+    position: OneEuroFilter = field(
+        default_factory=lambda: OneEuroFilter(minimum_cutoff=0.05, beta=80.0)
+    )
+    visibility: ExponentialFilter = field(
+        default_factory=lambda: ExponentialFilter(VISIBILITY_WEIGHT)
+    )
+
+    def smooth(self, time: float) -> Body:
+        """Return the newest result, smoothed."""
+        seen = self.seen
+        return Body(
+            xy=self.position.apply(seen.xy, time, scale=1 / seen.following.side),
+            visibility=self.visibility.apply(seen.visibility),
+            score=seen.score,
+            world=seen.world,
+        )
+
 
 class BodyTracker:
-    """Tracks the most certain person through the frames of a clip.
+    """Tracks the people in the frames of a clip, a `BodyFinder`; the one found first is followed.
 
-    Detection runs only on frames where no body is tracked; where it finds nobody in the first
-    frame, or in `SEARCH_PAUSE` frames in a row, a `BodySearch` follows. The landmarks of a frame
-    give the region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's:
-    0.05 Hz at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94
-    when a landmark moves fast against the size of the body.
+    Detection runs on frames where no body is tracked; where it finds nobody in the first frame, or
+    in `SEARCH_PAUSE` frames in a row, a `BodySearch` follows. The landmarks of a frame give the
+    region of the next (Bazarevsky et al. 2020, BlazePose). Their cutoffs are MediaPipe's: 0.05 Hz
+    at rest (weight about 0.01 at 30 frames a second), opening to a weight of about 0.94 when a
+    landmark moves fast against the size of the body. Every `WATCH_PAUSE` frames the detector looks
+    for further people.
 
     Parameters
     ----------
@@ -37,7 +94,8 @@ class BodyTracker:
     model
         The pose landmark model.
     searches
-        Whether a search follows; MediaPipe's own library has none.
+        Whether a search follows, and further people are tracked; MediaPipe's own library does
+        neither.
 
     """
 
@@ -45,42 +103,65 @@ class BodyTracker:
         self._detector = detector
         self._model = model
         self._search = BodySearch(detector, model) if searches else None
-        self._position = OneEuroFilter(minimum_cutoff=0.05, beta=80.0)
-        self._visibility = ExponentialFilter(VISIBILITY_WEIGHT)
-        self._region: Region | None = None
-        self._until_search = 1
+        self.reset()
 
     def reset(self) -> None:
         """Reset the tracking; the next frame is the first."""
-        self._lose()
+        self._people: list[_Person] = []
         self._until_search = 1
+        self._since_watch = WATCH_PAUSE
+        self._hurry = 0
+        self._sought: FloatArray | None = None
 
-    def examine(self, image: Image) -> Body | None:
+    def examine(self, image: Image) -> FrameLandmarks:
         """Return the body in `image` alone, searched at once; tracking is left as it is."""
         seen = self._detect(image)
         if seen is None and self._search:
             seen = self._search.find(image)
-        return Body(seen.xy, seen.visibility, seen.score, seen.world) if seen else None
+        body = Body(seen.xy, seen.visibility, seen.score, seen.world) if seen else None
+        return FrameLandmarks(body, ())
 
-    def track(self, image: Image, time: float) -> Body | None:
-        """Return the body in `image`, taken at `time` seconds, or None where none is seen."""
-        seen = self._look(image, self._region) if self._region else self._find(image)
-        if seen is None:
-            self._lose()
-            return None
-        self._until_search = SEARCH_PAUSE
-        self._region = seen.following
-        return Body(
-            xy=self._position.apply(seen.xy, time, scale=1 / seen.following.side),
-            visibility=self._visibility.apply(seen.visibility),
-            score=seen.score,
-            world=seen.world,
-        )
+    def track(self, image: Image, time: float) -> FrameLandmarks:
+        """Return the bodies in `image`, taken at `time` seconds."""
+        followed = self._follow(image)
+        self._hurry = HURRY if len(followed) < len(self._people) else max(0, self._hurry - 1)
+        self._people = followed
+        if not followed and (found := self._find(image)) is not None:
+            followed.append(_Person(found))
+        if followed:
+            self._until_search = SEARCH_PAUSE
+            self._watch(image)
+        bodies = tuple(person.smooth(time) for person in self._people)
+        return FrameLandmarks(bodies[0] if bodies else None, (), bodies[1:])
 
-    def _lose(self) -> None:
-        self._region = None
-        self._position.reset()
-        self._visibility.reset()
+    def seek(self, wrist: FloatArray | None) -> None:
+        """Look soon for the person of a hand that belongs to nobody.
+
+        Parameters
+        ----------
+        wrist
+            ``(2,)`` pixels of the hand's wrist; None where there is no such hand.
+
+        """
+        self._sought = wrist
+
+    def _follow(self, image: Image) -> list[_Person]:
+        """Return the people who are still seen.
+
+        Where two results show one person, the track that came there by a jump is lost.
+        """
+        moved: list[tuple[float, int, SeenBody]] = []
+        for place, person in enumerate(self._people):
+            seen = self._look(image, person.seen.following)
+            if seen is not None:
+                moved.append((_measure_distance(person.seen, seen), place, seen))
+        kept: dict[int, SeenBody] = {}
+        for _, place, seen in sorted(moved, key=lambda one: one[0]):
+            if not _is_among(seen, kept.values()):
+                kept[place] = seen
+        for place, seen in kept.items():
+            self._people[place].seen = seen
+        return [person for place, person in enumerate(self._people) if place in kept]
 
     def _look(self, image: Image, region: Region) -> SeenBody | None:
         seen = self._model.look(image, region)
@@ -101,3 +182,58 @@ class BodyTracker:
             region = Region.aligned(person.keypoints[0], person.keypoints[1], MARGIN)
             return self._look(image, region) if region.usable else None
         return None
+
+    def _watch(self, image: Image) -> None:
+        """Track further people, where it is time to look for them."""
+        self._since_watch += 1
+        hurried = self._hurry or self._sought is not None
+        pause = HURRIED_PAUSE if hurried else WATCH_PAUSE
+        if self._search is None or self._since_watch < pause or len(self._people) >= MOST_PEOPLE:
+            return
+        self._since_watch = 0
+        least = LEAST_SCORE if self._sought is None else WEAK_SCORE
+        for found in self._detector.detect(image, least=least)[: MOST_PEOPLE + 1]:
+            seen = self._look_twice(
+                image, Region.aligned(found.keypoints[0], found.keypoints[1], MARGIN)
+            )
+            if seen is None or len(self._people) >= MOST_PEOPLE:
+                continue
+            if _is_among(seen, [person.seen for person in self._people]):
+                continue
+            if found.score >= LEAST_SCORE or self._reaches(seen):
+                self._people.append(_Person(seen))
+
+    def _look_twice(self, image: Image, region: Region) -> SeenBody | None:
+        """Return the body near a region of the detector, where two looks in a row believe in it."""
+        if not region.usable or any(_covers(person.seen, region) for person in self._people):
+            return None
+        first = self._look(image, region)
+        return self._look(image, first.following) if first else None
+
+    def _reaches(self, seen: SeenBody) -> bool:
+        """Return whether a body has a wrist at the hand that is sought."""
+        assert self._sought is not None
+        far = np.linalg.norm(seen.xy[_WRISTS] - self._sought, axis=1).min()
+        return bool(far < SAME_TORSO * _measure_torso(seen))
+
+
+def _measure_torso(seen: SeenBody) -> float:
+    """Return the diagonal of the box around shoulders and hips, pixels."""
+    return float(np.linalg.norm(np.ptp(seen.xy[TORSO], axis=0)))
+
+
+def _measure_distance(one: SeenBody, other: SeenBody) -> float:
+    """Return the mean distance of the torsos' corners, in the larger torso's size."""
+    apart = np.linalg.norm(one.xy[TORSO] - other.xy[TORSO], axis=1).mean()
+    return float(apart / max(_measure_torso(one), _measure_torso(other), 1e-9))
+
+
+def _is_among(seen: SeenBody, others: Iterable[SeenBody]) -> bool:
+    return any(_measure_distance(seen, other) < SAME_TORSO for other in others)
+
+
+def _covers(seen: SeenBody, region: Region) -> bool:
+    """Return whether a detected region is that of a person who is tracked already."""
+    here = seen.following
+    apart = np.hypot(here.x - region.x, here.y - region.y)
+    return bool(apart < SAME_REGION * max(here.side, region.side))

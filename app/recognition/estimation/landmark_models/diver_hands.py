@@ -9,6 +9,7 @@ beyond the edge is padded with black, and keypoints are pixels of the image.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -97,15 +98,15 @@ class DiverHands:
                 f"is cut out as a square"
             )
 
-    def find(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
-        """Return up to two hands in `image`, larger first.
+    def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
+        """Return up to two hands a person in `image`, larger first.
 
         Parameters
         ----------
         image
             ``(height, width, 3)`` RGB, upright.
-        body
-            The body in the image. Its nearer wrist gives a hand's side, which the models do not.
+        bodies
+            The bodies in the image. The nearest wrist gives a hand's side, which the models do not.
             Without a body every hand counts as a right one, which makes no difference to the
             salute.
 
@@ -119,22 +120,24 @@ class DiverHands:
         letterbox = Letterbox.fitting((image.shape[1], image.shape[0]), self._detector.input_size)
         planes = letterbox.apply(image).transpose(2, 0, 1).astype(np.float32) / 255
         rows = _boxes(self._detector.run(planes), self._detector.path)
-        best = rows[np.argsort(-rows[:, 6], kind="stable")][:MOST_HANDS]
+        best = rows[np.argsort(-rows[:, 6], kind="stable")][: MOST_HANDS * max(1, len(bodies))]
         found = (
-            self._hand(image, letterbox.to_image(row[1:5].reshape(2, 2)), float(row[6]), body)
+            self._hand(image, letterbox.to_image(row[1:5].reshape(2, 2)), float(row[6]), bodies)
             for row in best
             if row[6] >= LEAST_SCORE
         )
         return tuple(sorted((hand for hand in found if hand), key=lambda hand: -hand.size))
 
-    def examine(self, image: Image, body: Body | None) -> tuple[Hand, ...]:
+    def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return the same as `find`: images are processed independently."""
-        return self.find(image, body)
+        return self.find(image, bodies)
 
     def reset(self) -> None:
         """Do nothing: images are processed independently."""
 
-    def _hand(self, image: Image, box: FloatArray, score: float, body: Body | None) -> Hand | None:
+    def _hand(
+        self, image: Image, box: FloatArray, score: float, bodies: Sequence[Body]
+    ) -> Hand | None:
         centre, side = box.mean(axis=0), float((box[1] - box[0]).max())
         region = Region(float(centre[0]), float(centre[1]), side)
         if not region.usable:
@@ -148,7 +151,7 @@ class DiverHands:
             return None
         cells = np.array([maps.shape[2], maps.shape[1]])
         xy = region.to_image(find_peaks(maps) / cells * size, size)
-        return Hand(xy, _side_of(xy, body), min(score, 1.0) * belief)
+        return Hand(xy, _side_of(xy, bodies), min(score, 1.0) * belief)
 
 
 def find_peaks(maps: npt.NDArray[np.float32]) -> FloatArray:
@@ -194,11 +197,12 @@ def _heat_maps(outputs: list[npt.NDArray[np.float32]], path: Path) -> npt.NDArra
     )
 
 
-def _side_of(xy: FloatArray, body: Body | None) -> Side:
-    if body is None:
-        return "right"
-    wrists = [body.xy[POSE_LANDMARKS.index(f"{side}_wrist")] for side in SIDES]
-    distances = [float(np.linalg.norm(wrist - xy[0])) for wrist in wrists]
+def _side_of(xy: FloatArray, bodies: Sequence[Body]) -> Side:
+    """Return the side of the nearest wrist."""
+    wrists = [
+        (body.xy[POSE_LANDMARKS.index(f"{side}_wrist")], side) for body in bodies for side in SIDES
+    ]
+    distances = [float(np.linalg.norm(wrist - xy[0])) for wrist, _ in wrists]
     if not np.isfinite(distances).any():
         return "right"
-    return SIDES[int(np.nanargmin(distances))]
+    return wrists[int(np.nanargmin(distances))][1]

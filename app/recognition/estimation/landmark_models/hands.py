@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -38,7 +38,7 @@ HAND_SIGNATURE: Final = Signature(
 """Landmarks (x, y, z), probability of a hand, probability that it is a right one."""
 
 MOST_HANDS: Final = 2
-"""Most hands: a diver has two, and each costs a run of the landmark model per frame."""
+"""Most hands of one person; each costs a run of the landmark model per frame."""
 
 LEAST_PRESENCE: Final = 0.5
 """Least probability of a hand; MediaPipe's default minimum presence confidence."""
@@ -70,6 +70,9 @@ DUPLICATE_OVERLAP: Final = 0.2
 """Two hands are one if at least this number of landmarks lies within this share of the palm's size
 of each other and their boxes overlap by more than this; MediaPipe found the three values by
 experiment."""
+
+Arm = tuple[Body, Side]
+"""An arm of one of the bodies in an image."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -136,12 +139,12 @@ class HandModel:
 
 
 class HandTracker:
-    """Tracks up to two hands through the frames of a clip.
+    """Tracks up to two hands of each person through the frames of a clip.
 
-    Palms are detected only while fewer hands than `MOST_HANDS` are tracked with a presence of
-    `SURE` or more; the landmarks of a frame give the regions of the next. Where there are more
-    hands than `MOST_HANDS`, or two at one arm, those with the highest scores are kept. Hands are
-    not smoothed: the model's own output is steady, and fingers are fast.
+    Palms are detected only while fewer hands than `MOST_HANDS` a person are tracked with a presence
+    of `SURE` or more; the landmarks of a frame give the regions of the next. Where there are more
+    hands than that, or two at one arm, those with the highest scores are kept. Hands are not
+    smoothed: the model's own output is steady, and fingers are fast.
 
     The palm detector works on the whole frame at 192 pixels a side, in which the hands of a distant
     diver are too small. With ``search="pose"`` a hand is searched in the full frame at each arm
@@ -168,6 +171,7 @@ class HandTracker:
     def reset(self) -> None:
         """Reset the tracking."""
         self._tracked: tuple[SeenHand, ...] = ()
+        self._most = MOST_HANDS
         self._until_palms = 0
         self._until_forearms = 0
 
@@ -192,7 +196,7 @@ class HandTracker:
         return tuple(kept)
 
     def complete(
-        self, image: Image, followed: tuple[SeenHand, ...], body: Body | None
+        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body]
     ) -> tuple[Hand, ...]:
         """Return the hands in `image`, larger first.
 
@@ -202,27 +206,28 @@ class HandTracker:
             The image of `followed`.
         followed
             What `follow` returned.
-        body
-            The body in the image, if one is seen.
+        bodies
+            The bodies in the image, if any are seen.
 
         """
-        if self._search == "pose" and body is not None:
-            seen = self._on_arms(image, followed, body)
+        self._most = MOST_HANDS * max(1, len(bodies))
+        if self._search == "pose" and bodies:
+            seen = self._on_arms(image, followed, bodies)
         else:
-            seen, self._until_palms = _most_believed(followed), 0
+            seen, self._until_palms = self._most_believed(followed), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
         return tuple(sorted((one.hand for one in seen), key=lambda hand: -hand.size))
 
     def _detect_palms(self, image: Image) -> list[Region]:
         """Return the regions of palms that are not tracked yet, where some may be."""
         tracked = [one.following for one in self._tracked]
-        if sum(one.hand.score >= SURE for one in self._tracked) == MOST_HANDS:
+        if sum(one.hand.score >= SURE for one in self._tracked) >= self._most:
             return []
         if self._until_palms > 0:
             self._until_palms -= 1
             return []
         self._until_palms = PALM_PAUSE - 1
-        proposals = [region_of_palm(palm) for palm in self._palms.detect(image)[:MOST_HANDS]]
+        proposals = [region_of_palm(palm) for palm in self._palms.detect(image)[: self._most]]
         return [
             proposal
             for proposal in proposals
@@ -231,28 +236,27 @@ class HandTracker:
         ]
 
     def _on_arms(
-        self, image: Image, followed: tuple[SeenHand, ...], body: Body
+        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body]
     ) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
         Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
-        others, or where the pose is wrong) compete with those at the arms by score.
+        people whose body is not seen, or where the pose is wrong) compete with those at the arms by
+        score.
         """
-        arms = _arms_of(followed, body)
+        free = [(body, side) for body in bodies for side in SIDES]
+        arms, elsewhere = _sort_by_arm(followed, free)
         with_forearms = self._until_forearms == 0
         self._until_forearms = (self._until_forearms or FOREARM_PAUSE) - 1
-        for side in SIDES:
-            if side not in arms:
+        for place, (body, side) in enumerate(free):
+            if place not in arms:
                 seen = self._search_arm(image, body, side, with_forearm=with_forearms)
                 if seen is not None and not _known(seen, arms.values()):
-                    arms[side] = seen
-        elsewhere = (
-            one
-            for one in followed
-            if all(wrist_distance(one.hand, body, side) > REACH for side in SIDES)
-            and (one.hand.score >= SURE or not one.fresh)
-        )
-        return _most_believed((*arms.values(), *elsewhere))
+                    arms[place] = seen
+        return self._most_believed((*arms.values(), *elsewhere))
+
+    def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
+        return tuple(_by_belief(seen)[: self._most])
 
     def _search_arm(
         self, image: Image, body: Body, side: Side, *, with_forearm: bool
@@ -272,24 +276,30 @@ class HandTracker:
         return None
 
 
-def _arms_of(followed: Iterable[SeenHand], body: Body) -> dict[Side, SeenHand]:
-    """Assign hands to the arms, the highest score first, each to the nearest within `REACH`."""
-    arms: dict[Side, SeenHand] = {}
+def _sort_by_arm(
+    followed: Iterable[SeenHand], free: Sequence[Arm]
+) -> tuple[dict[int, SeenHand], list[SeenHand]]:
+    """Assign hands to arms, the highest score first, each to the nearest free one within `REACH`.
+
+    Returns
+    -------
+    Hands by the position of their arm in `free`, and those that are away from all arms.
+
+    """
+    arms: dict[int, SeenHand] = {}
+    elsewhere = []
     for one in _by_belief(followed):
-        free = [side for side in SIDES if side not in arms]
-        distances = {side: wrist_distance(one.hand, body, side) for side in free}
-        side = min(distances, key=lambda side: distances[side], default=None)
-        if side is not None and distances[side] <= REACH:
-            arms[side] = one
-    return arms
+        far = [wrist_distance(one.hand, body, side) for body, side in free]
+        near = [place for place, distance in enumerate(far) if distance <= REACH]
+        if vacant := [place for place in near if place not in arms]:
+            arms[min(vacant, key=lambda place: far[place])] = one
+        if not near and (one.hand.score >= SURE or not one.fresh):
+            elsewhere.append(one)
+    return arms, elsewhere
 
 
 def _by_belief(seen: Iterable[SeenHand]) -> list[SeenHand]:
     return sorted(seen, key=lambda one: -one.hand.score)
-
-
-def _most_believed(seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
-    return tuple(_by_belief(seen)[:MOST_HANDS])
 
 
 def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:

@@ -10,7 +10,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation.composed_estimator import ComposedEstimator, TrackedHands
 from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.estimation.water_sight import WaterSight
-from app.recognition.poses.frame import Body, Image
+from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from osg_ros.estimation_settings import PROVIDER, THREADS, WATER
 from osg_ros.nodes.managed_node import SENSOR_DATA, ManagedNode
@@ -35,13 +35,13 @@ class ReceivedBody:
     def __init__(self) -> None:
         self.body: Body | None = None
 
-    def track(self, image: Image, time: float) -> Body | None:
+    def track(self, image: Image, time: float) -> FrameLandmarks:
         """Return the body."""
-        return self.body
+        return FrameLandmarks(self.body, ())
 
-    def examine(self, image: Image) -> Body | None:
+    def examine(self, image: Image) -> FrameLandmarks:
         """Return the body."""
-        return self.body
+        return FrameLandmarks(self.body, ())
 
     def reset(self) -> None:
         """Do nothing: every picture comes with its own body."""

@@ -59,7 +59,7 @@ def only(hands: tuple[Hand, ...]) -> Hand:
 @pytest.mark.parametrize("size", [(640, 480), (480, 854), (1280, 720)])
 def test_keypoints_are_pixels_of_the_image(model: DiverHands, size: tuple[int, int]) -> None:
     places = placed(hand_xy(salute()), (150.0, 120.0), 200)
-    hand = only(model.find(picture(places, size), None))
+    hand = only(model.find(picture(places, size), ()))
     # A cell of the heat map is 200 / 48, about four pixels, and a peak is known to a quarter of it.
     assert np.abs(hand.xy - places).max() < 2
     assert 0.5 < hand.score <= 1
@@ -67,13 +67,13 @@ def test_keypoints_are_pixels_of_the_image(model: DiverHands, size: tuple[int, i
 
 def test_a_salute_is_seen_and_an_open_hand_is_none(model: DiverHands) -> None:
     for shape, saluting in ((salute(), True), (SHAPES["open"](np.random.default_rng(0)), False)):
-        hands = model.find(picture(placed(hand_xy(shape), (200.0, 100.0), 220)), None)
+        hands = model.find(picture(placed(hand_xy(shape), (200.0, 100.0), 220)), ())
         assert (best_salute(hands) > ENTER_SCORE) == saluting
 
 
 def test_a_hand_at_the_edge_is_padded_where_the_port_cuts_out_nothing(model: DiverHands) -> None:
     places = placed(hand_xy(salute()), (-40.0, -30.0), 200)
-    hand = only(model.find(picture(places), None))
+    hand = only(model.find(picture(places), ()))
     inside = (places > 4).all(axis=1)
     assert 0 < inside.sum() < len(places)
     assert np.abs(hand.xy - places)[inside].max() < 3
@@ -81,7 +81,7 @@ def test_a_hand_at_the_edge_is_padded_where_the_port_cuts_out_nothing(model: Div
 
 def test_in_an_empty_picture_there_is_no_hand(model: DiverHands) -> None:
     model.reset()
-    assert model.find(np.zeros((480, 640, 3), np.uint8), None) == ()
+    assert model.find(np.zeros((480, 640, 3), np.uint8), ()) == ()
 
 
 def test_the_side_is_that_of_the_nearer_wrist(model: DiverHands) -> None:
@@ -89,11 +89,11 @@ def test_the_side_is_that_of_the_nearer_wrist(model: DiverHands) -> None:
     xy = np.full((33, 2), np.nan)
     image = picture(places)
     body = Body(xy, np.zeros(33), 1.0)
-    assert only(model.find(image, body)).side == "right"
+    assert only(model.find(image, (body,))).side == "right"
     xy[POSE_LANDMARKS.index("left_wrist")] = places[0]
-    assert only(model.find(image, body)).side == "left"
+    assert only(model.find(image, (body,))).side == "left"
     xy[POSE_LANDMARKS.index("right_wrist")] = places[0] + 30
-    assert only(model.find(image, body)).side == "left"
+    assert only(model.find(image, (body,))).side == "left"
 
 
 @given(st.integers(0, 2**32 - 1))
