@@ -22,9 +22,10 @@ from app.keypoint_files.keypoint_table import (
     mask_unseen,
     visibility_of,
 )
-from app.keypoint_files.prominence import prominence_over
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import translate_landmark
+from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 
 LEAST_LIKELIHOOD: Final = 0.6
@@ -51,7 +52,6 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
 
     See `app.keypoint_files.read_keypoints`.
     """
-    del options  # DeepLabCut's files need only a frame rate, which is requested later
     with path.open(newline="", encoding="utf-8-sig") as file:
         lines = csv.reader(file)
         headings = _headings(lines, path)
@@ -63,10 +63,20 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
     if not rows:
         raise KeypointFileError(f"{path} has headings and no frame")
     table = np.array(rows)
-    who = list(dict.fromkeys(headings["individuals"]))
-    everybody = [_individual(table, headings, each) for each in who]
-    chosen = int(np.argmax([prominence_over(one.xy, one.confidence) for one in everybody]))
-    return replace(everybody[chosen], notes=_notes(who, chosen))
+    everybody = {
+        each: _individual(table, headings, each) for each in dict.fromkeys(headings["individuals"])
+    }
+    # Body parts outside of the individuals, as of a buoy, form an individual of their own.
+    people = {
+        who: one for who, one in everybody.items() if _is_person(one.names, options)
+    } or everybody
+    chosen = max(people, key=lambda who: prominence_over(people[who].xy, people[who].confidence))
+    seen = [np.asarray(np.isfinite(one.xy).all(axis=2)).any(axis=1) for one in people.values()]
+    return replace(
+        people[chosen],
+        notes=_notes(len(people), chosen),
+        people=np.sum(seen, axis=0, dtype=np.int64),
+    )
 
 
 def _individual(table: FloatArray, headings: dict[str, list[str]], who: str) -> KeypointTable:
@@ -124,7 +134,11 @@ def _numbers(line: list[str], headings: dict[str, list[str]], row: int, path: Pa
         ) from error
 
 
-def _notes(who: list[str], chosen: int) -> tuple[str, ...]:
-    if len(who) == 1:
+def _is_person(names: tuple[str, ...], options: KeypointOptions) -> bool:
+    return any(name in options.landmarks or translate_landmark(name) for name in names)
+
+
+def _notes(count: int, chosen: str) -> tuple[str, ...]:
+    if count == 1:
         return ()
-    return (f"of {len(who)} individuals {who[chosen]!r} stands out most and is followed",)
+    return (f"of {count} individuals {chosen!r} stands out most and is followed",)

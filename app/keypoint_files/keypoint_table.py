@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.frame import Hand
@@ -141,6 +142,8 @@ class KeypointTable:
         T tuples of hands, in the unit of `xy`; None if the file has no hands at all.
     notes
         Sentences for the user about the file.
+    people
+        ``(T,)`` number of people seen in each frame; None where the file holds one person.
 
     """
 
@@ -152,6 +155,7 @@ class KeypointTable:
     frame_rate: float | None = None
     hands: tuple[tuple[Hand, ...], ...] | None = None
     notes: tuple[str, ...] = ()
+    people: npt.NDArray[np.int64] | None = None
 
     @property
     def around_zero(self) -> bool:

@@ -23,11 +23,12 @@ from app.keypoint_files.keypoint_table import (
     mask_unseen,
 )
 from app.recognition.errors import KeypointFileError
-from app.recognition.estimation.person_tracker import PersonTracker, find_boxes
 from app.recognition.poses.frame import SIDES, Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import BODY_25, COCO_18, LandmarkSet
+from app.recognition.recording.people import Choice, People, SeenPerson
+from app.recognition.recording.salute import best_salute
 from app.recognition.recording.video_limits import VideoLimits
 
 SETS: Final[dict[int, LandmarkSet]] = {25: BODY_25, 18: COCO_18}
@@ -69,20 +70,24 @@ def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> 
             f" run OpenPose with one model for all frames"
         )
     landmarks = SETS[sizes.pop()]
-    followed = _follow_person(everybody, frames / (options.nominal_rate))
+    choice = _choose_person(everybody, frames / options.nominal_rate)
+    followed = [
+        None if place is None else people[place]
+        for people, place in zip(everybody, choice.index, strict=True)
+    ]
     empty = np.full((len(landmarks), 3), np.nan)
     rows = np.stack([empty if one is None else one.body for one in followed])
     kept = [index for index, name in enumerate(landmarks) if name is not None]
     confidence = np.clip(np.nan_to_num(rows[:, kept, 2]), 0, 1)
     sought = any(hand is not None for people in everybody for one in people for hand in one.hands)
-    most = max(len(people) for people in everybody)
     return KeypointTable(
         names=tuple(name for name in landmarks if name is not None),
         xy=mask_unseen(rows[:, kept, :2], confidence, 0.0),
         confidence=confidence,
         times=Times(frames, counted=True),
         hands=tuple(_hands(one) for one in followed) if sought else None,
-        notes=(f"up to {most} people in a frame; the largest is followed",) if most > 1 else (),
+        notes=choice.notes,
+        people=choice.count,
     )
 
 
@@ -158,17 +163,17 @@ def _points(entry: Any, keys: tuple[str, ...], file: Path) -> FloatArray | None:
     return numbers.reshape(-1, 3)
 
 
-def _follow_person(everybody: list[list[_Person]], times: FloatArray) -> list[_Person | None]:
-    choice = PersonTracker()
-    followed: list[_Person | None] = []
-    for people, time in zip(everybody, times.tolist(), strict=True):
-        chosen = None
-        if people:
-            boxes = find_boxes(np.stack([person.xy for person in people]))
-            scores = np.array([np.nanmean(person.body[:, 2]) for person in people])
-            chosen = choice.choose(boxes, scores, time)
-        followed.append(None if chosen is None else people[chosen])
-    return followed
+def _choose_person(everybody: list[list[_Person]], times: FloatArray) -> Choice:
+    people = People()
+    for seen, time in zip(everybody, times.tolist(), strict=True):
+        people.add(
+            time,
+            [
+                SeenPerson(one.xy, float(np.nanmean(one.body[:, 2])), best_salute(_hands(one)))
+                for one in seen
+            ],
+        )
+    return people.choose()
 
 
 def _hands(person: _Person | None) -> tuple[Hand, ...]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
 from app.keypoint_files.registry import find_reader
@@ -45,7 +46,8 @@ def read_keypoints(
     """Read one person's keypoints.
 
     Names are mapped by `translate_landmark` and by the user's own `options.landmarks`; keypoints
-    without a counterpart are left out with a warning. Of several people the largest is followed.
+    without a counterpart are left out with a warning. Of several people it is the one who
+    salutes, or stands out most over the file (`app.recognition.recording.people`).
 
     Parameters
     ----------
@@ -89,6 +91,7 @@ def read_keypoints(
         hands=hands,
         salute=np.array([best_salute(frame) for frame in hands]),
         warnings=(*table.notes, *notes, *_gaps(poses)),
+        people=_count_one(poses) if table.people is None else table.people,
     )
     return ReadKeypoints(recording, table.hands is not None)
 
@@ -177,6 +180,11 @@ def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> t
 
 def _scale(hand: Hand, scale: FloatArray) -> Hand:
     return replace(hand, xy=hand.xy * scale)
+
+
+def _count_one(poses: PoseSequence) -> npt.NDArray[np.int64]:
+    """Return ``(T,)`` 1 where the one person of a file is seen, else 0."""
+    return np.asarray(poses.seen.any(axis=1), dtype=np.int64)
 
 
 def _gaps(poses: PoseSequence) -> tuple[str, ...]:

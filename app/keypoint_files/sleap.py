@@ -17,11 +17,10 @@ from app.keypoint_files.keypoint_table import (
     Times,
     mask_unseen,
 )
-from app.keypoint_files.prominence import prominence_over
 from app.keypoint_files.self_contained import require_self_contained
 from app.recognition.errors import KeypointFileError, OsgError
-from app.recognition.estimation.person_tracker import PersonTracker, find_boxes
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.people import Choice, People, SeenPerson, prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 
 MOST_PEOPLE: Final = 10
@@ -31,8 +30,8 @@ MOST_PEOPLE: Final = 10
 def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
     """Read the first video of a file; see `app.keypoint_files.read_keypoints`.
 
-    Of several tracks the most prominent is taken. Without tracks the largest instance is followed
-    from frame to frame.
+    Of several tracks the most prominent is taken. Without tracks the instances are joined from
+    frame to frame, and the most prominent person over the file is taken.
 
     Raises
     ------
@@ -63,9 +62,10 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
         track = _most_prominent(labelled, tracks)
         followed = _read_track(labelled, track, len(names))
         notes = _notes(len(tracks), f"track {track.name!r} stands out most and is followed")
+        people = np.array([_count_tracks(frame) for frame in labelled])
     else:
-        followed, most = _follow_largest(labelled, frames / options.nominal_rate, len(names))
-        notes = _notes(most, "the largest is followed")
+        followed, choice = _choose_person(labelled, frames / options.nominal_rate, len(names))
+        notes, people = choice.notes, choice.count
     if len(labels.videos) > 1:
         notes += (f"the file holds {len(labels.videos)} videos; the first is read",)
     return KeypointTable(
@@ -75,6 +75,7 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
         times=Times(frames, counted=True),
         frame_size=_size(labels),
         notes=notes,
+        people=people,
     )
 
 
@@ -138,13 +139,23 @@ def _points(instance: Any) -> FloatArray:
 
 def _most_prominent(labelled: list[Any], tracks: list[Any]) -> Any:
     """Return the most prominent track; there may be thousands of short ones."""
-    total = dict.fromkeys(map(id, tracks), 0.0)
+    points: dict[int, list[FloatArray]] = {id(track): [] for track in tracks}
     for frame in labelled:
         for instance in frame.instances:
-            if id(instance.track) in total:
-                points = _points(instance)[None]
-                total[id(instance.track)] += prominence_over(points[..., :2], points[..., 2])
-    return max(tracks, key=lambda track: total[id(track)])
+            if id(instance.track) in points:
+                points[id(instance.track)].append(_points(instance))
+    return max(tracks, key=lambda track: _measure_prominence(points[id(track)]))
+
+
+def _measure_prominence(points: list[FloatArray]) -> float:
+    if not points:
+        return 0.0
+    stacked = np.stack(points)
+    return prominence_over(stacked[..., :2], np.nan_to_num(stacked[..., 2]))
+
+
+def _count_tracks(frame: Any) -> int:
+    return len({id(instance.track) for instance in frame.instances if instance.track})
 
 
 def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
@@ -157,21 +168,23 @@ def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
     return points
 
 
-def _follow_largest(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, int]:
-    """Return ``(T, K, 3)`` of the followed person, and the largest number of people in a frame."""
-    followed = np.full((len(labelled), nodes, 3), np.nan)
-    choice, most = PersonTracker(), 0
-    for row, (frame, time) in enumerate(zip(labelled, times.tolist(), strict=True)):
-        people = [_points(instance) for instance in frame.instances]
-        people = [one for one in people if np.isfinite(one[:, :2]).any()]
-        most = max(most, len(people))
-        if people:
-            stacked = np.stack(people)
-            scores = np.nan_to_num(np.nanmean(stacked[..., 2], axis=1))
-            chosen = choice.choose(find_boxes(stacked[..., :2]), scores, time)
-            if chosen is not None:
-                followed[row] = stacked[chosen]
-    return followed, most
+def _choose_person(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, Choice]:
+    """Return ``(T, K, 3)`` of the person who stands out most, and the choice of that person."""
+    people, seen = People(), []
+    for frame, time in zip(labelled, times.tolist(), strict=True):
+        points = [_points(instance) for instance in frame.instances]
+        seen.append([one for one in points if np.isfinite(one[:, :2]).any()])
+        scores = [float(np.nan_to_num(np.nanmean(one[:, 2]))) for one in seen[-1]]
+        people.add(
+            time,
+            [SeenPerson(one[:, :2], score) for one, score in zip(seen[-1], scores, strict=True)],
+        )
+    choice = people.choose()
+    chosen = np.full((len(labelled), nodes, 3), np.nan)
+    for row, place in enumerate(choice.index):
+        if place is not None:
+            chosen[row] = seen[row][place]
+    return chosen, choice
 
 
 def _size(labels: Any) -> tuple[int, int] | None:

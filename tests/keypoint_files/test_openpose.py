@@ -102,7 +102,11 @@ def test_of_several_people_the_largest_is_followed(tmp_path: Path) -> None:
     folder = write_openpose(tmp_path / "json", poses, others=[far])
     read = read_keypoints(folder, AT_30)
     np.testing.assert_allclose(read.recording.poses.xy, poses.xy)
-    assert any("up to 2 people" in warning for warning in read.recording.warnings)
+    assert "two people are seen; the body is that of the person who stands out most" in (
+        read.recording.warnings
+    )
+    assert read.recording.people is not None
+    assert set(read.recording.people.tolist()) == {2}
 
 
 def test_fractions_need_the_picture_s_size(tmp_path: Path) -> None:

@@ -15,17 +15,20 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
-from app.recognition.poses.sequence import PoseSequence, join_sequences
+from app.recognition.poses.sequence import FloatArray, PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.recording.hand_sides import place_hands
+from app.recognition.recording.people import People, keep_person, see_people
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.salute import ENTER_SCORE, best_salute
+from app.recognition.recording.salute import ENTER_SCORE
 from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
 from app.recognition.recording.video_limits import VideoLimits
 
 FEW_HANDS: Final = 0.25
 """Share of frames with a hand below which fingers cannot be told: a salute is held for half a
 second, and a hand found in every fourth frame is not seen to hold anything."""
+
+NOBODY: Final = FrameLandmarks(None, ())
 
 Progress = Callable[[int, int], None]
 """``progress(done, total)`` frames. `total` is an estimate where the container does not count them.
@@ -159,59 +162,100 @@ def build_frame_sequence(
 
 
 class _Collector:
-    """Collects the landmarks of frame after frame into a `Recording`."""
+    """Collects the landmarks of everybody in frame after frame into a `Recording`."""
 
     def __init__(self, info: VideoInfo, estimator: PoseEstimator) -> None:
         self._info = info
         self._landmarks, self._hands_sought = list_landmarks(estimator), finds_hands(estimator)
         self._moments: list[PoseSequence] = []
         self._hands: list[tuple[Hand, ...]] = []
-        self._salute: list[float] = []
-        self._without_body = 0
+        self._crowded: dict[int, FrameLandmarks] = {}
+        self._times: list[float] = []
+        self._people = People()
 
     def add(self, time: float, found: FrameLandmarks) -> None:
-        self._without_body += found.body is None
-        size = (self._info.width, self._info.height)
-        self._moments.append(build_frame_sequence(found, time, size, self._landmarks))
-        hands = tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
-        self._hands.append(hands)
-        self._salute.append(best_salute(hands))
+        # Where one person is seen throughout, nothing of the frames is kept but the landmarks.
+        if found.others or self._crowded:
+            self._crowded[len(self._times)] = found
+        self._people.add(time, *see_people(found))
+        self._times.append(time)
+        self._moments.append(self._build_moment(time, found))
+        self._hands.append(_sort_hands(found))
 
     def recording(self, warnings: tuple[str, ...]) -> Recording:
+        """Return the recording of the person whose body counts, chosen over all frames."""
+        choice = self._people.choose()
+        for row, place in enumerate(choice.index):
+            if row in self._crowded or place is None:
+                found = keep_person(self._crowded.get(row, NOBODY), place)
+                self._moments[row] = self._build_moment(self._times[row], found)
+                self._hands[row] = _sort_hands(found)
+        hands = tuple(self._hands)
+        missing = sum(place is None for place in choice.index)
+        several = bool(choice.notes)
+        said = self._warnings(hands, choice.salute, missing, several=several)
         return Recording(
             poses=join_sequences(self._moments),
-            hands=tuple(self._hands),
-            salute=np.array(self._salute),
-            warnings=warnings + self._warnings(),
+            hands=hands,
+            salute=choice.salute,
+            warnings=(*warnings, *choice.notes, *said),
+            people=choice.count,
         )
 
-    def _warnings(self) -> tuple[str, ...]:
-        """Return what is missing in the clip, as sentences with counts and remedies."""
-        frames = len(self._moments)
+    def _build_moment(self, time: float, found: FrameLandmarks) -> PoseSequence:
+        size = (self._info.width, self._info.height)
+        return build_frame_sequence(found, time, size, self._landmarks)
+
+    def _warnings(
+        self,
+        hands: tuple[tuple[Hand, ...], ...],
+        salute: FloatArray,
+        missing: int,
+        *,
+        several: bool,
+    ) -> tuple[str, ...]:
+        """Return what is missing in the clip, as sentences with counts and remedies.
+
+        Parameters
+        ----------
+        hands, salute
+            As in the recording.
+        missing
+            Number of frames without the body.
+        several
+            Whether several people are seen, so that others may be seen in these frames.
+
+        """
+        frames = len(hands)
         found = []
-        if self._without_body:
-            found.append(f"no person in {self._without_body} of {frames} frames")
-        if missing := find_missing_landmarks(self._landmarks):
-            found.append(f"this pose model gives no {', '.join(missing)}")
+        if missing:
+            who = "that person is not seen" if several else "no person"
+            found.append(f"{who} in {missing} of {frames} frames")
+        if names := find_missing_landmarks(self._landmarks):
+            found.append(f"this pose model gives no {', '.join(names)}")
         if not self._hands_sought:
             return tuple(found)
-        with_hand = sum(map(bool, self._hands))
+        with_hand = sum(map(bool, hands))
         if not with_hand:
             found.append(
                 f"no hand in any of {frames} frames, so no salute can be seen; choose the "
                 "gesture's range by hand, choose a trigger of the arms, or film from nearer"
             )
-        elif max(self._salute) <= ENTER_SCORE and with_hand < FEW_HANDS * frames:
+        elif salute.max() <= ENTER_SCORE and with_hand < FEW_HANDS * frames:
             found.append(
                 f"hands seen in {with_hand / frames:.0%} of {frames} frames: choose a trigger of "
                 "the arms, or film from nearer"
             )
-        elif max(self._salute) <= ENTER_SCORE:
+        elif salute.max() <= ENTER_SCORE:
             found.append(
                 f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
                 "salute with the palm or back of the hand towards the camera"
             )
         return tuple(found)
+
+
+def _sort_hands(found: FrameLandmarks) -> tuple[Hand, ...]:
+    return tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
 
 
 def _record(

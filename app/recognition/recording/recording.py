@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
@@ -37,6 +38,9 @@ class Recording:
         ``(T,)`` in [0, 1]: score of the best salute in the frame (`best_salute`), 0 without a hand.
     warnings
         Problems of the clip, as sentences with counts.
+    people
+        ``(T,)`` number of people seen in each frame, whose body is among them; None where it is not
+        known, as in files of older versions.
 
     Raises
     ------
@@ -49,6 +53,7 @@ class Recording:
     hands: tuple[tuple[Hand, ...], ...]
     salute: FloatArray
     warnings: tuple[str, ...] = ()
+    people: npt.NDArray[np.int64] | None = None
 
     def __post_init__(self) -> None:
         """Validate, and freeze a private copy of the scores."""
@@ -61,6 +66,14 @@ class Recording:
             )
         if not ((salute >= 0) & (salute <= 1)).all():
             raise PoseError("salute scores lie outside [0, 1]")
+        if self.people is not None:
+            people = np.array(self.people, dtype=np.int64)
+            if people.shape != (frames,) or (people < 0).any():
+                raise PoseError(
+                    f"{people.shape} numbers of people, expected ({frames},), none negative"
+                )
+            people.setflags(write=False)
+            object.__setattr__(self, "people", people)
         salute.setflags(write=False)
         object.__setattr__(self, "salute", salute)
         if self.poses.hands is None and any(self.hands):
@@ -103,6 +116,8 @@ class Recording:
             arrays["confidence"] = self.poses.confidence
         if self.poses.world is not None:
             arrays["world"] = self.poses.world.astype(np.float32)  # micrometres are enough
+        if self.people is not None:
+            arrays["people"] = self.people
         np.savez_compressed(file, allow_pickle=False, **arrays)
 
     @classmethod
@@ -158,6 +173,7 @@ class Recording:
             hands=tuple(tuple(found[start:end]) for start, end in zip(starts, ends, strict=True)),
             salute=arrays["salute"],
             warnings=tuple(str(warning) for warning in arrays["warnings"]),
+            people=arrays.get("people"),
         )
 
 

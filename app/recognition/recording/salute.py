@@ -136,6 +136,14 @@ DROPOUT_SECONDS = 0.5
 """Seconds without salute after which it is over. Under water the hand detector loses a still hand
 for up to half a second, which is too short for a gesture."""
 
+SHORTEST_TAKE = 0.8
+"""Least seconds between two salutes. A reach, a stroke and a reach back take 0.5 s each (Flash and
+Hogan 1985); a shorter pause is one salute that was lost for a while."""
+
+LONGEST_TAKE = 60.0
+"""Most seconds of a take. A gesture takes a few; after a minute the stop salute was forgotten, and
+the next salute begins a new take."""
+
 
 def salute_score(hand_xy: FloatArray) -> float:
     """Return how much one hand looks like a Vulcan salute.

@@ -17,19 +17,13 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.extraction import Progress, record
 from app.recognition.recording.recording import Recording
+from app.recognition.recording.salute import LONGEST_TAKE as LONGEST_TAKE
+from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
 from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
 from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.arm_pose import LEAVE_SCORE as POSE_LEAVE_SCORE
 from app.recognition.triggers.trigger import SALUTE, Trigger
-
-SHORTEST_TAKE = 0.8
-"""Least seconds between two salutes. A reach, a stroke and a reach back take 0.5 s each (Flash and
-Hogan 1985); a shorter pause is one salute that was lost for a while."""
-
-LONGEST_TAKE = 60.0
-"""Most seconds of a take. A gesture takes a few; after a minute the stop salute was forgotten, and
-the next salute begins a new take."""
 
 
 class TakeState(str, Enum):
