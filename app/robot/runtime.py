@@ -13,6 +13,7 @@ from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
+from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.salute import best_salute
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
@@ -108,6 +109,7 @@ class Runtime:
         self._estimator = estimator
         self._listener = listener
         self._sight = WaterSight(estimator, water)
+        self._people = PeopleInStream()
         self._changes = changes
         self._observer = observer
         self._stopped = False
@@ -133,6 +135,7 @@ class Runtime:
         yield self._build_source_opened()
         yield build_language_changed(self._time, self._listener.language)
         self._sight.reset()
+        self._people.reset()
         for given in self._source:
             self._time = given.time
             yield from self._update_language()
@@ -155,11 +158,18 @@ class Runtime:
         found = self._sight.estimate(frame.image, frame.time)
         if self._observer is not None:
             self._observer(frame, found)
+        self._people.by_salute = self._listener.language.trigger.kind == "salute"
+        followed = self._people.follow(frame.time, found)
+        if followed.change:
+            yield SourceWarned(frame.time, followed.change)
+        if followed.restarts:
+            yield from self._listener.abandon(frame.time, followed.change)
         height, width = frame.image.shape[:2]
-        moment = build_frame_sequence(
-            found, frame.time, (width, height), list_landmarks(self._estimator)
-        )
-        yield from self._listener.feed(moment, best_salute(found.hands))
+        for time, person in followed.frames:
+            moment = build_frame_sequence(
+                person, time, (width, height), list_landmarks(self._estimator)
+            )
+            yield from self._listener.feed(moment, best_salute(person.hands))
         if not self._drops.frames:
             yield RecognitionReady(frame.time)
         yield from self._drops.count(frame)
@@ -175,6 +185,7 @@ class Runtime:
             case SourceRestored():
                 self._lost = False
                 self._sight.reset()
+                self._people.reset()
                 yield notice
             case SourceWarned():
                 yield notice

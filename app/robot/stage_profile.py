@@ -15,6 +15,7 @@ from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
+from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.salute import best_salute
 from app.robot.energy import EnergyMeter
 from app.robot.events import TakeRecognized, TakeRejected
@@ -162,6 +163,7 @@ class StageProfiler:
     ) -> None:
         self._body = WaterSight(body, water)
         self._whole = WaterSight(whole, water)
+        self._people = PeopleInStream()
         self._listener = listener
         self._meter = meter
         self._profile = StageProfile(energy=meter.name if meter else None)
@@ -191,6 +193,7 @@ class StageProfiler:
         body = self._lap()
         found = self._whole.estimate(frame.image, frame.time)
         whole = self._lap()
+        _, found = self._people.follow(frame.time, found).frames[-1]
         score = best_salute(found.hands)
         salute = self._lap()
         height, width = frame.image.shape[:2]

@@ -22,6 +22,7 @@ from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import Image
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.live_segmentation import LiveTakes, Sight
+from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.segmentation import TakeState
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -176,6 +177,7 @@ class FramePipeline:
     ) -> None:
         self._estimator = estimator
         self._sight = WaterSight(estimator, water)
+        self._people = PeopleInStream()
         self._recognizer = recognizer
         self._takes: LiveTakes | None = None
         self._trigger = SALUTE
@@ -202,13 +204,18 @@ class FramePipeline:
         takes = self._takes
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
             self._sight.reset()
+            self._people.reset()
             takes, self._spotter, self._asked = None, None, -np.inf
         trigger = self._find_trigger()
         if takes is None or takes.trigger != trigger:
             takes = self._takes = LiveTakes((width, height), trigger)
         self._time = frame.time
-        found = self._sight.estimate(image, frame.time)
-        sight = takes.feed(frame.time, found)
+        self._people.by_salute = trigger.kind == "salute"
+        followed = self._people.follow(frame.time, self._sight.estimate(image, frame.time))
+        if followed.restarts:
+            takes = self._takes = LiveTakes((width, height), trigger)
+        for time, found in followed.frames:
+            sight = takes.feed(time, found)
         seen = Seen(
             time=frame.time,
             pose=pose_in(found.body.xy, width, height) if found.body else None,
