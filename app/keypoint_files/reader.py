@@ -86,12 +86,13 @@ def read_keypoints(
     )
     hands = table.hands or ((),) * len(poses)
     hands = tuple(tuple(_scale(hand, scale) for hand in frame) for frame in hands)
+    people = _count_one(poses) if table.people is None else table.people
     recording = Recording(
         poses=poses,
         hands=hands,
         salute=np.array([best_salute(frame) for frame in hands]),
-        warnings=(*table.notes, *notes, *_gaps(poses)),
-        people=_count_one(poses) if table.people is None else table.people,
+        warnings=(*table.notes, *notes, *_gaps(poses, people)),
+        people=people,
     )
     return ReadKeypoints(recording, table.hands is not None)
 
@@ -187,6 +188,7 @@ def _count_one(poses: PoseSequence) -> npt.NDArray[np.int64]:
     return np.asarray(poses.seen.any(axis=1), dtype=np.int64)
 
 
-def _gaps(poses: PoseSequence) -> tuple[str, ...]:
-    nobody = int((~poses.seen.any(axis=1)).sum())
-    return (f"no person in {nobody} of {len(poses)} frames",) if nobody else ()
+def _gaps(poses: PoseSequence, people: npt.NDArray[np.int64]) -> tuple[str, ...]:
+    unseen = int((~poses.seen.any(axis=1)).sum())
+    who = "that person is not seen" if people.max(initial=0) > 1 else "no person"
+    return (f"{who} in {unseen} of {len(poses)} frames",) if unseen else ()

@@ -161,6 +161,11 @@ class PeopleTracks:
 
     def _match(self, xy: FloatArray, boxes: FloatArray, time: float) -> dict[int, int]:
         """Return the known tracks of people by their position, the surest ones first."""
+        # The ordinary case of one person throughout, ten times as fast.
+        if len(xy) == len(self._last) == 1:
+            ((track, (_, _, box)),) = self._last.items()
+            if measure_overlaps(box, boxes)[0] >= SAME_PERSON:
+                return {0: track}
         pairs = []
         for track, (seen, last_xy, last_box) in self._last.items():
             apart = _measure_apart(last_xy, last_box, xy).tolist()

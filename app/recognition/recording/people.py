@@ -135,10 +135,11 @@ class People:
         self._join_tracks()
         count = np.array([len(people) for people in self._seen], dtype=np.int64)
         tracks = sorted({track for who in self._who for track in who})
-        marks, notes = self._find_marks({track: self._find_held(track) for track in tracks})
+        marks, notes = list[_Salutes](), list[str]()
+        if len(tracks) > 1:
+            marks, notes = self._find_marks({track: self._find_held(track) for track in tracks})
         if not marks and tracks:
-            every = range(len(self._time))
-            standing_out = max(tracks, key=lambda track: self._prominence_in(track, every))
+            standing_out = self._find_most_prominent(tracks) if len(tracks) > 1 else tracks[0]
             marks = [_Salutes(standing_out, 0.0, 0.0)]
             notes = ["the body is that of the person who stands out most"]
         index, salute = [], []
@@ -251,6 +252,10 @@ class People:
         """Return the prominence of a person between two moments, for each frame between them."""
         rows = [row for row, time in enumerate(self._time) if mark.start <= time <= mark.end]
         return self._prominence_in(mark.track, rows) / max(len(rows), 1)
+
+    def _find_most_prominent(self, tracks: Sequence[int]) -> int:
+        every = range(len(self._time))
+        return max(tracks, key=lambda track: self._prominence_in(track, every))
 
     def _prominence_in(self, track: int, rows: Sequence[int]) -> float:
         seen = [

@@ -1,11 +1,18 @@
-"""One person is followed, whoever else is in the picture."""
+"""One person is followed, whoever else is in the picture, and people are told apart."""
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.recognition.estimation.person_tracker import PATIENCE_SECONDS, PersonTracker, find_boxes
+from app.recognition.estimation.person_tracker import (
+    PATIENCE_SECONDS,
+    REUNION_SECONDS,
+    Exchange,
+    PeopleTracks,
+    PersonTracker,
+    find_boxes,
+)
 from app.recognition.poses.sequence import FloatArray
 
 BOTH = np.array([0.9, 0.9])
@@ -71,3 +78,46 @@ def test_two_people_who_stand_still_never_take_turns(exchanged: list[bool]) -> N
 def test_a_box_holds_what_is_seen_of_a_person() -> None:
     xy = np.array([[[1.0, 5.0], [np.nan, np.nan], [3.0, 2.0]]])
     np.testing.assert_array_equal(find_boxes(xy), [[[1.0, 2.0], [3.0, 5.0]]])
+
+
+def at(x: float, width: float = 100.0) -> FloatArray:
+    """Return the keypoints of a person at a place: the corners of a box and its middle."""
+    box = people(x, 0, widths=(width, 1))[0]
+    return np.vstack([box, box.mean(axis=0)])
+
+
+def test_people_keep_their_numbers_in_any_order() -> None:
+    tracks = PeopleTracks()
+    assert tracks.assign([at(100), at(400)], 0.0) == (0, 1)
+    assert tracks.assign([at(405), at(102)], 0.1) == (1, 0)
+    assert tracks.assign([], 0.2) == ()
+    assert tracks.assign([at(100), at(800), at(410)], 0.3) == (0, 2, 1)
+
+
+def test_who_was_hidden_is_known_again_at_the_same_place_for_a_while() -> None:
+    tracks = PeopleTracks()
+    tracks.assign([at(100), at(400)], 0.0)
+    tracks.assign([at(100)], 1.0)
+    assert tracks.assign([at(100), at(400)], REUNION_SECONDS) == (0, 1)
+    assert tracks.assign([at(400)], 3 * REUNION_SECONDS) == (2,)
+    assert tracks.alive == {2}
+
+
+def test_who_comes_back_beside_the_place_is_known_unless_of_another_size() -> None:
+    tracks = PeopleTracks()
+    tracks.assign([at(100)], 0.0)
+    assert tracks.assign([at(200)], 1.0) == (0,)
+    assert tracks.assign([at(250, width=300)], 2.0) == (1,)
+
+
+def test_a_track_that_went_with_a_passer_by_returns_to_who_stayed() -> None:
+    """A near diver passes in front of another one, and takes the track along."""
+    tracks = PeopleTracks()
+    for step in range(10):
+        assert tracks.assign([at(400)], step / 10) == (0,)
+    for step, x in enumerate([380, 300, 220, 140]):
+        assert tracks.assign([at(x, width=130)], 1 + step / 10) == (0,)
+    assert tracks.assign([at(60, width=130), at(400)], 1.4) == (1, 0)
+    assert tracks.exchanged == Exchange(track=0, new=1, since=1 + 1 / 10)
+    assert tracks.assign([at(0, width=130), at(400)], 1.5) == (1, 0)
+    assert tracks.exchanged is None
