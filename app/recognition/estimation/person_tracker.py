@@ -173,9 +173,10 @@ class PeopleTracks:
             near = _find_near(last_box, boxes)
             hidden = time - seen > PATIENCE_SECONDS
             for place in np.flatnonzero(same | near).tolist():
-                pairs.append((hidden if same[place] else 2, apart[place], track, place))
+                # Who was just seen comes before who was hidden, even after a wide movement.
+                pairs.append((hidden, not same[place], apart[place], track, place))
         tracks: dict[int, int] = {}
-        for _, _, track, place in sorted(pairs):
+        for _, _, _, track, place in sorted(pairs):
             if place not in tracks and track not in tracks.values():
                 tracks[place] = track
         return tracks

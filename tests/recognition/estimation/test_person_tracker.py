@@ -121,3 +121,10 @@ def test_a_track_that_went_with_a_passer_by_returns_to_who_stayed() -> None:
     assert tracks.exchanged == Exchange(track=0, new=1, since=1 + 1 / 10)
     assert tracks.assign([at(0, width=130), at(400)], 1.5) == (1, 0)
     assert tracks.exchanged is None
+
+
+def test_who_was_just_seen_keeps_the_number_before_somebody_who_was_hidden_there() -> None:
+    tracks = PeopleTracks()
+    assert tracks.assign([at(100), at(160, width=90)], 0.0) == (0, 1)
+    tracks.assign([at(100)], 1.0)
+    assert tracks.assign([at(175)], 1.1) == (0,)

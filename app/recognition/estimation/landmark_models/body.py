@@ -219,7 +219,7 @@ class BodyTracker:
             )
             if seen is None or len(self._people) >= MOST_PEOPLE:
                 continue
-            if _is_among(seen, [person.seen for person in self._people]):
+            if any(_hides(person.seen, seen) for person in self._people):
                 continue
             if found.score >= LEAST_SCORE or self._reaches(seen):
                 self._people.append(_Person(seen))
@@ -268,6 +268,13 @@ def _measure_distance(one: SeenBody, other: SeenBody) -> float:
 
 def _is_among(seen: SeenBody, others: Iterable[SeenBody]) -> bool:
     return any(_measure_distance(seen, other) < SAME_TORSO for other in others)
+
+
+def _hides(seen: SeenBody, other: SeenBody) -> bool:
+    """Return whether a torso lies on another one: mostly one person, taken for two."""
+    middles = (one.xy[TORSO].mean(axis=0) for one in (seen, other))
+    apart = np.linalg.norm(np.subtract(*middles))
+    return bool(apart < SAME_TORSO * max(_measure_torso(seen), _measure_torso(other)))
 
 
 def _covers(seen: SeenBody, region: Region) -> bool:
