@@ -153,6 +153,38 @@ def test_a_landmark_that_is_no_number_becomes_unseen(clip: Path) -> None:
     assert poses.seen[:, :5].all()
 
 
+class CrowdedEstimator(ScriptedEstimator):
+    """Follows a buddy; from frame 5 on there is another body, whose hand salutes."""
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        found = super().estimate(image, time)
+        index = len(self.times) - 1
+        grid = np.stack([np.arange(33) % 5, np.arange(33) // 5], axis=1) * 8.0
+        buddy = Body(grid, np.full(33, 0.9), 0.9)
+        if index < 5:
+            return FrameLandmarks(buddy, ())
+        diver = Body(grid + (200.0, 0.0), np.full(33, 0.9), 0.9)
+        wrist = POSE_LANDMARKS.index("right_wrist")
+        hands = tuple(
+            Hand(hand.xy - hand.xy[0] + diver.xy[wrist], hand.side, hand.score)
+            for hand in found.hands
+        )
+        return FrameLandmarks(buddy, hands, (diver,))
+
+
+def test_the_body_of_the_saluting_hand_is_recorded_and_the_choice_is_told(clip: Path) -> None:
+    recording = record(clip, estimator=CrowdedEstimator(saluting=frozenset(range(6, 18))))
+    seen = recording.poses.seen.all(axis=1)
+    assert seen.tolist() == [False] * 5 + [True] * 15
+    assert recording.poses.xy[5:, 0, 0].tolist() == [200.0] * 15
+    assert recording.people is not None
+    assert recording.people.tolist() == [1] * 5 + [2] * 15
+    assert recording.warnings == (
+        "two people are seen; the body is that of the diver who salutes",
+        "that person is not seen in 5 of 20 frames",
+    )
+
+
 def test_progress_counts_up_to_the_end(clip: Path) -> None:
     calls: list[tuple[int, int]] = []
     record(

@@ -8,7 +8,7 @@ import pytest
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
-from app.recognition.poses.sequence import PoseSequence
+from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.recording.recording import FILE_VERSION, Recording
 from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import known
@@ -52,6 +52,22 @@ def test_a_saved_recording_loads_as_it_was(tmp_path: Path, with_confidence: bool
     for before, after in zip(sum(saved.hands, ()), sum(loaded.hands, ()), strict=True):
         assert np.array_equal(before.xy, after.xy)
         assert (before.side, before.score) == (after.side, after.score)
+
+
+def test_the_number_of_people_is_kept_and_unknown_in_older_files(tmp_path: Path) -> None:
+    counted = replace(recording(), people=np.array([1, 2, 0, 2, 1, 1, 3]))
+    counted.save(tmp_path / "clip.npz")
+    people = Recording.load(tmp_path / "clip.npz").people
+    assert people is not None
+    assert people.tolist() == [1, 2, 0, 2, 1, 1, 3]
+    recording().save(tmp_path / "older.npz")
+    assert Recording.load(tmp_path / "older.npz").people is None
+
+
+@pytest.mark.parametrize("people", [np.ones(FRAMES - 1), np.full(FRAMES, -1)])
+def test_impossible_numbers_of_people_are_refused(people: FloatArray) -> None:
+    with pytest.raises(PoseError, match="numbers of people"):
+        replace(recording(), people=people)
 
 
 def test_a_recording_without_frames_or_hands_survives(tmp_path: Path) -> None:
