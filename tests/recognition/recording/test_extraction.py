@@ -10,6 +10,7 @@ from app.recognition.errors import VideoError
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.extraction import extract_poses, record
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.recording.video import VideoFrame
@@ -159,11 +160,11 @@ class CrowdedEstimator(ScriptedEstimator):
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
         found = super().estimate(image, time)
         index = len(self.times) - 1
-        grid = np.stack([np.arange(33) % 5, np.arange(33) // 5], axis=1) * 8.0
+        grid: FloatArray = np.array([[8.0 * (each % 5), 8.0 * (each // 5)] for each in range(33)])
         buddy = Body(grid, np.full(33, 0.9), 0.9)
         if index < 5:
             return FrameLandmarks(buddy, ())
-        diver = Body(grid + (200.0, 0.0), np.full(33, 0.9), 0.9)
+        diver = Body(grid + np.array([200.0, 0.0]), np.full(33, 0.9), 0.9)
         wrist = POSE_LANDMARKS.index("right_wrist")
         hands = tuple(
             Hand(hand.xy - hand.xy[0] + diver.xy[wrist], hand.side, hand.score)

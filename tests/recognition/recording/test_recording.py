@@ -8,7 +8,7 @@ import pytest
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
-from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import FILE_VERSION, Recording
 from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import known
@@ -64,10 +64,10 @@ def test_the_number_of_people_is_kept_and_unknown_in_older_files(tmp_path: Path)
     assert Recording.load(tmp_path / "older.npz").people is None
 
 
-@pytest.mark.parametrize("people", [np.ones(FRAMES - 1), np.full(FRAMES, -1)])
-def test_impossible_numbers_of_people_are_refused(people: FloatArray) -> None:
+@pytest.mark.parametrize("people", [[1] * (FRAMES - 1), [-1] * FRAMES])
+def test_impossible_numbers_of_people_are_refused(people: list[int]) -> None:
     with pytest.raises(PoseError, match="numbers of people"):
-        replace(recording(), people=people)
+        replace(recording(), people=np.array(people))
 
 
 def test_a_recording_without_frames_or_hands_survives(tmp_path: Path) -> None:
