@@ -138,10 +138,12 @@ class BodyTracker:
     def track(self, image: Image, time: float) -> FrameLandmarks:
         """Return the bodies in `image`, taken at `time` seconds."""
         followed = self._follow(image)
-        self._hurry = HURRY if len(followed) < len(self._people) else max(0, self._hurry - 1)
-        self._people = followed
-        if not followed and (found := self._find(image)) is not None:
+        lost = 0 < len(followed) < len(self._people)
+        self._hurry = HURRY if lost else max(0, self._hurry - 1)
+        # As in MediaPipe, the frame in which everybody is lost is not searched.
+        if not self._people and (found := self._find(image)) is not None:
             followed.append(_Person(found))
+        self._people = followed
         if followed:
             self._until_search = SEARCH_PAUSE
             self._watch(image)
