@@ -52,6 +52,18 @@ def test_of_several_individuals_the_most_prominent_is_followed(tmp_path: Path) -
     read = read_keypoints(path, AT_25)
     np.testing.assert_allclose(read.recording.poses.xy, POSES.xy)
     assert any("'diver' stands out most" in warning for warning in read.recording.warnings)
+    assert read.recording.people is not None
+    assert set(read.recording.people.tolist()) == {2}
+
+
+def test_body_parts_outside_of_the_individuals_are_nobody(tmp_path: Path) -> None:
+    """As of a buoy and a ladder, which span more of the picture than the diver."""
+    things = renamed(POSES, {name: f"buoy{place}" for place, name in enumerate(POSES.landmarks)})
+    single = replace(things, xy=POSES.xy * 3)
+    path = write_deeplabcut(tmp_path / "dive.csv", {"diver": POSES, "single": single})
+    read = read_keypoints(path, AT_25)
+    np.testing.assert_allclose(read.recording.poses.xy, POSES.xy)
+    assert not any("individuals" in warning for warning in read.recording.warnings)
 
 
 @pytest.mark.parametrize(
