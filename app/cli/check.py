@@ -9,7 +9,6 @@ from typing import Annotated
 import typer
 
 from app.cli.check_report import format_report
-from app.cli.evaluate import Person
 from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
@@ -21,13 +20,9 @@ HAS_ERRORS = 1
 
 def check(
     file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file.")],
-    person: Annotated[
-        Person, typer.Option(help="Who will dive: the demonstrator or another person.")
-    ] = Person.another,
-    seed: Annotated[int, typer.Option(min=0, help="Random seed of the variants.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Predict confusions, misses and false alarms, with remedies.
+    """Check a language before the dive: what others will reach, and what is wrong.
 
     The exit code is 1 when the report has an error.
     """
@@ -35,8 +30,6 @@ def check(
     with progress_bar("check") as advance:
         report = check_health(
             language,
-            person=person.value,
-            seed=seed,
             progress=lambda stage, done, total: advance(done, total or None, stage),
             known_signs=Language.load(known_signs_file()),
         )

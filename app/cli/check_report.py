@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from textwrap import wrap
+from typing import Final
 
-from app.recognition.health.finding import Finding
-from app.recognition.health.report import (
-    MOST_CONFUSION,
-    MOST_MISSED,
-    GestureHealth,
-    HealthReport,
-    LimitHealth,
-)
-from app.recognition.simulation.rate_estimate import RateEstimate
+from app.recognition.health.forecast import Outcome
+from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
 
-MOST_PAIRS = 10
-"""Number of pairs listed, the most confused first; the JSON has all of them."""
+OTHERWISE: Final[Mapping[Outcome, str]] = {
+    "asked": "asked back with the right one",
+    "refused": "refused",
+    "wrong": "read as another",
+}
+"""Outcomes that are not right, in words."""
 
-WORTH_LISTING = 0.001
-"""Lowest predicted confusion rate of a pair that is listed."""
+WIDTH: Final = 100
+"""Most characters of a line, where they can be chosen."""
+
+COUNTING: Final = ("direction", "tempo", "hand_shape")
+"""Properties that may count beside the figure, as in the answer's `counts`."""
 
 
 def format_report(report: HealthReport) -> str:
@@ -28,7 +30,6 @@ def format_report(report: HealthReport) -> str:
         *_format_trigger(report),
         *_format_limit(report.limit),
         *_format_gestures(report),
-        *_format_pairs(report),
         *_format_findings(report),
     ]
     return "\n".join([*lines, ""])
@@ -37,21 +38,19 @@ def format_report(report: HealthReport) -> str:
 def _format_head(report: HealthReport) -> Iterator[str]:
     errors = sum(finding.below_bar for finding in report.findings)
     counted = "1 error" if errors == 1 else f"{errors} errors"
-    result = "ready" if report.ok else f"NOT READY, {counted}"
+    result = "no errors" if report.ok else f"NOT READY, {counted}"
     yield f"{report.language}, revision {report.revision}: {result}"
-    who = "its demonstrator" if report.person == "same" else "another person"
-    yield f"predicted from {report.takes} variants of each gesture, as shown by {who}"
-    yield (
-        f"thresholds: {MOST_CONFUSION:.0%} confusion of a pair, {MOST_MISSED:.0%} of a gesture's "
-        "takes missed"
-    )
+    yield from wrap(report.forecast.words, WIDTH)
+    counts = {words: report.forecast.count(outcome) for outcome, words in OTHERWISE.items()}
+    if any(rate is not None for rate in counts.values()):
+        yield ", ".join(f"{words} {rate}" for words, rate in counts.items())
 
 
 def _format_trigger(report: HealthReport) -> Iterator[str]:
     if (trigger := report.trigger) is not None:
         yield f"takes lie {trigger.words}"
         yield (
-            f"trigger: missed of {format_rate(trigger.missed)} of other people, set off "
+            f"trigger: missed of {trigger.missed} simulated people, set off "
             f"{trigger.false_per_hour:.0f} times in an hour of moving arms"
         )
 
@@ -63,10 +62,7 @@ def _format_limit(limit: LimitHealth | None) -> Iterator[str]:
         yield "limit: a cautious constant, because one person has shown this language"
         return
     dial = f"dial {100 * limit.most_refused:.3g}%" if limit.measured else "a cautious constant"
-    costs = [
-        "-" if rate is None else f"{rate.rate:.0%} ({rate.low:.0%}-{rate.high:.0%}, n {count})"
-        for rate, count in zip((limit.refused, limit.accepted), limit.takes, strict=True)
-    ]
+    costs = ["-" if rate is None else str(rate) for rate in (limit.refused, limit.accepted)]
     yield (
         f"limit of {limit.people} people, {dial}: refuses {costs[0]} of right takes, "
         f"accepts {costs[1]} of missing gestures"
@@ -77,64 +73,28 @@ def _format_gestures(report: HealthReport) -> Iterator[str]:
     if not report.gestures:
         return
     yield ""
-    head = (
-        "gesture",
-        "missed",
-        "of it rejected",
-        "false alarms",
-        "seconds",
-        "depends on (visible)",
-    )
-    yield from _align([head, *(_format_gesture(gesture) for gesture in report.gestures)])
+    head = ("gesture", "read right", "nearest", "counts", "seconds", "depends on (visible)")
+    rows = [_format_gesture(report, gesture) for gesture in report.gestures]
+    yield from _align([head, *rows])
 
 
-def _format_gesture(gesture: GestureHealth) -> tuple[str, ...]:
-    seconds = "-" if gesture.seconds is None else f"{gesture.seconds:.1f}"
-    needed = ", ".join(f"{each.landmark} ({each.visible:.0%})" for each in gesture.landmarks)
+def _format_gesture(report: HealthReport, gesture: GestureHealth) -> tuple[str, ...]:
+    right = report.forecast.count("right", gesture.label)
+    near, counts = gesture.nearest, vars(gesture.counts) if gesture.counts else {}
     return (
         gesture.label,
-        format_rate(gesture.missed),
-        "-" if gesture.refused is None else f"{gesture.refused.rate:.1%}",
-        format_rate(gesture.false_alarms),
-        seconds,
-        needed,
+        "-" if right is None else f"{right.happened} of {right.n}",
+        "-" if near is None else f"{near[0]} {near[1]:.2f}",
+        ", ".join(name.replace("_", " ") for name in COUNTING if counts.get(name)) or "-",
+        "-" if gesture.seconds is None else f"{gesture.seconds:.1f}",
+        ", ".join(f"{each.landmark} ({each.visible:.0%})" for each in gesture.landmarks),
     )
-
-
-def _format_pairs(report: HealthReport) -> Iterator[str]:
-    listed = [
-        (*pair.gestures, format_rate(pair.first_as_second), format_rate(pair.second_as_first))
-        for pair in report.pairs
-        if pair.confusion is not None and pair.confusion.rate >= WORTH_LISTING
-    ]
-    if not report.pairs:
-        return
-    yield ""
-    if not listed:
-        yield f"no pair is predicted to be confused more often than {WORTH_LISTING:.1%}"
-        return
-    head = ("pair", "", "first recognised as second", "second as first")
-    yield from _align([head, *listed[:MOST_PAIRS]])
 
 
 def _format_findings(report: HealthReport) -> Iterator[str]:
     for finding in report.findings:
         yield ""
-        yield from _format_finding(finding)
-
-
-def _format_finding(finding: Finding) -> Iterator[str]:
-    kind = "ERROR" if finding.below_bar else "note"
-    yield f"{kind}: {finding.message}"
-    for remedy in finding.remedies:
-        yield f"  - {remedy.text}: {remedy.before.rate:.1%} becomes {format_rate(remedy.after)}"
-
-
-def format_rate(estimate: RateEstimate | None) -> str:
-    """Format an estimated rate with its interval; a dash where there is none."""
-    if estimate is None:
-        return "-"
-    return f"{estimate.rate:.1%} ({estimate.low:.1%}-{estimate.high:.1%})"
+        yield f"{'ERROR' if finding.below_bar else 'note'}: {finding.message}"
 
 
 def _align(rows: Sequence[Sequence[str]]) -> Iterator[str]:

@@ -1,6 +1,7 @@
 """Languages of a simulated diver, with known health."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 
 from app.recognition import Gesture, Language, Recognizer
@@ -37,6 +38,19 @@ def shown_by(divers: tuple[str, ...], shapes: Mapping[str, Shape] = TAUGHT) -> L
             gesture = gesture.with_demonstration(take, diver)
         gestures.append(gesture)
     return Language("pool", gestures)
+
+
+def with_wrong_take() -> Language:
+    """Return a language of three people, of whom Cy shows a wedge as circle."""
+    language = shown_by(("Ann", "Bo", "Cy"))
+    wrong = recording(SHAPES["wedge"], frames=88, torso=68)
+    gestures = [
+        gesture.without_demonstration(2).with_demonstration(wrong, "Cy")
+        if gesture.label == "circle"
+        else gesture
+        for gesture in language.gestures
+    ]
+    return replace(language, gestures=gestures)
 
 
 @cache

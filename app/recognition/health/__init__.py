@@ -1,1 +1,1 @@
-"""Health check of a language: simulated trials, findings and remedies."""
+"""Health check of a language: forecast, findings and map."""

@@ -8,16 +8,27 @@ grammar without ambiguities here gives every message one meaning.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from types import MappingProxyType
+from typing import Final, Literal, NamedTuple
 
-from app.recognition.health.finding import Finding
+from app.recognition.health.finding import Finding, FindingKind
 from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.text.wording import join_words
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
+
+_KINDS: Final[Mapping[AmbiguityKind, FindingKind]] = MappingProxyType(
+    {
+        "same_sequence": "phrases_same_sequence",
+        "overlap": "phrases_overlap",
+        "run_together": "phrases_run_together",
+        "prefix": "phrases_prefix",
+        "unreachable": "phrases_unreachable",
+    }
+)
 
 
 @dataclass(frozen=True)
@@ -47,7 +58,7 @@ class Ambiguity:
 
     def finding(self) -> Finding:
         """Return the ambiguity as a finding of the health report."""
-        return Finding(f"phrases_{self.kind}", (), self.message, below_bar=True)
+        return Finding(_KINDS[self.kind], (), self.message, below_bar=True)
 
 
 class _Lead(NamedTuple):

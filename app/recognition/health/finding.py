@@ -1,16 +1,15 @@
-"""Findings: errors and notes of a health report, with remedies."""
+"""Findings: errors and notes of a health report, and those about a demonstration by itself."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from app.recognition.gestures.demonstration import MAX_MOMENTS
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.remedy import Remedy
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recording.salute import HOLD_SECONDS, LEAVE_SCORE, salute_score
@@ -33,41 +32,66 @@ HELD_STILL = 0.2
 """Torso lengths a second, about 10 cm, below which a hand is held still, as in a salute."""
 
 
+DUPLICATE = 0.12
+"""Fused distance of two demonstrations below which they are the same: less than between two takes
+of one gesture by the same person; 1 is two typical gestures."""
+
+FindingKind = Literal[
+    "blind_angle",
+    "duplicate",
+    "empty",
+    "hand_shape_only",
+    "hand_unseen",
+    "known_sign",
+    "look_alike",
+    "misread",
+    "missed",
+    "no_demonstration",
+    "phrases_overlap",
+    "phrases_prefix",
+    "phrases_run_together",
+    "phrases_same_sequence",
+    "phrases_unreachable",
+    "poorly_seen",
+    "salute_like",
+    "too_long",
+    "too_short",
+    "too_small",
+    "trigger_accidental",
+    "trigger_like",
+    "trigger_missed",
+    "trigger_passed",
+    "unrejecting",
+    "untriggered",
+]
+"""Kinds of findings; those of the grammar are ``phrases_`` with an `ambiguity.AmbiguityKind`."""
+
+
 @dataclass(frozen=True)
 class Finding:
     """One entry of a health report.
 
     Attributes
     ----------
-    code
-        For programs: ``confused``, ``duplicate``, ``missed``, ``accidental``, ``too_short``,
-        ``too_long``, ``too_small``, ``poorly_seen``, ``salute_like``, ``no_demonstration``,
-        ``one_diver``, ``blind_angle``, ``known_sign``, ``look_alike``, ``unrejecting``,
-        ``more_confused``, ``neighbours_only``, ``hand_shape_only``, ``hand_unseen``,
-        ``untriggered``, ``trigger_missed``, ``trigger_accidental``, ``trigger_like``,
-        ``trigger_passed``, ``empty``, and of the grammar ``phrases_`` with one of
-        `ambiguity.AmbiguityKind`.
+    kind
+        For programs; people read the message.
     gestures
         Labels of the gestures concerned; none for phrases.
     message
         What is wrong and why that matters, in one sentence or two.
     below_bar
-        Whether it is an error (beyond a threshold) and not a note.
-    remedies
-        Edits that reduce it in simulation, the most effective first.
+        Whether it is an error and not a note.
 
     """
 
-    code: str
+    kind: FindingKind
     gestures: tuple[str, ...]
     message: str
     below_bar: bool = False
-    remedies: tuple[Remedy, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        remedies = [remedy.to_dict() for remedy in self.remedies]
-        return vars(self) | {"gestures": list(self.gestures), "remedies": remedies}
+        return vars(self) | {"gestures": list(self.gestures)}
 
 
 def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[Finding]:
@@ -83,8 +107,8 @@ def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[F
         yield Finding(
             "no_demonstration",
             label,
-            f"{gesture.label} came without its demonstration, so its recognition cannot be "
-            "predicted: define it again from a clip",
+            f"{gesture.label} came without its demonstration, so its movement cannot be compared: "
+            "define it again from a clip",
         )
         return
     seconds = float(shown.time[-1] - shown.time[0])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,16 +9,14 @@ from typing import Any
 import numpy as np
 
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.false_alarms import FalseAlarm
 from app.recognition.health.finding import Finding
-from app.recognition.language.language import Language
+from app.recognition.health.rate import DIGITS, Rate
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.salute import ENTER_SCORE, HeldTrigger
 from app.recognition.recording.segmentation import create_held_pose
 from app.recognition.simulation.background_motion import simulate_background_motion
 from app.recognition.simulation.held_poses import simulate_held_poses
-from app.recognition.simulation.rate_estimate import DIGITS, RateEstimate
 from app.recognition.triggers.arm_pose import ArmPose, locate_joints
 from app.recognition.triggers.trigger import Trigger
 
@@ -41,15 +38,14 @@ SECONDS_AN_HOUR = 3600.0
 
 @dataclass(frozen=True)
 class TriggerHealth:
-    """Estimated rates of a language's trigger.
+    """Rates of a trigger that is a pose of the arms, by simulated people and ordinary movement.
 
     Attributes
     ----------
     words
         The trigger, for people.
     missed
-        Rate of other people whose pose is not seen, or whose gesture is not recognised; the higher
-        rate of two triggers.
+        Rate of other people whose pose is not seen; the higher rate of two poses.
     false_per_hour
         Times that ordinary movement begins a take, in an hour of arms that move all the time.
     set_off_by
@@ -58,7 +54,7 @@ class TriggerHealth:
     """
 
     words: str
-    missed: RateEstimate
+    missed: Rate
     false_per_hour: float
     set_off_by: tuple[str, ...]
 
@@ -73,11 +69,11 @@ class TriggerHealth:
 
 
 def check_trigger(trigger: Trigger, *, seed: int = 0) -> TriggerHealth | None:
-    """Estimate the rates of a trigger by simulation; None unless it is a pose of the arms."""
+    """Count the rates of a trigger in simulated movement; None unless it is a pose of the arms."""
     if trigger.start is None:
         return None
     poses = [pose for pose in (trigger.start, trigger.stop) if pose is not None]
-    missed = max((_estimate_missed(pose, seed) for pose in poses), key=lambda each: each.rate)
+    missed = max((_count_missed(pose, seed) for pose in poses), key=lambda each: each.rate)
     begun: dict[str, int] = {}
     seconds = 0.0
     for movement in simulate_background_motion(EXAMPLES, seed=seed):
@@ -93,37 +89,6 @@ def check_trigger(trigger: Trigger, *, seed: int = 0) -> TriggerHealth | None:
     )
 
 
-def check_trigger_gestures(
-    language: Language, missed: Sequence[RateEstimate | None], alarms: Sequence[FalseAlarm]
-) -> TriggerHealth | None:
-    """Estimate the rates of a trigger from those of its gestures; None unless it is gestures.
-
-    Parameters
-    ----------
-    language
-        The language of G gestures.
-    missed
-        By gesture the rate of its takes that are not recognised as it; None where unknown.
-    alarms
-        Ordinary movements, and what they were recognised as.
-
-    """
-    trigger = language.trigger
-    ends = [language.labels.index(label) for label in trigger.labels]
-    rates = [rate for index in ends if (rate := missed[index]) is not None]
-    if not rates or not alarms:
-        return None
-    begins = language.labels.index(trigger.start_label)
-    begun = Counter(alarm.kind for alarm in alarms if alarm.taken and alarm.nearest == begins)
-    seconds = sum(alarm.seconds for alarm in alarms)
-    return TriggerHealth(
-        words=trigger.words,
-        missed=max(rates, key=lambda each: each.rate),
-        false_per_hour=begun.total() * SECONDS_AN_HOUR / seconds,
-        set_off_by=tuple(kind for kind, _ in begun.most_common()),
-    )
-
-
 def list_trigger_findings(
     trigger: Trigger, health: TriggerHealth | None, gestures: Sequence[Gesture]
 ) -> Iterator[Finding]:
@@ -136,21 +101,16 @@ def list_trigger_findings(
         yield Finding("untriggered", (), message)
     if health is None:
         return
-    posed = trigger.kind == "pose"
     if health.missed.rate > MOST_MISSED:
         message = (
             f"the trigger's pose is not seen of {health.missed.rate:.0%} of other people: choose "
             "one with the hands farther from where they usually are"
-            if posed
-            else f"the trigger's gesture is not recognised in {health.missed.rate:.0%} of takes: "
-            "choose another gesture, or add a second diver's demonstration of it"
         )
         yield Finding("trigger_missed", (), message, below_bar=True)
     if health.false_per_hour > MOST_AN_HOUR:
         message = (
-            f"ordinary movement {'holds' if posed else 'is read as'} the trigger's {trigger.noun} "
-            f"about {health.false_per_hour:.0f} times in an hour of moving arms: "
-            f"{', '.join(health.set_off_by)}"
+            f"ordinary movement holds the trigger's pose about {health.false_per_hour:.0f} times "
+            f"in an hour of moving arms: {', '.join(health.set_off_by)}"
         )
         yield Finding("trigger_accidental", (), message)
     poses = [pose for pose in (trigger.start, trigger.stop) if pose is not None]
@@ -174,10 +134,10 @@ def _check_gesture(label: str, shown: Trajectory, poses: Sequence[ArmPose]) -> I
         yield Finding("trigger_passed", (label,), message)
 
 
-def _estimate_missed(pose: ArmPose, seed: int) -> RateEstimate:
+def _count_missed(pose: ArmPose, seed: int) -> Rate:
     people = simulate_held_poses(pose, PEOPLE, seed=seed)
     seen = sum(_run(create_held_pose(), each.time, pose.score(each.places)) > 0 for each in people)
-    return RateEstimate.of_count(len(people) - seen, len(people))
+    return Rate(len(people) - seen, len(people))
 
 
 def _count_held(pose: ArmPose, shown: Trajectory) -> int:

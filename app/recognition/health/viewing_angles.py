@@ -1,140 +1,67 @@
-"""Viewing angles: from where a gesture will be misread, by simulated takes of a turned diver."""
+"""Viewing angles: from where a gesture looks like another one, or is not seen to move."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from collections.abc import Callable, Iterator, Sequence
+from typing import Final
 
 import numpy as np
 
-from app.recognition.health.finding import Finding
-from app.recognition.health.simulated_trials import SimulatedTrials, simulate_trials
+from app.recognition.gestures.demonstration import condense
+from app.recognition.health.finding import DUPLICATE, Finding
 from app.recognition.recognizer import Recognizer
-from app.recognition.simulation.rate_estimate import RateEstimate
-from app.recognition.simulation.variation import Person
 
-ANGLES: Final = (-90, -60, -30, 30, 60, 90)
+ANGLES: Final = (-60, -30, 30, 60)
 """Degrees by which the diver is turned from the demonstration, positive to the diver's own left.
-Straight ahead is what the other trials simulate."""
-
-TAKES: Final = 4
-"""Simulated takes of each gesture at each angle: at six angles, half as many again as in the other
-trials."""
-
-MOST_MISSED = 0.5
-"""Estimated rate of misses from which an angle is named: every second command."""
-
-FORESEEABLE = 60
-"""Largest turn in degrees that a finding reports: beyond it, the far arm is hidden in any
-language."""
+Beyond, the far arm is hidden in any language."""
 
 
-@dataclass(frozen=True)
-class AngleHealth:
-    """Estimated rate of one gesture when its diver is turned.
+def find_blind_angles(
+    recognizer: Recognizer, advance: Callable[[], None] = lambda: None
+) -> Iterator[Finding]:
+    """Yield a finding for each gesture that is another one, or lost, when the diver is turned.
 
-    Attributes
-    ----------
-    degrees
-        Turn from the demonstration, positive to the diver's own left.
-    missed
-        Rate of takes that are confused or rejected.
-    read_as
-        The other gesture that most of the simulated takes are nearer to; None where they are
-        nearest to their own.
-
-    """
-
-    degrees: int
-    missed: RateEstimate
-    read_as: str | None
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {"degrees": self.degrees, "missed": self.missed.to_dict(), "read_as": self.read_as}
-
-
-def check_angles(
-    recognizer: Recognizer,
-    *,
-    seed: int = 0,
-    person: Person = "another",
-    advance: Callable[[], None] = lambda: None,
-) -> dict[int, tuple[AngleHealth, ...]]:
-    """Estimate how often gestures are missed when the diver is turned.
+    The demonstration itself is turned by its depth; gestures without depth cannot be turned.
 
     Parameters
     ----------
     recognizer
         Of the language, profile ``full``.
-    seed, person, advance
-        As for `simulate_trials`.
-
-    Returns
-    -------
-    By the index of each movement whose demonstration has depth, its angles in the order of
-    `ANGLES`; the others cannot be turned.
+    advance
+        Called after each comparison; an exception that it raises ends the work.
 
     """
-    gestures = [
-        index
-        for index, gesture in enumerate(recognizer.language.gestures)
-        if gesture.trajectory is not None
-        and gesture.trajectory.facing is not None
-        and not gesture.is_held
-    ]
-    trials = [
-        simulate_trials(
-            recognizer,
-            TAKES,
-            gestures=gestures,
-            seed=seed,
-            person=person,
-            advance=advance,
-            turned=degrees,
-        )
-        for degrees in (ANGLES if gestures else ())
-    ]
     labels = recognizer.language.labels
-    return {
-        gesture: tuple(
-            AngleHealth(degrees, each.missed(row), _read_as(each, row, labels))
-            for degrees, each in zip(ANGLES, trials, strict=True)
-        )
-        for row, gesture in enumerate(gestures)
-    }
+    for own, gesture in enumerate(recognizer.language.gestures):
+        shown = gesture.trajectory
+        if shown is None or shown.facing is None or gesture.is_held:
+            continue
+        lost: list[int] = []
+        like: dict[str, list[int]] = {}
+        ahead = recognizer.compare(condense(shown)).scores
+        for degrees in ANGLES:
+            scores = recognizer.compare(condense(shown.turn(degrees))).scores
+            advance()
+            if not np.isfinite(scores[own]):
+                lost.append(degrees)
+            # Of gestures that are the same straight ahead, the duplicate is the finding.
+            for other in np.flatnonzero((scores < DUPLICATE) & (ahead >= DUPLICATE)).tolist():
+                like.setdefault(labels[other], []).append(degrees)
+        if lost:
+            yield _blind((gesture.label,), "is not seen to move", lost)
+        for name, turns in like.items():
+            yield _blind((gesture.label, name), f"is the same movement as {name}", turns)
 
 
-def _read_as(trials: SimulatedTrials, row: int, labels: Sequence[str]) -> str | None:
-    """Return the other gesture that most takes are nearest to; None for their own or for none."""
-    nearest = trials.rivals[row][trials.scores[row].argmin(axis=1)]
-    values, counts = np.unique(nearest, return_counts=True)
-    most = int(values[counts.argmax()])
-    own = int(trials.gestures[row])
-    return None if most == own or 2 * counts.max() <= TAKES else labels[most]
-
-
-def find_blind_angles(label: str, angles: Sequence[AngleHealth]) -> list[Finding]:
-    """Return a finding that names the angles from which a gesture is mostly missed."""
-    blind = [
-        each
-        for each in angles
-        if abs(each.degrees) <= FORESEEABLE and each.missed.rate > MOST_MISSED
-    ]
-    if not blind:
-        return []
-    read = sorted({each.read_as for each in blind if each.read_as is not None})
-    instead = f", and read as {' or '.join(read)}" if read else ""
+def _blind(gestures: tuple[str, ...], what: str, turns: Sequence[int]) -> Finding:
     message = (
-        f"{label} is mostly missed{instead} when the diver is turned by "
-        f"{_list_turns([each.degrees for each in blind])}: face the camera, or add a "
-        "demonstration from there"
+        f"{gestures[0]} {what} when the diver is turned by {list_turns(turns)}: face the camera, "
+        "or change the gesture"
     )
-    return [Finding("blind_angle", (label,), message)]
+    return Finding("blind_angle", gestures, message)
 
 
-def _list_turns(turns: Sequence[int]) -> str:
+def list_turns(turns: Sequence[int]) -> str:
     """Return turns in words, such as ``30 or 60 degrees to the left``."""
     sides = {
         side: sorted(abs(turn) for turn in turns if (turn > 0) == (side == "left"))

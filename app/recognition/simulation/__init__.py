@@ -1,1 +1,1 @@
-"""Simulation: variants of demonstrations, out-of-vocabulary movements, and estimated rates."""
+"""Simulation: variants of demonstrations, held poses and ordinary movement."""

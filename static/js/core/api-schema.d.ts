@@ -1150,6 +1150,24 @@ export interface components {
             spoken: string;
         };
         /**
+         * NearGestureView
+         * @description Another gesture of the language, and how far it is.
+         */
+        NearGestureView: {
+            /** Label */
+            label: string;
+            /**
+             * Distance
+             * @description As in the health report; 1: two typical gestures
+             */
+            distance: number;
+            /**
+             * Same
+             * @description Whether the robot cannot distinguish the two
+             */
+            same: boolean;
+        };
+        /**
          * NewDemonstration
          * @description Where the demonstration of a gesture is.
          */
@@ -1193,33 +1211,10 @@ export interface components {
                 [key: string]: components["schemas"]["SwitchView"];
             };
             /**
-             * Pairs
-             * @description As in the health report, the nearest first
+             * Nearest
+             * @description The nearest first; null: it has no demonstration to compare
              */
-            pairs: {
-                [key: string]: unknown;
-            }[];
-            /**
-             * Missed
-             * @description Null: there is no demonstration to vary
-             */
-            missed: {
-                [key: string]: number;
-            } | null;
-            /** Refused */
-            refused: {
-                [key: string]: number;
-            } | null;
-            /**
-             * Most Confusion
-             * @description Share of takes from which confusion is warned of
-             */
-            most_confusion: number;
-            /**
-             * Most Missed
-             * @description The same for missed takes
-             */
-            most_missed: number;
+            nearest: components["schemas"]["NearGestureView"][] | null;
         };
         /**
          * PathsView

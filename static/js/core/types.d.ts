@@ -63,19 +63,20 @@ export interface ClipPage {
   total: number;
 }
 
-/** An estimated rate with its 95 % interval, each in [0, 1]. */
+/** A rate with its 95 % interval, each in [0, 1]. */
 export interface Rate {
   rate: number;
   low: number;
   high: number;
 }
 
-/** The estimated effect of an edited gesture on its language. */
-export type Outlook = Omit<Schemas["OutlookView"], "pairs" | "missed" | "refused"> & {
-  pairs: { gestures: [string, string]; distance: number | null; confusion: Rate | null }[];
-  missed: Rate | null;
-  refused: Rate | null;
-};
+/** A rate of `n` takes. */
+export interface CountedRate extends Rate {
+  n: number;
+}
+
+/** What is to be expected of an edited gesture in its language. */
+export type Outlook = Schemas["OutlookView"];
 
 /** A position, x right and y down; null where it was not seen. */
 export type Place = [number, number] | null;
@@ -188,54 +189,54 @@ export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;
 };
 
-/** An edit that reduces a confusion, and the rate with and without it. */
-export interface Remedy {
-  kind: string;
-  gesture: string;
-  text: string;
-  before: Rate;
-  after: Rate;
-}
-
-/** A finding of the health report; `below_bar` marks a warning, the others are notes. */
+/** A finding of the health report; `below_bar` marks an error, the others are notes. */
 export interface Finding {
-  code: string;
+  kind: string;
   gestures: string[];
   message: string;
   below_bar: boolean;
-  remedies: Remedy[];
 }
 
-export interface GestureEstimate {
+/** What takes are read as; all null where nothing can be foretold. */
+export interface Outcomes {
+  right: CountedRate | null;
+  asked: CountedRate | null;
+  refused: CountedRate | null;
+  wrong: CountedRate | null;
+}
+
+/** What other people's takes of a language will be read as. */
+export interface Forecast extends Outcomes {
+  people: number;
+  /** What can be promised, and whom to ask. */
+  words: string;
+  /** The demonstrations that are not read right by those of the other people. */
+  failed: {
+    gesture: string;
+    demonstration: number;
+    diver: string;
+    outcome: keyof Outcomes;
+    read_as: string[];
+  }[];
+}
+
+export interface GestureHealth extends Outcomes {
   label: string;
   seconds: number | null;
   landmarks: { landmark: string; visible: number }[];
-  missed: Rate | null;
-  refused: Rate | null;
-  false_alarms: Rate | null;
-  set_off_by: string[];
-  angles: { degrees: number; missed: Rate; read_as: string | null }[];
-}
-
-export interface PairEstimate {
-  gestures: [string, string];
-  confusion: Rate | null;
-  first_as_second: Rate | null;
-  second_as_first: Rate | null;
-  distance: number | null;
+  /** What tells it apart beside its figure; null without a movement. */
+  counts: { direction: boolean; tempo: boolean; sides: boolean; hand_shape: boolean } | null;
+  nearest: { label: string; distance: number } | null;
 }
 
 export interface HealthReport {
   ok: boolean;
-  /** Simulated trials of each gesture. */
-  takes: number;
+  forecast: Forecast;
   warnings: Finding[];
-  gestures: GestureEstimate[];
-  pairs: PairEstimate[];
+  gestures: GestureHealth[];
   map: { label: string; x: number; y: number }[];
-  bar: { missed: number; confusion: number };
   /** Rates of the trigger; null unless it is a pose of the arms. */
-  trigger: TriggerEstimate | null;
+  trigger: TriggerRates | null;
   /** The limit and its costs; null in a language without movements. */
   limit: LimitCosts | null;
 }
@@ -247,13 +248,13 @@ export interface LimitCosts {
   limit: number;
   /** Whether the limit follows from `most_refused`; otherwise it is a cautious constant. */
   measured: boolean;
-  refused: (Rate & { n: number }) | null;
-  accepted: (Rate & { n: number }) | null;
+  refused: CountedRate | null;
+  accepted: CountedRate | null;
 }
 
-export interface TriggerEstimate {
+export interface TriggerRates {
   words: string;
-  missed: Rate;
+  missed: CountedRate;
   false_per_hour: number;
   set_off_by: string[];
 }

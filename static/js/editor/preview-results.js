@@ -1,14 +1,11 @@
-// The preview of a draft: its trajectory image, its descriptors, and its estimated rates.
+// The preview of a draft: its trajectory image, its descriptors, and the gestures near it.
 
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 
-/** @import { Descriptor, Outlook, Preview, Rate } from "../core/types.d.ts" */
+/** @import { Descriptor, Outlook, Preview } from "../core/types.d.ts" */
 
 const HEIGHT = 22; // of a descriptor's drawing, in its own units
-
-/** @param {number} share */
-const percent = (share) => `${share > 0 && share < 0.01 ? "under 1" : Math.round(100 * share)} %`;
 
 /**
  * A descriptor: bars around a line, or the number itself if there is only one.
@@ -93,89 +90,43 @@ export function image() {
   };
 }
 
+/** @typedef {NonNullable<Outlook["nearest"]>[number]} NearGesture */
+
 /**
- * An estimated rate as a bar, a number and a mark.
+ * A gesture near the edited one, with a mark where the two cannot be told apart.
  *
- * @param {string | HTMLElement} words
- * @param {Rate} share
- * @param {number} threshold
- * @param {Rate | null | undefined} before
+ * @param {NearGesture} near
+ * @param {NearGesture | undefined} before
  */
-function rateRow(words, share, threshold, before) {
-  const bad = share.rate > threshold;
+function nearRow({ label, distance, same }, before) {
   const was =
-    before && percent(before.rate) !== percent(share.rate)
-      ? h("small", { className: "dim" }, ` (saved: ${percent(before.rate)})`)
+    before && before.distance.toFixed(2) !== distance.toFixed(2)
+      ? h("small", { className: "dim" }, ` (saved: ${before.distance.toFixed(2)})`)
       : null;
   return h(
     "li",
-    {
-      className: bad ? "bad" : "good",
-      title: `95 %: ${percent(share.low)} to ${percent(share.high)}`,
-    },
+    { className: same ? "bad" : "good" },
     h(
       "span",
       {
         className: "verdict",
         role: "img",
-        "aria-label": bad ? "Above the threshold" : "Below the threshold",
+        "aria-label": same ? "The robot cannot distinguish the two" : "Another movement",
       },
-      bad ? "!" : "\u2713",
+      same ? "!" : "\u2713",
     ),
-    h("span", {}, words, was),
-    h("b", { className: "num" }, percent(share.rate)),
-    h(
-      "span",
-      { className: "bar-track" },
-      h("i", { className: "fill", style: { width: `${100 * Math.min(1, share.rate)}%` } }),
-      h("i", { className: "mark", style: { left: `${100 * threshold}%` } }),
-    ),
+    h("span", {}, h("b", {}, label), was),
+    h("b", { className: "num" }, distance.toFixed(2)),
   );
 }
 
 /**
- * @param {Outlook} found
- * @param {Rate} missed
- * @param {Outlook | null} before
- */
-function rows(found, missed, before) {
-  /** @param {string} label */
-  const earlier = (label) => before?.pairs.find((pair) => pair.gestures[1] === label)?.confusion;
-  return [
-    rateRow(
-      "Missed: recognised as another gesture, or rejected",
-      missed,
-      found.most_missed,
-      before?.missed,
-    ),
-    ...found.pairs.flatMap((pair) =>
-      !pair.confusion
-        ? []
-        : rateRow(
-            h(
-              "span",
-              {},
-              "Confused with ",
-              h("b", {}, pair.gestures[1]),
-              pair.distance === null
-                ? ""
-                : h("small", { className: "dim" }, ` distance ${pair.distance.toFixed(2)}`),
-            ),
-            pair.confusion,
-            found.most_confusion,
-            earlier(pair.gestures[1]),
-          ),
-    ),
-  ];
-}
-
-/**
- * Build the estimated rates; `draw(found, before)` compares them with the saved gesture's.
+ * Build the list of near gestures; `draw(found, before)` compares them with the saved gesture's.
  *
  * @param {string} name
  */
 export function health(name) {
-  const list = h("ul", { className: "estimates", "aria-label": "Estimated rates" });
+  const list = h("ul", { className: "estimates", "aria-label": "Nearest gestures" });
   const note = h("p", { className: "dim", role: "status" });
   /**
    * @param {Outlook | null} found
@@ -186,18 +137,25 @@ export function health(name) {
     list.classList.toggle("stale", !found);
     if (!found) {
       note.textContent = problem
-        ? "Nothing can be estimated before the gesture is complete."
-        : "Simulating trials\u2026";
+        ? "Nothing can be compared before the gesture is complete."
+        : "Comparing\u2026";
       return;
     }
-    const { missed } = found;
+    const { nearest } = found;
     note.textContent =
-      missed === null
-        ? "Without a demonstration no trials can be simulated: choose a clip that shows the gesture."
-        : found.pairs.length
-          ? "Estimated for another diver from simulated trials, with the nearest gestures. The line is the threshold of the health report."
+      nearest === null
+        ? "Without a demonstration nothing can be compared: choose a clip that shows the gesture."
+        : nearest.length
+          ? "Distance of the nearest gestures, 1 for two typical ones. What other people reach is measured once three have shown the language."
           : "The only gesture of a language cannot be confused with another.";
-    list.replaceChildren(...(missed === null ? [] : rows(found, missed, before)));
+    list.replaceChildren(
+      ...(nearest ?? []).map((near) =>
+        nearRow(
+          near,
+          before?.nearest?.find(({ label }) => label === near.label),
+        ),
+      ),
+    );
   }
   return {
     element: h(

@@ -382,7 +382,7 @@ export function batchSection() {
       h(
         "p",
         { className: "dim" },
-        "Clips whose gesture you know, by other divers if you can: what is estimated above is measured here, again after every change of the language. A cell opens its clips.",
+        "Clips whose gesture you know, by other divers if you can: recognised again after every change of the language. A cell opens its clips.",
       ),
     ),
     drop(),

@@ -1,86 +1,15 @@
-// The findings, the worst first, each with its remedies and links to where to apply them.
+// The findings, the worst first, each with links to where it can be mended.
 
-import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
-import { complain } from "../core/toasts.js";
-import { showDone } from "../core/undo.js";
+import { h } from "../core/dom.js";
 import { go } from "../core/views.js";
-import { edit } from "../languages/revision-edit.js";
 import { compare, editLink } from "./finding-links.js";
-import { rateText } from "./rates.js";
 
-/** @import { Finding, Language, Remedy } from "../core/types.d.ts" */
+/** @import { Finding } from "../core/types.d.ts" */
 
-const AT_FIRST = 5; // Findings shown before the matrix and the map; the worst come first.
-const SWITCHES = new Set(["direction", "tempo", "hand_shape"]); // Remedies that need no new demonstration.
-
-/**
- * Let a switch of some gestures count; one undo takes it back.
- *
- * @param {string} kind
- * @param {string[]} gestures
- * @param {string} text
- * @param {HTMLButtonElement} button
- */
-async function switchOn(kind, gestures, text, button) {
-  /** @param {Language} base */
-  const change = async (base) => {
-    let language = base;
-    for (const label of gestures)
-      language = await api.languages.changeGesture(language, label, { [kind]: "on" });
-    return language;
-  };
-  button.disabled = true;
-  try {
-    await edit("Applying the remedy", `Remedy: ${text}`, change);
-    showDone("Remedy applied", text);
-  } catch (error) {
-    complain(error, "Applying the remedy");
-    button.disabled = false;
-  }
-}
-
-/**
- * @param {string} kind
- * @param {string[]} gestures
- * @param {string} text
- */
-function apply(kind, gestures, text) {
-  const button = h(
-    "button",
-    { type: "button", "aria-label": `Apply: ${text}`, ...WRITES },
-    "Apply",
-  );
-  button.onclick = () => switchOn(kind, gestures, text, button);
-  return button;
-}
-
-/**
- * @param {Remedy} remedy
- * @param {string[]} gestures
- */
-function remedy({ kind, gesture, text, before, after }, gestures) {
-  return h(
-    "li",
-    { className: "remedy" },
-    h("span", { className: "remedy-text" }, text),
-    h(
-      "span",
-      { className: "effect num", title: `${rateText(before)} without, ${rateText(after)} with it` },
-      h("span", { className: "visually-hidden" }, "confused in "),
-      h("span", {}, rateText(before)),
-      h("span", { "aria-label": "then" }, "\u2192"),
-      h("b", {}, rateText(after)),
-    ),
-    SWITCHES.has(kind) ? apply(kind, gestures, text) : editLink(gesture),
-  );
-}
+const AT_FIRST = 5; // Findings shown before the table and the map; the worst come first.
 
 /** @param {Finding} finding */
-function finding({ code, gestures, message, below_bar: below, remedies }) {
-  const mended = new Set(
-    remedies.filter(({ kind }) => !SWITCHES.has(kind)).map((each) => each.gesture),
-  );
+function finding({ kind, gestures, message, below_bar: below }) {
   return h(
     "li",
     { className: `finding ${below ? "below" : "note"}` },
@@ -89,24 +18,10 @@ function finding({ code, gestures, message, below_bar: below, remedies }) {
       "div",
       { className: "finding-text" },
       h("p", {}, h("b", {}, below ? "Error: " : "Note: "), message),
-      remedies.length
-        ? h(
-            "p",
-            { className: "dim remedies-title" },
-            "What would help, and how often the two would then be confused",
-          )
-        : null,
-      remedies.length
-        ? h(
-            "ul",
-            { className: "remedy-list", "aria-label": `Remedies for ${gestures.join(" and ")}` },
-            remedies.map((each) => remedy(each, gestures)),
-          )
-        : null,
       h(
         "div",
         { className: "finding-links" },
-        code?.startsWith("phrases_")
+        kind.startsWith("phrases_")
           ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
           : null,
         gestures.length === 2
@@ -116,7 +31,7 @@ function finding({ code, gestures, message, below_bar: below, remedies }) {
               "Compare the two",
             )
           : null,
-        gestures.filter((label) => !mended.has(label)).map((label) => editLink(label)),
+        gestures.map((label) => editLink(label)),
       ),
     ),
   );

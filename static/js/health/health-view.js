@@ -1,4 +1,4 @@
-// The health view: the estimates of the health check, and the test with clips.
+// The health view: what to expect of a language, the findings of its check, and its test set.
 
 import * as api from "../core/api.js";
 import { h, WRITES } from "../core/dom.js";
@@ -7,25 +7,25 @@ import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { batchSection } from "./clip-test-section.js";
-import { confusionGrid } from "./confusion-grid.js";
 import { dialSection } from "./dial.js";
+import { expectation } from "./expectation.js";
 import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
-import { estimateTable } from "./gesture-estimates.js";
+import { gestureTable } from "./gesture-table.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
-import { languageMap, nearestOf } from "./language-map.js";
+import { languageMap } from "./language-map.js";
 import { narrow } from "./narrowed-report.js";
-import { predicted, showPair } from "./pair-page.js";
-import { percent, rateText } from "./rates.js";
+import { showPair } from "./pair-page.js";
+import { percent } from "./rates.js";
 
-/** @import { HealthReport, State } from "../core/types.d.ts" */
+/** @import { HealthReport, State, TestSet } from "../core/types.d.ts" */
 
 /** @type {Record<string, string>} */
 const STAGES = {
-  rehearsing: "Simulating trials of every gesture",
-  "accidental movements": "Simulating background motion",
-  "turned divers": "Simulating turned divers",
-  remedies: "Testing edits that would help",
+  "other people's demonstrations": "Reading demonstrations by those of other people",
+  distances: "Comparing the gestures",
+  "turned divers": "Turning the divers",
+  "known signs": "Comparing with divers\u2019 signs",
 };
 
 /** @param {string} label */
@@ -119,59 +119,16 @@ function advance(bar, { health, checking }) {
   else running.removeAttribute("value");
 }
 
-/** @param {HealthReport} report */
-function matrix(report) {
-  const heads = report.gestures.map(({ label }) => ({ label, image: imageOf(label) }));
-  /**
-   * @param {number} row
-   * @param {number} column
-   */
-  const cell = (row, column) => {
-    const [one, other] = [report.gestures[row], report.gestures[column]];
-    if (row === column) {
-      const right = one.missed ? 1 - one.missed.rate : null;
-      return {
-        text: right === null ? "" : `${percent(right)}`,
-        amount: 0,
-        className: "diagonal",
-        label:
-          right === null
-            ? `${one.label}: not known`
-            : `${one.label} is read as itself in ${percent(right)} %`,
-      };
-    }
-    const estimate = predicted(report, one.label, other.label)?.forth;
-    const over = estimate && estimate.rate > report.bar.confusion;
-    return {
-      text: estimate ? percent(estimate.rate) : "?",
-      amount: estimate?.rate ?? 0,
-      className: over ? "over" : "",
-      label: estimate
-        ? `${one.label} taken for ${other.label}: ${rateText(estimate)}${over ? ", above the threshold" : ""}`
-        : `${one.label} taken for ${other.label}: not known`,
-      open: () => compare(one.label, other.label),
-    };
-  };
-  return confusionGrid({
-    label: "Estimated confusions, per cent",
-    corner: "shown \u2193  taken for \u2192",
-    rows: heads,
-    columns: heads,
-    cell,
-  });
-}
-
 /**
- * Open the gesture of a thumbnail: beside the one that it is most often confused with, or alone if
- * it was compared with none.
+ * Open the gesture of a thumbnail: beside the nearest one, or alone if none is comparable.
  *
  * @param {HealthReport} report
  * @param {string} label
  */
 function openNearest(report, label) {
-  const other = nearestOf(report.pairs, label);
-  if (other === null) go("gesture", { gesture: label });
-  else compare(label, other);
+  const other = report.gestures.find((gesture) => gesture.label === label)?.nearest;
+  if (other) compare(label, other.label);
+  else go("gesture", { gesture: label });
 }
 
 /**
@@ -187,55 +144,36 @@ const section = (title, hint, ...content) =>
     ...content,
   );
 
-/** @param {HealthReport} report */
-function drawReport(report) {
-  const alone = report.gestures.length === 1;
+/**
+ * @param {HealthReport} report
+ * @param {TestSet | null} testSet
+ */
+function drawReport(report, testSet) {
   const shown = narrow(report);
-  const part =
-    shown === report
-      ? ""
-      : ` The ${shown.gestures.length} most confused of ${report.gestures.length} gestures.`;
-  const worst = shown.pairs.filter(
-    ({ confusion }) => confusion && confusion.rate > report.bar.confusion,
-  );
-  const threshold = percent(report.bar.confusion);
+  const all = report.gestures.length;
+  const part = shown.length < all ? ` The ${shown.length} nearest of ${all} gestures.` : "";
+  const same = report.warnings
+    .filter(({ kind, gestures }) => kind === "duplicate" && gestures.length === 2)
+    .map(({ gestures }) => gestures);
   return [
     findingsList(report.warnings),
-    alone
-      ? h(
-          "div",
-          { className: "health-empty" },
-          h("p", {}, h("b", {}, "One gesture by itself is confused with nothing")),
-          h(
-            "p",
-            { className: "dim" },
-            "Add a second gesture to see here how often the two are confused.",
-          ),
-        )
-      : h(
-          "div",
-          { className: "health-columns" },
-          section(
-            "Estimated confusions",
-            `Per cent of simulated trials of the gesture on the left that are nearest to the gesture above. Framed: above the threshold of ${threshold} %. Choose a cell to compare the two.${part}`,
-            matrix(shown),
-          ),
-          section(
-            "Map",
-            `Similar gestures are close to each other.${worst.length ? ` Joined: pairs above the threshold of ${threshold} %.` : ""}${part}`,
-            languageMap({
-              points: shown.map,
-              worst,
-              imageOf,
-              open: (label) => openNearest(report, label),
-            }),
-          ),
-        ),
     section(
       "Each gesture",
-      `Missed: recognised as another gesture, or rejected. The threshold is ${percent(report.bar.missed)} %. False alarms: background motion, such as reaching or adjusting the mask, that is recognised as the gesture.`,
-      estimateTable(report, imageOf),
+      "Takes that are read right come first, where there are any. Nearest gesture: the fused distance of the two demonstrations, 1 for two typical gestures. A far gesture may still be misread.",
+      gestureTable(report, testSet, imageOf),
     ),
+    all > 1
+      ? section(
+          "Map",
+          `Similar gestures are close to each other.${same.length ? " Joined: gestures that cannot be told apart." : ""}${part}`,
+          languageMap({
+            points: shown,
+            same,
+            imageOf,
+            open: (label) => openNearest(report, label),
+          }),
+        )
+      : null,
   ].filter((each) => each !== null);
 }
 
@@ -247,7 +185,7 @@ function nothing() {
     h(
       "p",
       { className: "dim" },
-      "Save a gesture from a clip. From the second gesture on, this page estimates which are confused, before the dive.",
+      "Save a gesture from a clip. Shown by three people, its language tells here what others will reach, before the dive.",
     ),
     h(
       "button",
@@ -266,6 +204,14 @@ const reportOf = ({ gestures, health }) =>
   health && health.id === gestures?.id ? health.report : null;
 
 /**
+ * The test set of the language on display.
+ *
+ * @param {State} state
+ */
+const testSetOf = ({ gestures, testSet }) =>
+  testSet && testSet.language_id === gestures?.id ? testSet : null;
+
+/**
  * The rates of a trigger as a further sentence; empty for salutes and without a trigger.
  *
  * @param {HealthReport} report
@@ -273,7 +219,7 @@ const reportOf = ({ gestures, health }) =>
 function triggerText({ trigger }) {
   if (!trigger) return "";
   const { missed, false_per_hour: often } = trigger;
-  return `. The trigger is missed in ${percent(missed.rate)} of trials, and set off ${Math.round(often)} times in an hour of moving arms`;
+  return `. The trigger is missed of ${percent(missed.rate)} % of simulated people, and set off ${Math.round(often)} times in an hour of moving arms`;
 }
 
 /** Go to the test with clips, which stands below the report. */
@@ -293,9 +239,7 @@ function overview() {
     const { gestures, health } = state;
     const report = reportOf(state);
     name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
-    about.textContent = report
-      ? `Revision ${health?.shown}, estimated for another diver by ${report.takes} simulated trials of each gesture${triggerText(report)}`
-      : "";
+    about.textContent = report ? `Revision ${health?.shown}${triggerText(report)}` : "";
     says.replaceChildren(
       ...(report && isCurrent(health) && health?.status === "done" ? [verdict(report)] : []),
     );
@@ -306,18 +250,24 @@ function overview() {
   };
   /** @type {HealthReport | "nothing" | null} */
   let drawn = null;
+  let tested = "";
   const draw = () => {
     const { gestures, health, loaded } = state;
     const report = reportOf(state);
+    const testSet = testSetOf(state);
     const now = gestures?.gestures.length ? report : "nothing";
+    const tests = JSON.stringify(testSet?.gestures ?? []);
     body.classList.toggle("stale", Boolean(report) && health?.status !== "done");
-    if (now === drawn || (now === "nothing" && !loaded)) return;
+    if ((now === drawn && tests === tested) || (now === "nothing" && !loaded)) return;
     drawn = now;
-    body.replaceChildren(...(now === "nothing" ? [nothing()] : report ? drawReport(report) : []));
+    tested = tests;
+    body.replaceChildren(
+      ...(now === "nothing" ? [nothing()] : report ? drawReport(report, testSet) : []),
+    );
   };
   follow(["gestures", "health"], head);
   follow(["checking"], () => advance(bar, state));
-  follow(["gestures", "health", "loaded"], draw);
+  follow(["gestures", "health", "loaded", "testSet"], draw);
   return h(
     "div",
     { className: "health-page" },
@@ -329,6 +279,7 @@ function overview() {
       h("button", { type: "button", onclick: showTest }, "Test with clips"),
     ),
     bar,
+    expectation(),
     body,
     dialSection(),
     batchSection(),
@@ -357,6 +308,6 @@ export function open(root) {
     shown = now;
     if (opens) showPair(two, imageOf);
     else if (before)
-      /** @type {HTMLElement | null} */ (all.querySelector("td[tabindex='0']"))?.focus();
+      /** @type {HTMLElement | null} */ (all.querySelector(".nearest button"))?.focus();
   });
 }

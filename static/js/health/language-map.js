@@ -2,7 +2,7 @@
 
 import { h, svg } from "../core/dom.js";
 
-/** @import { HealthReport, PairEstimate } from "../core/types.d.ts" */
+/** @import { HealthReport } from "../core/types.d.ts" */
 
 /** @typedef {{ x: number, y: number }} Point */
 
@@ -86,30 +86,18 @@ export function apart(places, size) {
 }
 
 /**
- * The gesture that `label` is most often confused with; null if it was compared with none. `pairs`
- * are the report's, the most confused first.
+ * Draw the map. `points` are the report's `map`, `same` the pairs that cannot be told apart, joined
+ * by a line; a thumbnail shows the image `imageOf(label)` and calls `open(label)` when pressed.
  *
- * @param {Pick<PairEstimate, "gestures">[]} pairs
- * @param {string} label
+ * @param {{ points: HealthReport["map"], same: string[][], imageOf: (label: string) => string, open: (label: string) => void }} map
  */
-export function nearestOf(pairs, label) {
-  const pair = pairs.find(({ gestures }) => gestures.includes(label));
-  return pair?.gestures.find((each) => each !== label) ?? null;
-}
-
-/**
- * Draw the map. `points` are the report's `map`, `worst` the pairs above the threshold, joined by a
- * line; a thumbnail shows the image `imageOf(label)` and calls `open(label)` when pressed.
- *
- * @param {{ points: HealthReport["map"], worst: PairEstimate[], imageOf: (label: string) => string, open: (label: string) => void }} map
- */
-export function languageMap({ points, worst, imageOf, open }) {
+export function languageMap({ points, same, imageOf, open }) {
   const size = sizeOf(points.length);
   const places = scaled(points, size / 2 + LABEL);
   const moved = apart(places, size);
   const at = new Map(points.map(({ label }, index) => [label, moved[index]]));
-  const lines = worst.flatMap(({ gestures }) => {
-    const [one, other] = gestures.map((label) => at.get(label));
+  const lines = same.flatMap((labels) => {
+    const [one, other] = labels.map((label) => at.get(label));
     return one && other ? [svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y })] : [];
   });
   const leaders = places.map((place, index) =>

@@ -9,9 +9,8 @@ import { editLink, pairOf } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { boxOf, movingPaths } from "./movement-paths.js";
 import { stepsOf, timeCursor } from "./pair-cursor.js";
-import { rateText } from "./rates.js";
 
-/** @import { HealthReport, PairDifference, Rate } from "../core/types.d.ts" */
+/** @import { PairDifference } from "../core/types.d.ts" */
 
 const close = () => update({ pair: null });
 
@@ -22,51 +21,6 @@ bind({
   run: close,
   when: () => state.view === "health" && state.pair !== null,
 });
-
-/**
- * The estimated confusion of two gestures, seen from the first.
- *
- * @param {HealthReport | null} report
- * @param {string} one
- * @param {string} other
- */
-export function predicted(report, one, other) {
-  const pair = report?.pairs.find(
-    ({ gestures }) => gestures.includes(one) && gestures.includes(other),
-  );
-  if (!pair) return null;
-  return pair.gestures[0] === one
-    ? { forth: pair.first_as_second, back: pair.second_as_first }
-    : { forth: pair.second_as_first, back: pair.first_as_second };
-}
-
-/**
- * The estimated rates of confusing the two; empty until the check is done.
- *
- * @param {HealthReport | null} report
- * @param {string} one
- * @param {string} other
- */
-function rateLines(report, one, other) {
-  const rates = predicted(report, one, other);
-  /**
-   * @param {Rate | null} estimate
-   * @param {string} from
-   * @param {string} to
-   */
-  const rate = (estimate, from, to) =>
-    estimate
-      ? h(
-          "li",
-          {},
-          h("b", { className: "num" }, rateText(estimate)),
-          ` of simulated trials of ${from} are nearest to ${to}.`,
-        )
-      : null;
-  return rates
-    ? [rate(rates.forth, one, other), rate(rates.back, other, one)].filter((each) => each !== null)
-    : [];
-}
 
 /**
  * @param {[string, string]} labels
@@ -148,7 +102,7 @@ function sideBySide(found, imageOf) {
 }
 
 /** @type {(() => void) | null} */
-let fill = null; // Draws the estimates; the report may arrive after the gestures.
+let fill = null; // Draws the findings; the report may arrive after the gestures.
 
 follow(["health"], () => fill?.());
 
@@ -194,12 +148,10 @@ export async function showPair(box, imageOf) {
     api.languages.contrast(language.id, ...labels, language.revision),
   );
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
-  const rates = h("ul", { className: "pair-words" });
   const findings = h("div", { className: "pair-findings" });
-  box.append(...[sentences(labels, found), rates, ...sideBySide(found, imageOf), findings]);
+  box.append(...[sentences(labels, found), ...sideBySide(found, imageOf), findings]);
   fill = () => {
     const report = state.health?.id === language.id ? state.health.report : null;
-    rates.replaceChildren(...rateLines(report, ...labels));
     findings.replaceChildren(
       ...[findingsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
     );

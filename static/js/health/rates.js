@@ -1,9 +1,9 @@
-// Estimated rates as text.
+// Rates as text.
 
 /** @import { LimitCosts, Rate } from "../core/types.d.ts" */
 
 /**
- * An estimated rate in per cent, rounded half to even, as in the texts of the findings. A rate
+ * A rate in per cent, rounded half to even, as in the texts of the findings. A rate
  * above 0 is never written as 0.
  *
  * @param {number} rate
@@ -16,21 +16,21 @@ export function percent(rate) {
 }
 
 /**
- * The interval of an estimate in words; empty where both of its ends read the same.
+ * The interval of a rate in words; empty where both of its ends read the same.
  *
- * @param {Pick<Rate, "low" | "high">} estimate
+ * @param {Pick<Rate, "low" | "high">} rate
  */
 export const intervalText = ({ low, high }) =>
   percent(low) === percent(high) ? "" : `${percent(low)} to ${percent(high)}`;
 
 /**
- * An estimate in words, with its interval.
+ * A rate in words, with its interval.
  *
- * @param {Rate} estimate
+ * @param {Rate} rate
  */
-export function rateText(estimate) {
-  const interval = intervalText(estimate);
-  return `${percent(estimate.rate)} %${interval && ` (${interval})`}`;
+export function rateText(rate) {
+  const interval = intervalText(rate);
+  return `${percent(rate.rate)} %${interval && ` (${interval})`}`;
 }
 
 /**

@@ -46,8 +46,8 @@ function write(line, report) {
     line.textContent = `${plural(errors.length, "health error")}: ${errors[0].message}`;
   else
     line.textContent = findings.length
-      ? `Healthy, with ${plural(findings.length, "note")}`
-      : "Healthy";
+      ? `No errors, ${plural(findings.length, "note")}`
+      : "No errors";
   line.title = findings.map((finding) => finding.message).join("\n");
 }
 

@@ -3,8 +3,7 @@
 import json
 import socket
 import threading
-import time
-from collections.abc import Callable, Coroutine
+from collections.abc import Coroutine
 from typing import Any
 from urllib.parse import urlencode
 
@@ -17,8 +16,8 @@ from app.api.http.connection import while_connected
 from app.api.routes.gestures import previews
 from app.api.routes.languages import pair_differences
 from app.api.services.running_studio import MOST_COMPUTATIONS
+from app.recognition import Language
 from app.recognition.explanation.pair_difference import compare_pair
-from app.recognition.health.gesture_estimate import GestureEstimate
 from app.recognition.recognizer import Recognizer
 from tests.api.languages import LANGUAGES
 from tests.api.running import Running, client_of, until
@@ -43,25 +42,31 @@ def begin(server: Running, method: str, path: str, body: bytes = b"") -> socket.
 def test_a_preview_ends_when_its_client_leaves(
     server: Running, client: httpx.Client, language: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    began, ended = threading.Event(), threading.Event()
+    began, left, compared = threading.Event(), threading.Event(), threading.Event()
 
-    def estimate(
-        _recognizer: Recognizer, _label: str, *, advance: Callable[[], None]
-    ) -> GestureEstimate | None:
+    def prepare(language: Language, profile: str) -> Recognizer:
         began.set()
-        try:
-            while True:  # what takes minutes on a slow machine
-                advance()
-                time.sleep(0.01)
-        finally:
-            ended.set()
+        left.wait(60)  # what takes minutes on a slow machine
+        return Recognizer(language, profile)
 
-    monkeypatch.setattr(previews, "estimate_gesture", estimate)
+    async def wait(request: Request, work: Coroutine[Any, Any, Any]) -> Any:
+        try:
+            return await while_connected(request, work)
+        finally:
+            left.set()
+
+    def compare(*_: object) -> list[tuple[str, float]]:
+        compared.set()
+        return []
+
+    monkeypatch.setattr(previews, "Recognizer", prepare)
+    monkeypatch.setattr(previews, "rank_others", compare)
+    monkeypatch.setattr(connection, "while_connected", wait)
     body = json.dumps({"label": "circle", "change": {}}).encode()
     with begin(server, "POST", f"{LANGUAGES}/{language}/preview/health", body):
         until(began.is_set)
-        assert not ended.is_set()
-    until(ended.is_set)
+    until(lambda: server.studio.computations._value == MOST_COMPUTATIONS)
+    assert not compared.is_set()
     monkeypatch.undo()
     again = client.post(f"{LANGUAGES}/{language}/preview/health", json=json.loads(body))
     assert again.status_code == 200

@@ -1,4 +1,4 @@
-"""The health of a language in the browser: estimates, two gestures side by side, test clips."""
+"""The health of a language in the browser: forecast, two gestures side by side, test clips."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Page, Request, Route, expect
+from playwright.sync_api import Locator, Page, Request, Route, expect
 
 from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
-from tests.recognition.demonstrations import shown_by
+from tests.recognition.demonstrations import shown_by, with_wrong_take
 
 
 @pytest.fixture(scope="module")
@@ -29,17 +29,18 @@ def health_of(library: Library, **more: str) -> dict[str, str]:
     return {"view": "health", "language": library.language, **more}
 
 
-def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
+def known_of(page: Page) -> Locator:
+    return page.get_by_role("table", name="What is known of each gesture")
+
+
+def test_the_nearest_gesture_opens_the_two_on_one_time_cursor(
     open_page: OpenPage, library: Library
 ) -> None:
     page = open_page(health_of(library), scene=False)
-    grid = page.get_by_role("grid", name="Estimated confusions")
-    cell = grid.get_by_role("gridcell", name="circle taken for line")
-    expect(cell).to_be_visible()
+    near = known_of(page).get_by_role("button", name="line", exact=True)
+    expect(near).to_be_visible()
     assert faults(page) == []
-    grid.get_by_role("gridcell", name="circle is read as itself").focus()
-    page.keyboard.press("ArrowRight")
-    expect(cell).to_be_focused()
+    near.focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("heading", name="circle and line")).to_be_focused()
     expect(page.get_by_role("slider", name="Moment of both gestures")).to_have_value("0")
@@ -55,39 +56,45 @@ def test_a_cell_opens_the_two_gestures_on_one_time_cursor(
     colleague.goto(page.url)
     expect(colleague.get_by_role("heading", name="circle and line")).to_be_visible()
     page.keyboard.press("Escape")
-    expect(grid).to_be_visible()
+    expect(near).to_be_visible()
 
 
-def test_a_switch_that_would_help_is_applied_and_taken_back(
-    open_page: OpenPage,
-    server: Running,
-    library: Library,
-    picture: Callable[[Page, str], Path],
+def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
+    open_page: OpenPage, server: Running, picture: Callable[[Page, str], Path]
 ) -> None:
-    client = library.client
-    language = client.post("/api/v1/languages", json={"name": "both ways"}).json()["id"]
-    gestures = f"/api/v1/languages/{language}/gestures"
-    for label in ("circle", "circle backwards"):
-        clip = add_clip(server, label)
-        body = {"label": label, "clip_id": clip, "direction": "off"}
-        assert client.post(gestures, json=body).status_code == 201
+    with client_of(server.address) as client:
+        content = with_wrong_take().to_json()
+        language = client.post("/api/v1/languages/import?name=three", content=content).json()["id"]
+        page = open_page({"view": "health", "language": language}, scene=False)
+        expected = page.get_by_role("region", name="What to expect")
+        expect(expected).to_contain_text("Of 12 demonstrations")
+        expect(expected).to_contain_text("are read right by those of other people")
+        expect(expected).to_contain_text("read as another")
+        findings = page.get_by_role("list", name="Findings")
+        expect(findings).to_contain_text("Cy's is read as wedge")
+        expect(known_of(page).get_by_role("row").filter(has_text="infinity")).to_contain_text(
+            "2 of 3"
+        )
+        assert faults(page) == []
+        picture(page, "health")
+        clip = add_clip(server, "circle", name="circle-measured.mp4")
+        test_set = f"/api/v1/languages/{language}/test-set"
+        take = {"clip_id": clip, "expected": "circle"}
+        client.post(test_set, json={"takes": [take]}).raise_for_status()
+        client.post(f"{test_set}/run").raise_for_status()
+        page.reload()
+        first = expected.locator("p").first
+        expect(first).to_contain_text("Of the test set")
+        expect(first).to_contain_text("of 1 takes are read right")
+        expect(known_of(page).get_by_role("columnheader", name="Test set")).to_be_visible()
 
-    def directions() -> list[str]:
-        listed = client.get(f"/api/v1/languages/{language}").json()["gestures"]
-        return [each["direction"] for each in listed]
 
-    page = open_page({"view": "health", "language": language}, scene=False)
-    remedies = page.get_by_role("list", name="Remedies for circle and circle backwards")
-    apply = remedies.get_by_role("button", name="Apply: let the direction of")
-    expect(apply).to_be_visible()
-    picture(page, "health")
-    apply.click()
-    expect(page.get_by_text("Remedy applied")).to_be_visible()
-    assert directions() == ["on", "on"]
-    expect(remedies).to_have_count(0)
-    page.keyboard.press("Control+z")
-    expect(page.get_by_text("Undone")).to_be_visible()
-    assert directions() == ["off", "off"]
+def test_of_one_persons_language_nothing_is_foretold(open_page: OpenPage, library: Library) -> None:
+    page = open_page(health_of(library), scene=False)
+    expected = page.get_by_role("region", name="What to expect")
+    expect(expected).to_contain_text("nothing can be foretold")
+    expect(expected).to_contain_text("Ask two more people")
+    expect(known_of(page)).not_to_contain_text("other people")
 
 
 def test_a_rate_is_rounded_as_in_the_findings(open_page: OpenPage) -> None:
@@ -119,7 +126,7 @@ def test_a_check_is_cancelled_and_begun_again(open_page: OpenPage, library: Libr
     crowd = import_crowd(library.client)
     page = open_page({"view": "health", "language": crowd}, scene=False)
     # At any stage, since the first is over in a moment.
-    progress = page.get_by_text(re.compile(r"^(Simulating|Testing) .*, \d+ (of \d+|so far)$"))
+    progress = page.get_by_text(re.compile(r"^(Comparing|Turning) .*, \d+ (of \d+|so far)$"))
     cancelled = page.get_by_text("The check was cancelled")
     expect(progress).to_be_visible()
     page.get_by_role("button", name="Cancel").click()

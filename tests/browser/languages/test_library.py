@@ -286,7 +286,7 @@ def test_pictures_of_the_library(
     change = {"label": "surface", "command": "come up"}
     library.client.patch(f"{place}/gestures/circle", json=change)
     page = open_page({"view": "languages"}, scene=False)
-    expect(card(page, "Reef survey").get_by_text("Healthy")).to_be_visible()
+    expect(card(page, "Reef survey").get_by_text("No errors")).to_be_visible()
     # Pictures are loaded when scrolled into view.
     images = "[...document.querySelectorAll('#view-languages img')]"
     until(lambda: page.evaluate(f"{images}.every((image) => image.naturalWidth > 0)"))

@@ -16,7 +16,7 @@ SHOWN = {
     "Studio": "role=button[name=/^Take 1/]",
     "Languages": "role=link[name='accessible']",
     "Phrases": "role=button[name='Add the first phrase']",
-    "Health": "role=grid[name=/^Estimated confusions/]",
+    "Health": "role=table[name='What is known of each gesture']",
     "Practice": "role=button[name='Start the camera']",
     "Live": "role=button[name='Start the camera']",
 }
@@ -68,7 +68,7 @@ def test_what_the_views_lead_to(
     open_page: OpenPage, library: Library, size: tuple[int, int]
 ) -> None:
     places = (
-        ({"view": "gesture", "gesture": "circle"}, "text=Missed: recognised as"),
+        ({"view": "gesture", "gesture": "circle"}, "text=Distance of the nearest gestures"),
         (
             {"view": "languages", "panel": "history"},
             "role=button[name='Go back to revision 2']",

@@ -83,12 +83,12 @@ def test_from_a_clip_to_the_file_for_the_robot(
 
     # The health check is opened, with two gestures side by side.
     open_view(page, "Health")
-    grid = page.get_by_role("grid", name="Estimated confusions")
-    reach(page, grid.locator("[role=gridcell][tabindex='0']"))
+    known = page.get_by_role("table", name="What is known of each gesture")
+    reach(page, known.locator(".nearest button").first)
     page.keyboard.press("Enter")
     expect(page.get_by_role("slider", name="Moment of both gestures")).to_be_visible()
     page.keyboard.press("Escape")
-    expect(grid).to_be_visible()
+    expect(known).to_be_visible()
 
     # The language is downloaded for the robot.
     open_view(page, "Studio")

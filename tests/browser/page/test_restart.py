@@ -150,8 +150,8 @@ def test_every_view_survives_a_server_that_is_killed(
         expect(background.locator("#away")).to_be_hidden()
         background.keyboard.press(".")
         expect(background.locator("#clock")).to_have_text(re.compile(f"frame {FRAME + 1} of"))
-        confusions = pages["health"].get_by_role("grid", name="Estimated confusions")
-        expect(confusions).to_be_visible()
+        known = pages["health"].get_by_role("table", name="What is known of each gesture")
+        expect(known).to_be_visible()
         pages["health"].close()
         editor = pages["gesture"]
         expect(editor.get_by_label("Description")).to_have_value("half finished")

@@ -30,7 +30,7 @@ def revision(library: Library) -> int:
 def editing(open_page: OpenPage, library: Library, label: str = "circle") -> Page:
     page = open_page(library.address | {"view": "gesture", "gesture": label}, scene=False)
     expect(page.get_by_role("heading", name=f"Edit {label}")).to_be_visible()
-    expect(page.get_by_text("Missed: recognised as")).to_be_visible()
+    expect(page.get_by_text("Distance of the nearest gestures")).to_be_visible()
     return page
 
 
@@ -44,7 +44,7 @@ def test_a_take_becomes_a_gesture_seen_before_it_is_saved(
     page = open_page(library.address, scene=False)
     page.get_by_role("button", name="Save as gesture").click()
     expect(page.get_by_label("Label")).to_be_focused()
-    expect(page.get_by_text("Confused with circle")).to_be_visible()
+    expect(page.get_by_role("list", name="Nearest gestures")).to_contain_text("circle")
     page.keyboard.type("ring")
     page.get_by_label("Command").fill('{"move": ')
     page.get_by_role("button", name="Save gesture").click()

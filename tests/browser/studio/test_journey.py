@@ -93,7 +93,9 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.get_by_role("button", name="Save into the sample").click()
     page.get_by_label("Label").fill("our circle")
     page.get_by_label("Command").fill("Hold your depth")
-    expect(page.get_by_text("Missed: recognised as")).to_be_visible(timeout=EXTRACTION_MS)
+    expect(page.get_by_text("Distance of the nearest gestures")).to_be_visible(
+        timeout=EXTRACTION_MS
+    )
     picture(page, "editor")
     page.get_by_role("button", name="Save gesture").click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { apart, nearestOf } from "../../../static/js/health/language-map.js";
+import { apart } from "../../../static/js/health/language-map.js";
 
 const SIZE = 40;
 
@@ -23,11 +23,4 @@ test("thumbnails that do not overlap stay where they are", () => {
     { x: 400, y: 300 },
   ];
   assert.deepEqual(apart(places, SIZE), places);
-});
-
-test("a gesture stands beside the one that it is confused with most, if it was compared", () => {
-  const pairs = [{ gestures: ["circle", "square"] }, { gestures: ["square", "wedge"] }];
-  assert.equal(nearestOf(pairs, "square"), "circle");
-  assert.equal(nearestOf(pairs, "wedge"), "square");
-  assert.equal(nearestOf(pairs, "drawing"), null);
 });

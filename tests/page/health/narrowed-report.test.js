@@ -3,43 +3,24 @@ import { test } from "node:test";
 
 import { narrow } from "../../../static/js/health/narrowed-report.js";
 
-const report = (labels, pairs) => ({
-  gestures: labels.map((label) => ({ label })),
-  pairs: pairs.map((gestures) => ({ gestures })),
-  map: labels.map((label) => ({ label, x: 0, y: 0 })),
-  ok: true,
+const report = (distances) => ({
+  gestures: Object.entries(distances).map(([label, distance]) => ({
+    label,
+    nearest: distance === null ? null : { label: "other", distance },
+  })),
+  map: Object.keys(distances).map((label) => ({ label, x: 0, y: 0 })),
 });
 
-test("a report that fits is shown whole", () => {
-  const whole = report(["a", "b"], [["a", "b"]]);
-  assert.equal(narrow(whole, 2), whole);
+const labels = (points) => points.map(({ label }) => label);
+
+test("a report that fits is shown whole, in the language's order", () => {
+  assert.deepEqual(labels(narrow(report({ a: 2, b: 1 }), 2)), ["a", "b"]);
 });
 
-test("of a large report the gestures of the most confused pairs are shown", () => {
-  const large = report(
-    ["a", "b", "c", "d"],
-    [
-      ["b", "d"],
-      ["a", "b"],
-      ["c", "d"],
-    ],
-  );
-  const shown = narrow(large, 3);
-  assert.deepEqual(
-    shown.gestures.map(({ label }) => label),
-    ["a", "b", "d"],
-  );
-  assert.deepEqual(
-    shown.pairs.map(({ gestures }) => gestures.join("")),
-    ["bd", "ab"],
-  );
-  assert.equal(shown.map.length, 3);
-  assert.equal(shown.ok, true);
+test("of a large report the gestures that are nearest to another are on the map", () => {
+  assert.deepEqual(labels(narrow(report({ a: 0.5, b: 0.2, c: 0.9, d: 0.3 }), 2)), ["b", "d"]);
 });
 
-test("gestures without a compared pair fill up what is left", () => {
-  assert.deepEqual(
-    narrow(report(["a", "b", "c"], []), 2).gestures.map(({ label }) => label),
-    ["a", "b"],
-  );
+test("gestures without a comparable one fill up what is left", () => {
+  assert.deepEqual(labels(narrow(report({ a: null, b: 0.2, c: null }), 2)), ["a", "b"]);
 });

@@ -83,11 +83,11 @@ def test_switching_the_shape_off_is_found_as_a_remedy(recognizer: Recognizer) ->
 
 
 def test_the_health_check_tells_that_the_hand_must_be_seen(recognizer: Recognizer) -> None:
-    report = check_health(recognizer.language, takes=4)
-    (note,) = [each for each in report.findings if each.code == "hand_shape_only"]
+    report = check_health(recognizer.language)
+    (note,) = [each for each in report.findings if each.kind == "hand_shape_only"]
     assert note.gestures == ("fist", "flat")
     assert not note.below_bar
-    assert "duplicate" not in {each.code for each in report.findings}
+    assert "duplicate" not in {each.kind for each in report.findings}
 
 
 def test_only_the_hands_that_carry_the_movement_are_kept() -> None:

@@ -141,5 +141,5 @@ def test_an_ambiguity_is_a_warning_below_the_bar(kind: str) -> None:
         framed(come, here if kind == "prefix" else replace(come, name="here")), end=None
     )
     findings = [each.finding() for each in find_ambiguities(grammar)]
-    assert findings[0].code == f"phrases_{kind}"
+    assert findings[0].kind == f"phrases_{kind}"
     assert findings[0].below_bar

@@ -37,16 +37,16 @@ def imported() -> Gesture:
     return Gesture(label="circle", salient=("right_wrist",), image=GOOD.image)
 
 
-def codes(gesture: Gesture) -> list[str]:
-    return [finding.code for finding in check_demonstration(gesture)]
+def kinds(gesture: Gesture) -> list[str]:
+    return [finding.kind for finding in check_demonstration(gesture)]
 
 
 def test_a_good_demonstration_has_no_findings() -> None:
-    assert codes(GOOD) == []
+    assert kinds(GOOD) == []
 
 
 @pytest.mark.parametrize(
-    ("code", "make"),
+    ("kind", "make"),
     [
         ("too_short", lambda: shown("circle", circle, frames=10)),
         ("too_long", lambda: shown("circle", circle, frames=400)),
@@ -56,10 +56,10 @@ def test_a_good_demonstration_has_no_findings() -> None:
     ],
 )
 def test_a_fault_is_found_and_told_about_that_gesture(
-    code: str, make: Callable[[], Gesture]
+    kind: str, make: Callable[[], Gesture]
 ) -> None:
     (finding,) = check_demonstration(make())
-    assert finding.code == code
+    assert finding.kind == kind
     assert finding.gestures == ("circle",)
     assert "circle" in finding.message
     assert not finding.below_bar
@@ -83,7 +83,7 @@ def test_half_hidden_is_half_seen() -> None:
 
 
 def test_a_line_that_is_quick_but_possible_is_no_fault() -> None:
-    assert codes(shown("line", line, frames=20)) == []
+    assert kinds(shown("line", line, frames=20)) == []
 
 
 def test_a_salute_within_a_sequence_is_found_with_its_place() -> None:
@@ -91,6 +91,6 @@ def test_a_salute_within_a_sequence_is_found_with_its_place() -> None:
     for shapes, place in (((FIST, saluting), "second"), ((saluting, FIST), "first")):
         gesture = Gesture.from_demonstration("go", follow(*map(hold, shapes)))
         (finding,) = check_demonstration(gesture)
-        assert finding.code == "salute_like"
+        assert finding.kind == "salute_like"
         assert finding.message.startswith(f"the {place} shape of go looks like the salute")
-    assert codes(Gesture.from_demonstration("go", follow(hold(FIST), hold(FLAT)))) == []
+    assert kinds(Gesture.from_demonstration("go", follow(hold(FIST), hold(FLAT)))) == []

@@ -21,7 +21,7 @@ KNOWN = replace(
 
 def test_a_gesture_like_a_known_sign_is_named_with_the_meaning_of_the_sign() -> None:
     (finding,) = find_known_signs(pool(waypoint=circle, LEVEL=line), KNOWN)
-    assert (finding.code, finding.gestures) == ("known_sign", ("waypoint",))
+    assert (finding.kind, finding.gestures) == ("known_sign", ("waypoint",))
     assert 'looks like the divers\' sign turn ("Turn around")' in finding.message
 
 
@@ -38,10 +38,10 @@ def test_every_further_demonstration_is_looked_at() -> None:
 
 def test_the_health_check_looks_for_known_signs_if_it_is_given_any() -> None:
     language = pool(waypoint=circle, line=line)
-    codes = {finding.code for finding in check_health(language, takes=2).findings}
-    assert "known_sign" not in codes
-    report = check_health(language, takes=2, known_signs=KNOWN)
-    assert "known_sign" in {finding.code for finding in report.findings}
+    kinds = {finding.kind for finding in check_health(language).findings}
+    assert "known_sign" not in kinds
+    report = check_health(language, known_signs=KNOWN)
+    assert "known_sign" in {finding.kind for finding in report.findings}
 
 
 def test_without_known_signs_nothing_is_found() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query, Request
@@ -27,10 +27,10 @@ from app.api.services.running_studio import CurrentStudio, Studio, computed_brie
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
+from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.switches import Sensitivity, Switches
-from app.recognition.health.finding import measure_visible_share
-from app.recognition.health.gesture_estimate import estimate_gesture
-from app.recognition.health.report import MOST_CONFUSION, MOST_MISSED
+from app.recognition.health.check import rank_others
+from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
@@ -58,6 +58,9 @@ from the head to the knees is then about 640 pixels high, as a clip's picture.""
 
 BORDER = 40
 """Pixels around the drawing: room for the half of the head beyond its middle, which is followed."""
+
+MOST_NEAR = 3
+"""Gestures that are listed beside the edited one."""
 
 HELD_WORDS = "it is a held hand shape, in which nothing moves"
 
@@ -117,15 +120,21 @@ class SwitchView(BaseModel):
     words: str
 
 
+class NearGestureView(BaseModel):
+    """Another gesture of the language, and how far it is."""
+
+    label: str
+    distance: float = Field(description="As in the health report; 1: two typical gestures")
+    same: bool = Field(description="Whether the robot cannot distinguish the two")
+
+
 class OutlookView(BaseModel):
     """What is to be expected of a gesture in its language."""
 
     switches: dict[str, SwitchView]
-    pairs: list[dict[str, Any]] = Field(description="As in the health report, the nearest first")
-    missed: dict[str, float] | None = Field(description="Null: there is no demonstration to vary")
-    refused: dict[str, float] | None
-    most_confusion: float = Field(description="Share of takes from which confusion is warned of")
-    most_missed: float = Field(description="The same for missed takes")
+    nearest: list[NearGestureView] | None = Field(
+        description="The nearest first; null: it has no demonstration to compare"
+    )
 
 
 @router.post("/preview", responses=problem_responses(404, 409))
@@ -178,15 +187,24 @@ def _outlook(
     gesture = draft.gesture()
     advance()
     recognizer = Recognizer(draft.language(), "full")
-    found = estimate_gesture(recognizer, gesture.label, advance=advance)
+    advance()
     return OutlookView(
         switches=_switch_views(gesture, recognizer.sensitivity(gesture.label)),
-        pairs=[] if found is None else [pair.to_dict() for pair in found.pairs],
-        missed=None if found is None else found.missed.to_dict(),
-        refused=None if found is None else found.refused.to_dict(),
-        most_confusion=MOST_CONFUSION,
-        most_missed=MOST_MISSED,
+        nearest=_nearest(gesture, recognizer),
     )
+
+
+def _nearest(gesture: Gesture, recognizer: Recognizer) -> list[NearGestureView] | None:
+    """Return the gestures that are nearest to a gesture of the recogniser's language."""
+    if gesture.trajectory is None:
+        return None
+    labels = recognizer.language.labels
+    scores = recognizer.compare(condense(gesture.trajectory)).scores
+    others = rank_others(labels, scores, labels.index(gesture.label))[:MOST_NEAR]
+    return [
+        NearGestureView(label=label, distance=distance, same=distance < DUPLICATE)
+        for label, distance in others
+    ]
 
 
 @router.get("/gestures/demonstration", responses=problem_responses(404))

@@ -39,7 +39,7 @@ async def check_language(
         str | None, Header(description="The ETag of a report that the caller has")
     ] = None,
 ) -> Any:
-    """Predict what will be confused, missed or set off by accident, and what would help.
+    """Return what other people will reach with a language, and what is wrong with it.
 
     The first call for a revision takes seconds, further ones none. Its progress comes as `checks`
     among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody

@@ -36,7 +36,7 @@ def test_a_held_shape_is_previewed_and_saved_as_a_hand(
     preview = client.post(f"{LANGUAGES}/{signs}/preview", json=body).json()
     assert (preview["problem"], preview["salient"]) == (None, [])
     outlook = client.post(f"{LANGUAGES}/{signs}/preview/health", json=body).json()
-    assert outlook["missed"]["rate"] < 1
+    assert outlook["nearest"] is not None
     assert "nothing moves" in outlook["switches"]["tempo"]["words"]
     (_, gesture, _) = client.get(f"{LANGUAGES}/{signs}").json()["gestures"]
     assert (gesture["label"], gesture["salient"], gesture["has_trajectory"]) == ("ok", [], True)

@@ -114,8 +114,8 @@ def test_ambiguities_are_told_as_the_phrases_change(client: httpx.Client, place:
     assert (found["kind"], found["phrases"], found["gestures"]) == ("prefix", ["photo"], ["line"])
     assert view["may_end"]
     report = client.get(f"{place}/check").json()
-    codes = [each["code"] for each in report["warnings"] if each["below_bar"]]
-    assert "phrases_prefix" in codes
+    kinds = [each["kind"] for each in report["warnings"] if each["below_bar"]]
+    assert "phrases_prefix" in kinds
     client.patch(place, json={"grammar": GRAMMAR})
     assert shown(client, place)["ambiguities"] == []
 

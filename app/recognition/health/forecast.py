@@ -1,0 +1,205 @@
+"""Forecast: what other people's takes of a language will be read as, measured within the language.
+
+Each person's demonstrations are read by those of the others, by the recogniser of a language that
+the person has not shown (leave one person out). Nothing is simulated, and nothing is fitted. One
+person's demonstrations cannot foretell how other people's takes differ; then there is only the
+range that such languages reached.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from app.recognition.decision.result import Recognition
+from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.rate import Rate
+from app.recognition.language.language import Language
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.recognizer import Recognizer
+
+Outcome = Literal["right", "asked", "refused", "wrong"]
+
+OUTCOMES: Final[tuple[Outcome, ...]] = ("right", "asked", "refused", "wrong")
+
+ENOUGH_PEOPLE: Final = 3
+"""Number of people from which a forecast is promised; that of two people ranks languages worse."""
+
+ONE_PERSON: Final = (0.42, 0.99)
+"""Least and largest share of other people's takes that languages shown by one person read right, by
+recorded set (`docs/results.md`, *Forecasts*)."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What one demonstration is read as by those of the other people.
+
+    Attributes
+    ----------
+    gesture, demonstration
+        Label of its gesture, and its number in it, counted from 0.
+    diver
+        Who shows it; empty: not named.
+    outcome
+        ``right``, ``asked`` back with the right gesture among the two, ``refused``, or ``wrong``:
+        another gesture, or two others.
+    read_as
+        The labels of the answer; of a refusal the nearest one, none where nothing is comparable.
+
+    """
+
+    gesture: str
+    demonstration: int
+    diver: str
+    outcome: Outcome
+    read_as: tuple[str, ...]
+
+    @property
+    def words(self) -> str:
+        """What became of it, such as ``Bo's is read as circle``."""
+        whose = f"{self.diver}'s" if self.diver else f"number {1 + self.demonstration}"
+        answer = " or ".join(self.read_as)
+        if self.outcome == "refused":
+            return f"{whose} is refused" + (f" (nearest {answer})" if answer else "")
+        asked = "asked back as" if len(self.read_as) > 1 else "read as"
+        return f"{whose} is {asked} {answer}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        return vars(self) | {"read_as": list(self.read_as)}
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """What other people's takes of a language will be read as.
+
+    Attributes
+    ----------
+    people
+        Number of people who have shown gestures; those who are not named count as one.
+    readings
+        Of every demonstration whose gesture others have shown too; none of one person.
+
+    """
+
+    people: int
+    readings: tuple[Reading, ...] = ()
+
+    def count(self, outcome: Outcome, label: str | None = None) -> Rate | None:
+        """Count an outcome among the readings of a gesture, or of all; None without any."""
+        of = [each for each in self.readings if label in (None, each.gesture)]
+        return Rate(sum(each.outcome == outcome for each in of), len(of)) if of else None
+
+    def failed(self, label: str) -> tuple[Reading, ...]:
+        """Return the readings of a gesture that are not right."""
+        return tuple(
+            each for each in self.readings if each.gesture == label and each.outcome != "right"
+        )
+
+    @property
+    def words(self) -> str:
+        """What can be promised, and whom to ask, in a few sentences."""
+        if (right := self.count("right")) is not None:
+            few = "" if self.people >= ENOUGH_PEOPLE else " Two people are few: ask a third."
+            return f"Other people's demonstrations are read right in {right}.{few}"
+        if not self.people:
+            return "No gesture has a demonstration, so nothing can be foretold."
+        shown = (
+            "One person has shown this language"
+            if self.people == 1
+            else "No gesture is shown by two people"
+        )
+        low, high = ONE_PERSON
+        return (
+            f"{shown}, so nothing can be foretold. Such languages read {100 * low:.0f} to "
+            f"{100 * high:.0f} % of other people's takes right. Ask two more people to show it, "
+            "and name the divers."
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types."""
+        counts = {outcome: self.count(outcome) for outcome in OUTCOMES}
+        return {
+            "people": self.people,
+            "words": self.words,
+            **{outcome: rate and rate.to_dict() for outcome, rate in counts.items()},
+            "failed": [each.to_dict() for each in self.readings if each.outcome != "right"],
+        }
+
+
+def make_forecast(language: Language, *, advance: Callable[[], None] = lambda: None) -> Forecast:
+    """Read each person's demonstrations by those of the others, with profile ``full``.
+
+    Parameters
+    ----------
+    language
+        At least one gesture; demonstrations whose diver is not named count as one person's.
+    advance
+        Called after each reading; an exception that it raises ends the work.
+
+    """
+    divers = sorted(
+        {
+            shown.diver
+            for gesture in language.gestures
+            for shown in gesture.single_demonstrations()
+            if shown.trajectory is not None
+        }
+    )
+    readings = [
+        reading
+        for diver in divers
+        if len(divers) > 1
+        for reading in _read_diver(language, diver, advance)
+    ]
+    order = {label: index for index, label in enumerate(language.labels)}
+    readings.sort(key=lambda each: (order[each.gesture], each.demonstration))
+    return Forecast(len(divers), tuple(readings))
+
+
+def _read_diver(language: Language, diver: str, advance: Callable[[], None]) -> Iterator[Reading]:
+    """Yield the readings of the demonstrations by one diver."""
+    others = [_leave_out(gesture, diver) for gesture in language.gestures]
+    # A gesture that nobody else has shown stays as it is, so that it can still be confused.
+    kept = [other or gesture for other, gesture in zip(others, language.gestures, strict=True)]
+    recognizer = Recognizer(replace(language, gestures=kept), "full")
+    for gesture, other in zip(language.gestures, others, strict=True):
+        if other is None or other.trajectory is None:
+            continue
+        for number, shown in enumerate(gesture.single_demonstrations()):
+            if shown.diver == diver and shown.trajectory is not None:
+                result = _recognize(recognizer, shown.trajectory)
+                yield Reading(gesture.label, number, diver, *judge(result, gesture.label))
+                advance()
+
+
+def _leave_out(gesture: Gesture, diver: str) -> Gesture | None:
+    """Return a gesture without the demonstrations by a diver; None where there are no others."""
+    shown = gesture.single_demonstrations()
+    if all(each.diver == diver for each in shown):
+        return None
+    for number in reversed(range(len(shown))):
+        if shown[number].diver == diver:
+            gesture = gesture.without_demonstration(number)
+    return gesture
+
+
+def _recognize(recognizer: Recognizer, shown: Trajectory) -> Recognition | None:
+    """Recognise a demonstration; None where nothing is comparable."""
+    table = recognizer.compare(condense(shown))
+    return recognizer.decide(table) if np.isfinite(table.scores).any() else None
+
+
+def judge(result: Recognition | None, label: str) -> tuple[Outcome, tuple[str, ...]]:
+    """Return the outcome of a take of a gesture, and the labels that it is read as."""
+    if result is None:
+        return "refused", ()
+    if result.pair is not None:
+        return ("asked" if label in result.pair else "wrong"), result.pair
+    if result.label is None:
+        return "refused", (result.nearest,)
+    return ("right" if result.label == label else "wrong"), (result.label,)

@@ -1,0 +1,52 @@
+"""Rates: how often something happened among what was tried, with a 95 % interval."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Final
+
+STANDARD_ERRORS: Final = 1.96
+"""Standard errors to either side of a 95 % interval of a normal distribution."""
+
+DIGITS: Final = 4
+"""Decimals in JSON: a hundredth of a per cent, far below the accuracy of any rate here."""
+
+
+@dataclass(frozen=True)
+class Rate:
+    """A counted share.
+
+    Attributes
+    ----------
+    happened, n
+        How often it happened, of n > 0.
+
+    """
+
+    happened: int
+    n: int
+
+    @property
+    def rate(self) -> float:
+        """The share, in [0, 1]."""
+        return self.happened / self.n
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Wilson's 95 % interval (Wilson 1927)."""
+        square = STANDARD_ERRORS**2 / self.n
+        middle = (self.rate + square / 2) / (1 + square)
+        spread = math.sqrt(self.rate * (1 - self.rate) * square + square * square / 4)
+        half = spread / (1 + square)
+        # Rounding may move an end past the rate.
+        return max(0.0, min(self.rate, middle - half)), min(1.0, max(self.rate, middle + half))
+
+    def __str__(self) -> str:
+        low, high = self.interval
+        return f"{self.rate:.0%} ({low:.0%}-{high:.0%}, n {self.n})"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain JSON types, rounded."""
+        low, high = (round(end, DIGITS) for end in self.interval)
+        return {"rate": round(self.rate, DIGITS), "low": low, "high": high, "n": self.n}

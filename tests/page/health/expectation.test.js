@@ -1,0 +1,52 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { forecastWords, testWords } from "../../../static/js/health/expectation.js";
+import { testedShare } from "../../../static/js/health/gesture-table.js";
+
+const rate = (value) => ({ rate: value, low: value / 2, high: (1 + value) / 2, n: 12 });
+const share = { label: "circle", right: 3, asked: 4, rate: 0.75, low: 0.3, high: 0.95 };
+
+const measured = {
+  people: 3,
+  words: "",
+  right: rate(0.75),
+  asked: rate(0.1),
+  refused: rate(0.1),
+  wrong: rate(0.05),
+};
+
+test("what is measured among people is told with every outcome", () => {
+  assert.deepEqual(forecastWords(measured), [
+    "Of 12 demonstrations 75 % (38 to 88) are read right by those of other people.",
+    "10 % (5 to 55) are asked back with the right gesture, 10 % (5 to 55) refused, 5 % (2 to 52) read as another.",
+  ]);
+});
+
+test("two people are said to be few", () => {
+  assert.match(forecastWords({ ...measured, people: 2 }).at(-1), /ask a third/);
+});
+
+test("where nothing can be foretold there are no outcomes", () => {
+  const words = "One person has shown this language.";
+  assert.deepEqual(forecastWords({ ...measured, words, right: null }), [words]);
+});
+
+test("a test set is told with its interval, and not before it has a recognised take", () => {
+  assert.equal(testWords(null), "");
+  assert.equal(
+    testWords({ overall: { right: 0, asked: 0, rate: null, low: null, high: null } }),
+    "",
+  );
+  assert.equal(
+    testWords({ overall: share }),
+    "Of the test set 3 of 4 takes are read right, 75 % (30 to 95).",
+  );
+});
+
+test("a gesture has the share of its own takes in the test set", () => {
+  const testSet = { gestures: [share] };
+  assert.deepEqual(testedShare(testSet, "circle"), { rate: 0.75, low: 0.3, high: 0.95, n: 4 });
+  assert.equal(testedShare(testSet, "line"), null);
+  assert.equal(testedShare(null, "circle"), null);
+});
