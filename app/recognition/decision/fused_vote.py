@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from copy import copy
-from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 
@@ -235,26 +233,6 @@ class FusedVote:
     def references(self) -> MotionReferences:
         """The gestures' movements in all traversals that are not ambiguous in the language."""
         return self._motions
-
-    def among(self, gestures: npt.NDArray[np.intp]) -> FusedVote:
-        """Return the same vote between some of the gestures, given in ascending order.
-
-        Weights, limit and traversals stay those of the whole language.
-        """
-        shown, sides = self._shown.take(gestures)
-        rows = np.flatnonzero(np.isin(self._motions.gestures, sides))
-        motions = self._motions.take(rows)
-        other = copy(self)
-        for name in ("weights", "_salient"):
-            other.__dict__.pop(name, None)
-        other._labels = tuple(self._labels[index] for index in gestures.tolist())
-        other._shown, other._owners = shown, shown.owners
-        other._motions = replace(motions, gestures=np.searchsorted(sides, motions.gestures))
-        other._tempo = self._tempo[sides]
-        other._hands = self._hands.take(sides)
-        other._moving_shapes = self._moving_shapes.take(sides, other._owners)
-        other._views = Views(shown.gestures, other._motions)
-        return other
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with the nearest demonstration of every gesture.

@@ -97,17 +97,6 @@ class HandReferences:
         """Return M, the number of references that hold a shape."""
         return len(self.rows)
 
-    def take(self, references: npt.NDArray[np.intp]) -> HandReferences:
-        """Return the references among some of the S, given in ascending order."""
-        kept = np.flatnonzero(np.isin(self.rows, references))
-        return replace(
-            self,
-            count=len(references),
-            rows=np.searchsorted(references, self.rows[kept]),
-            shapes=tuple(self.shapes[index] for index in kept.tolist()),
-            mirrored=self.mirrored[kept],
-        )
-
     def distances(self, shapes: HeldShapes) -> FloatArray:
         """Compute the distances of held hands to all references.
 

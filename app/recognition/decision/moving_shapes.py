@@ -110,11 +110,6 @@ class MovingShapes:
         alike = min(movements[pair].min(), movements[turned].min()) < SAME_MOVEMENT
         return bool(alike and OTHER_SHAPE < nearest < np.inf)
 
-    def take(self, references: npt.NDArray[np.intp], owners: npt.NDArray[np.intp]) -> MovingShapes:
-        """Return the shapes of some of the references, with their new owners."""
-        shapes = tuple(self.shapes[index] for index in references.tolist())
-        return MovingShapes(shapes, owners, self.counting[references])
-
     @cached_property
     def any_counts(self) -> bool:
         """Whether any shape counts."""

@@ -57,17 +57,6 @@ class References:
             mirrored=np.arange(len(every)) >= len(shown),
         )
 
-    def take(self, gestures: npt.NDArray[np.intp]) -> tuple[References, npt.NDArray[np.intp]]:
-        """Return the references of some gestures, in ascending order, and their indices here."""
-        kept = np.flatnonzero(np.isin(self.owners, gestures))
-        taken = References(
-            gestures=tuple(self.gestures[index] for index in kept.tolist()),
-            owners=np.searchsorted(gestures, self.owners[kept]),
-            demonstrations=self.demonstrations[kept],
-            mirrored=self.mirrored[kept],
-        )
-        return taken, kept
-
     def find_nearest(self, scores: FloatArray) -> npt.NDArray[np.intp]:
         """Return the reference of each gesture with the smallest of ``(S,)`` scores, ``(G,)``."""
         order = np.argsort(-scores, kind="stable")

@@ -62,13 +62,6 @@ def test_two_hands_are_compared_with_two() -> None:
     assert np.isinf(made.distances(held(GESTURES[2]))[:, 1]).all()
 
 
-def test_some_of_the_references_are_as_far_as_among_all() -> None:
-    everything = references(GESTURES)
-    some = everything.take(np.array([1, 3]))
-    query = held(GESTURES[0])
-    assert np.allclose(some.distances(query), everything.distances(query)[:, [1, 3]])
-
-
 def sequence(first: int, second: int) -> Gesture:
     """Return two of `GESTURES` in sequence."""
     shown = replace(held_trajectory(first), then_hands=held(GESTURES[second])[0])

@@ -30,11 +30,3 @@ def test_first_come_the_gestures_then_further_demonstrations_then_mirror_images(
 
 def test_each_gesture_is_as_near_as_its_nearest_reference() -> None:
     assert references().find_nearest(np.array([3.0, 2.0, np.inf, 1.0, 4.0])).tolist() == [3, 1, 2]
-
-
-def test_some_gestures_keep_all_their_references() -> None:
-    taken, kept = references().take(np.array([1, 2]))
-    assert kept.tolist() == [1, 2, 4]
-    assert taken.owners.tolist() == [0, 1, 0]
-    assert taken.mirrored.tolist() == [False, False, True]
-    assert [each.label for each in taken.gestures] == ["wedge", "circle", "wedge"]
