@@ -15,17 +15,23 @@ queries, which are by people who show nothing, or by anybody where people are no
   most `--ratio` times the best one. `wrong alone` is the share of wrong nearest gestures that are
   the whole answer.
 
+With ``--forecasts`` instead: what the health check foretells from the demonstrations of two, three
+and five people (each person's read by those of the others), beside what the takes of the people who
+show nothing are read as with the same language; of one person only the latter.
+
 Shares are of all draws together; the interval is Wilson's, which does not know that takes of one
 draw share demonstrations. ``--json`` also has every draw's counts, so that two versions of the
 recogniser can be compared draw by draw.
 
     python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
+    python -m benchmarks.accuracy.people ../shared/data --draws 20 --queries 60 --forecasts
 """
 
 from __future__ import annotations
 
 import json
-from collections import defaultdict
+from argparse import Namespace
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -46,6 +52,8 @@ from app.recognition import (
     Recognizer,
 )
 from app.recognition.decision.asking import ASK_RATIO
+from app.recognition.health.forecast import OUTCOMES, Outcome, make_forecast
+from app.recognition.health.forecast import judge as find_outcome
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
@@ -313,13 +321,93 @@ def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]
     yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
 
 
+Outcomes = dict[str, Counter[Outcome]]
+"""Outcomes ``foretold`` and ``reached``."""
+
+
+def count_outcomes(recorded: RecordedSet, several: SeveralPeople, people: int) -> Outcomes:
+    """Count the outcomes of the demonstrations of some people, and of the queries to them."""
+    gestures = [define(recorded, row) for row in several.rows(people)]
+    language = Language(recorded.name, gestures)
+    asked = recognize(Recognizer(language, "full"), recorded, several.queries)
+    return {
+        "foretold": Counter(each.outcome for each in make_forecast(language).readings),
+        "reached": Counter(find_outcome(*each)[0] for each in asked),
+    }
+
+
+def measure_excess(outcomes: Outcomes) -> float | None:
+    """Return by how many points more is foretold right than reached; None without a forecast."""
+    foretold, reached = outcomes["foretold"], outcomes["reached"]
+    if not foretold or not reached:
+        return None
+    return 100 * (foretold["right"] / foretold.total() - reached["right"] / reached.total())
+
+
+def format_forecast(name: str, column: str, by_draw: Sequence[Outcomes]) -> str:
+    """Format a row of Markdown: foretold / reached by outcome, and how far both are apart."""
+    whole = sum_outcomes(by_draw)
+    shares = [[Share(of[outcome], of.total()) for of in whole.values()] for outcome in OUTCOMES]
+    right = " / ".join(map(str, shares[0]))
+    others = [
+        " / ".join("-" if each.value is None else f"{each.value:.1%}" for each in both)
+        for both in shares[1:]
+    ]
+    excess = measure_excess(whole)
+    each_draw = [abs(one) for draw in by_draw if (one := measure_excess(draw)) is not None]
+    apart = ["-", "-"] if excess is None else [f"{excess:+.1f}", f"{np.mean(each_draw):.1f}"]
+    numbers = " / ".join(str(of.total()) for of in whole.values())
+    return f"| {' | '.join([name, column, numbers, right, *others, *apart])} |"
+
+
+def sum_outcomes(by_draw: Sequence[Outcomes]) -> Outcomes:
+    """Add up the outcomes of all draws."""
+    return {
+        when: sum((each[when] for each in by_draw), Counter[Outcome]())
+        for when in ("foretold", "reached")
+    }
+
+
+def compare_forecasts(sets: Iterator[RecordedSet], given: Namespace) -> None:
+    """Print what several people's demonstrations foretell beside what further people reach."""
+    columns = {name: people for name, (people, takes) in SHOWN.items() if takes == 1}
+    print("| set | shown by | n | right | asked | refused | wrong | above | by language |")
+    print("| --- " * 9 + "|")
+    found: dict[str, list[float]] = defaultdict(list)
+    for recorded in sets:
+        if count_people(recorded) is None:
+            continue
+        by_column: dict[str, list[Outcomes]] = defaultdict(list)
+        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
+            several = draw_several(
+                recorded, chosen, max(columns.values()), given.queries, given.seed + number
+            )
+            for column, people in columns.items():
+                if people <= len(several.takes):
+                    by_column[column].append(count_outcomes(recorded, several, people))
+        for column, by_draw in by_column.items():
+            print(format_forecast(recorded.name, column, by_draw), flush=True)
+            if (excess := measure_excess(sum_outcomes(by_draw))) is not None:
+                found[column].append(excess)
+    for column, excesses in found.items():
+        print(
+            f"{column}: foretold minus reached {np.mean(excesses):+.1f} points on average, "
+            f"{np.mean(np.abs(excesses)):.1f} without sign, {min(excesses):+.1f} to "
+            f"{max(excesses):+.1f}"
+        )
+
+
 def main() -> None:
     """Print the table of every set, and write the JSON file after each."""
     parser = set_arguments(__doc__, draws=8, queries=60)
     parser.add_argument("--ratio", type=float, default=ASK_RATIO, help="of scores in one answer")
     parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
+    parser.add_argument("--forecasts", action="store_true", help="forecasts alone")
     given = parser.parse_args()
     folder = given.data / "trajectories"
+    if given.forecasts:
+        compare_forecasts(all_sets(folder, given.sets), given)
+        return
     far = far_movements(folder)
     most = max(people for people, _ in SHOWN.values())
     report: dict[str, Any] = {

@@ -1,5 +1,6 @@
 """Measures of a draw: nearest and rejected takes, answers of several gestures, and sums."""
 
+from argparse import Namespace
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,8 @@ from benchmarks.accuracy.people import (
     COLUMNS,
     MEASURES,
     SIZE,
+    compare_forecasts,
+    count_outcomes,
     define,
     judge,
     judge_half,
@@ -106,3 +109,28 @@ def test_counts_of_all_draws_are_summed_up_and_kept() -> None:
     share = summarize("nearest", [[1, 1, 0], [], [1]])
     assert (share["share"], share["asked"], share["draws"]) == (0.75, 4, [[2, 3], [0, 0], [1, 1]])
     assert summarize(SIZE, [[1, 2, 3], [2]])["mean"] == 2.0
+
+
+def test_forecasts_are_of_the_people_who_show_and_what_is_reached_of_the_others(
+    recorded: RecordedSet,
+) -> None:
+    (chosen,) = draws(recorded, 1, 4, seed=1)
+    several = draw_several(recorded, chosen, 3, 4, seed=1)
+    alone, three = (count_outcomes(recorded, several, people) for people in (1, 3))
+    assert not alone["foretold"]
+    assert three["foretold"].total() == 3 * len(CLASSES)
+    assert alone["reached"].total() == three["reached"].total() == 4
+    assert three["foretold"]["right"] > 6
+
+
+def test_a_table_says_by_how_much_forecasts_are_above_what_is_reached(
+    recorded: RecordedSet, capsys: pytest.CaptureFixture[str]
+) -> None:
+    compare_forecasts(iter([recorded]), Namespace(draws=1, queries=4, seed=1))
+    rows = capsys.readouterr().out.splitlines()
+    (three,) = [row.split(" | ") for row in rows if row.startswith("| drawn | 3 people")]
+    assert three[2] == "12 / 4"
+    foretold, reached = (float(share.split("%")[0]) for share in three[3].split(" / "))
+    assert float(three[-2]) == pytest.approx(foretold - reached, abs=0.1)
+    (mean,) = [row for row in rows if row.startswith("3 people: foretold minus reached")]
+    assert f"{foretold - reached:+.1f} points on average" in mean
