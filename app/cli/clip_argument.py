@@ -18,7 +18,6 @@ from app.keypoint_files import KeypointOptions
 from app.recognition import (
     Gesture,
     Language,
-    PoseSequence,
     Recognition,
     Recognizer,
     Recording,
@@ -29,6 +28,7 @@ from app.recognition.errors import GestureError, KeypointFileError
 from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
+from app.recognition.explanation.demonstration_faults import find_demonstration_faults
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.recording.segmentation import LONGEST_TAKE
@@ -234,7 +234,10 @@ def define_gesture(
 
     """
     for shown in demonstrations:
-        poses = demonstration_poses(shown, reading)
+        take, recording = demonstration_take(shown, reading)
+        poses, trigger = take.poses, reading.trigger
+        where = (take.stroke_start, take.stroke_end)
+        faults = find_demonstration_faults(recording, *where, trigger=trigger)
         if gesture is None:
             gesture = Gesture.from_demonstration(shown.label, poses, diver=diver)
         else:
@@ -245,6 +248,8 @@ def define_gesture(
             f"{describe_shown(shown_last)}",
             markup=False,
         )
+        for fault in faults:
+            people.print(fault.describe(gesture.label), f"It {fault.words}.", markup=False)
     assert gesture is not None  # an argument names one clip at least
     return gesture
 
@@ -276,10 +281,10 @@ def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
     return Path(match[1]), (float(match[2]), float(match[3]))
 
 
-def demonstration_poses(
+def demonstration_take(
     demonstration: Demonstration, reading: ClipReading | None = None
-) -> PoseSequence:
-    """Return the stroke of the only closed take of a clip, or of the range given by hand.
+) -> tuple[Take, Recording]:
+    """Return the only closed take of a clip, or the range given by hand, and the recording.
 
     Raises
     ------
@@ -288,7 +293,8 @@ def demonstration_poses(
 
     """
     clip = demonstration.clip
-    takes = read_clip(clip, reading).takes(demonstration.span)
+    read = read_clip(clip, reading)
+    takes = read.takes(demonstration.span)
     closed = [take for take in takes if take.closed]
     if len(closed) != 1:
         found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
@@ -297,7 +303,7 @@ def demonstration_poses(
             f"{clip} holds {found}, a demonstration needs one closed take {trigger.words}; "
             f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
         )
-    return closed[0].poses
+    return closed[0], read.recording
 
 
 def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.recognition import Recognition, Take
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.gestures.profile import ProfileName
+from app.recognition.preprocessing.quality import QualityFaultKind
 
 VERSION: Final = 1
 """Version of the report; raised when a reader of this version could misunderstand one. New keys do
@@ -59,6 +60,9 @@ class TakeEntry(_Entry):
     fault: Annotated[
         str | None, Field(description="Why the keypoints are too poor to judge; null: they are not")
     ]
+    fault_kind: Annotated[
+        QualityFaultKind | None, Field(description="The kind of fault; null without one.")
+    ] = None
     voters: list[str]
     gestures: list[str]
     distances: Annotated[

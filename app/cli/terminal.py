@@ -15,7 +15,6 @@ from rich.table import Table
 from rich.text import Text
 
 from app.recognition import Recognition, Take
-from app.recognition.explanation.differences import Difference
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.text.wording import ask_which, join_words
 from app.recognition.triggers.trigger import Trigger
@@ -52,13 +51,13 @@ def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
 def show_explanation(explanation: Explanation) -> None:
     """Print an explanation on stderr: why a take was recognised so, and the interventions."""
     people.print(Text(explanation.sentence))
-    if (lesson := explanation.lesson) is not None:
-        people.print(Text(f"Show it again: in this take {lesson.words}{_moment(lesson)}."))
+    for line in explanation.details:
+        people.print(Text(f"  {line}"))
     table = Table(
         "what to change",
         "confidence",
         "margin",
-        "takes of the language recognised",
+        "known takes",
         title=f"with which {explanation.expected!r} would be recognised",
         title_justify="left",
         box=box.SIMPLE_HEAD,
@@ -71,15 +70,11 @@ def show_explanation(explanation: Explanation) -> None:
             f"{found.confidence:.2f}",
             f"{found.margin:.2f}",
             ""
-            if effect is None
-            else f"{effect.right_after} of {effect.takes}, {effect.right_before} before",
+            if effect is None or not effect.takes
+            else f"{effect.repaired} repaired, {effect.broken} broken of {effect.takes}",
         )
     if table.row_count:
         people.print(table)
-
-
-def _moment(difference: Difference) -> str:
-    return "" if difference.start is None else f" (from {difference.start:.2f} s)"
 
 
 def build_vote_table(result: Recognition) -> Table:

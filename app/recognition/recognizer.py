@@ -31,7 +31,7 @@ from app.recognition.preprocessing.holds import (
     keep_holds,
 )
 from app.recognition.preprocessing.moving_hands import find_moving_hands
-from app.recognition.preprocessing.quality import find_fault
+from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 
@@ -137,7 +137,14 @@ class Recognizer:
         poor = poor or self._find_unseen_shape(table, result.nearest)
         if poor or findings:
             label, pair = (None, None) if poor else (result.label, result.pair)
-            result = replace(result, label=label, pair=pair, findings=findings, fault=poor)
+            result = replace(
+                result,
+                label=label,
+                pair=pair,
+                findings=findings,
+                fault=poor.words if poor else None,
+                fault_kind=poor.kind if poor else None,
+            )
         return Trace(query=query, score_table=table, result=result)
 
     def _describe_others(self, holds: Sequence[Hold]) -> str:
@@ -149,7 +156,7 @@ class Recognizer:
             f"{self.language.name!r} has as many of both"
         )
 
-    def _fault(self, repair: Repair, table: ScoreTable, nearest: str) -> str | None:
+    def _fault(self, repair: Repair, table: ScoreTable, nearest: str) -> QualityFault | None:
         """Return why poses are too poor to be the nearest gesture, with either hand; or None."""
         at = self.language.labels.index(nearest)
         gesture = table.find_nearest_demonstration(self.language.gestures, at)
@@ -159,8 +166,8 @@ class Recognizer:
             poor = find_fault(repair.poses, others, repair.trajectory)
         return poor
 
-    def _find_unseen_shape(self, table: ScoreTable, nearest: str) -> str | None:
-        """Return a message if the hand whose shape counts is not seen, else None."""
+    def _find_unseen_shape(self, table: ScoreTable, nearest: str) -> QualityFault | None:
+        """Return the fault that the hand whose shape counts is not seen, or None."""
         counting = self.sensitivity(nearest)
         if counting is None or not counting.hand_shape:
             return None
@@ -171,11 +178,13 @@ class Recognizer:
         unseen = "no hand is seen for long enough that keeps a shape"
         if twins := self._list_twins(at):
             names = " and ".join(map(repr, (nearest, *twins)))
-            return (
+            words = (
                 f"{names} are the same movement, told apart by the hand shape, and {unseen}: show "
                 f"the hand, or switch the hand shape off where it need not count"
             )
-        return f"the hand shape of {nearest!r} counts, and {unseen}: show the hand"
+        else:
+            words = f"the hand shape of {nearest!r} counts, and {unseen}: show the hand"
+        return QualityFault("unseen_hand", words)
 
     def _list_twins(self, gesture: int) -> list[str]:
         """Return the labels of the gestures that differ from the given one in hand shape only."""

@@ -65,7 +65,7 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
     """Return a table of every voter's distance to every gesture, with each voter's vote marked.
 
     One row per voter, by descending weight; rows of weight 0 are faint. One column per gesture,
-    that with the largest weight of its voters first. Each voter has its own unit, so shades are
+    the nearest first. Each voter has its own unit, so shades are
     comparable within a row only: the stronger, the nearer. A vote has a dot and a frame, the
     expected and the chosen gesture have a tag, so that no meaning depends on colour alone.
     """
@@ -73,10 +73,13 @@ def vote_table(recognition: Recognition, expected: str | None) -> str:
     nearness = _nearness(recognition.distances)
     weights = np.array([recognition.weights[voter] for voter in recognition.voters])
     near = weights @ nearness if len(nearness) else np.zeros(len(recognition.gestures))
+    # The order of the decision, so that the table ranks the gestures as the answer does.
+    ranked = recognition.scores if recognition.scores.size else -near
     columns = sorted(
         range(len(recognition.gestures)),
         key=lambda column: (
-            -support.get(recognition.gestures[column], 0.0),
+            recognition.gestures[column] != recognition.nearest,
+            float(ranked[column]),
             -float(near[column]),
         ),
     )

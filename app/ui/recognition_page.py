@@ -116,19 +116,11 @@ def _why(explanation: Explanation | None) -> str:
         if helps
         else ""
     )
+    numbers = "".join(f"<li>{escape(line)}</li>" for line in explanation.details)
     return (
         f"<section class='why' aria-label='Why'><p>{escape(explanation.sentence)}</p>"
-        f"{_lesson(explanation)}{listed}"
-        "</section>"
+        f"<details><summary>Numbers</summary><ul>{numbers}</ul></details>{listed}</section>"
     )
-
-
-def _lesson(explanation: Explanation) -> str:
-    """Return advice on what to show differently next time."""
-    if (lesson := explanation.lesson) is None:
-        return ""
-    moment = "" if lesson.start is None else f" (from {lesson.start:.2f} s)"
-    return f"<p><b>Show it again:</b> in this take {escape(lesson.words)}{moment}.</p>"
 
 
 def _recording(view: WorkspaceView, shown: Range) -> dict[str, Any]:

@@ -318,13 +318,14 @@ def compared_images(
     """Return the images that a recognition compared, with captions.
 
     The take is drawn as the recogniser drew it: with the salient landmarks of the gesture it is
-    compared with. If those of the expected and the chosen gesture differ, there are two drawings.
+    compared with. If those of the expected and the nearest gesture differ, there are two drawings.
     """
-    chosen, expected = recognition.nearest, view.expected
+    nearest, expected = recognition.nearest, view.expected
+    role = "nearest" if recognition.label is None else "chosen"
     known = {gesture.label: gesture for gesture in view.language.gestures} if view.language else {}
-    captions = {chosen: f"{chosen} (chosen)"}
-    if expected == chosen:
-        captions = {chosen: f"{chosen} (chosen and expected)"}
+    captions = {nearest: f"{nearest} ({role})"}
+    if expected == nearest:
+        captions = {nearest: f"{nearest} ({role} and expected)"}
     elif expected is not None:
         captions = {expected: f"{expected} (expected)", **captions}
     shown = [(caption, known[label]) for label, caption in captions.items() if label in known]

@@ -195,7 +195,7 @@ def test_a_language_defined_from_clips_recognises_another_take(
     assert set(take["votes"]) <= set(take["voters"]) == set(take["weights"])
     assert np.shape(take["distances"]) == (len(take["voters"]), 2)
     assert (take["explanation"]["expected"], take["explanation"]["right"]) == ("circle", False)
-    assert "instead of 'circle'" in take["explanation"]["sentence"]
+    assert len(take["explanation"]["sentence"].split()) <= 15
 
 
 @pytest.mark.slow

@@ -113,7 +113,7 @@ def test_voters_of_weight_zero_come_last_and_do_not_count() -> None:
         ["solidity", "70 %"],
         ["aspect ratio", "30 %"],
         ["hu", "0 %"],
-        ["weight of its voters", "70 %"],
+        ["weight of its voters", "30 %"],
     ]
     assert [row.get("class") for row in table.named("tr")].count("mute") == 1
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 
-from app.api.http.schemas.gestures import NewDemonstration, SourceView
-from app.api.services.demonstration_faults import describe_fault
+from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
 from app.api.services.running_studio import Studio
-from app.api.services.salute_ranges import count_salutes_in_clip
+from app.api.services.salute_ranges import count_salutes_in_clip, faults_of_source
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import Demonstration
@@ -51,7 +50,10 @@ def sources_in(studio: Studio, language: Language) -> dict[str, list[SourceView 
     """Return the known sources of demonstrations by label; see `find_sources`."""
     return {
         label: [
-            None if source is None else _view(studio, source, language.trigger) for source in row
+            None if source is None else _view(studio, source, shown, language.trigger)
+            for source, shown in zip(
+                row, language.gesture(label).single_demonstrations(), strict=True
+            )
         ]
         for label, row in find_sources(studio, language).items()
     }
@@ -70,13 +72,29 @@ def find_sources(studio: Studio, language: Language) -> dict[str, list[Demonstra
     }
 
 
-def _view(studio: Studio, source: DemonstrationSource, trigger: Trigger) -> SourceView:
-    where = (source.clip_id, source.start, source.end, trigger)
+def _view(
+    studio: Studio, source: DemonstrationSource, shown: Gesture, trigger: Trigger
+) -> SourceView:
+    faults = view_faults(studio, source, shown, trigger)
     return SourceView(
         **source.model_dump(exclude={"trajectory"}),
-        salutes=count_salutes_in_clip(studio, *where),
-        fault=describe_fault(studio, *where),
+        salutes=count_salutes_in_clip(studio, source.clip_id, source.start, source.end, trigger),
+        fault=faults[0].words if faults else None,
+        faults=faults,
     )
+
+
+def view_faults(
+    studio: Studio,
+    source: DemonstrationSource | NewDemonstration,
+    shown: Gesture,
+    trigger: Trigger,
+) -> list[DemonstrationFaultView]:
+    """Return the faults of a demonstration as the API shows them; see `faults_of_source`."""
+    return [
+        DemonstrationFaultView(**fault.to_dict(), sentence=fault.describe(shown.label))
+        for fault in faults_of_source(studio, source, shown, trigger)
+    ]
 
 
 def _key(gesture: Gesture) -> str | None:

@@ -1,14 +1,14 @@
-"""Explanation notes: faults of the demonstrations, and which range was recognised."""
+"""Explanation notes: which range was recognised, and a fault of the nearest demonstration."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from app.api.services.demonstration_faults import describe_count
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.running_studio import Studio
 from app.api.services.salute_ranges import count_salutes_in_clip
 from app.recognition import Language
+from app.recognition.explanation.demonstration_faults import describe_count
 from app.recognition.triggers.trigger import Trigger
 from app.store import RecognitionRecord
 
@@ -53,12 +53,5 @@ def _describe_demonstrations(
     sources = sources_in(studio, language)
     for label in dict.fromkeys(labels):
         for source in sources.get(label, []):
-            if source is not None and source.fault is not None:
-                yield (
-                    f"The demonstration of {label!r} is a likely reason: {source.start:.2f}-"
-                    f"{source.end:.2f} s of its clip {source.fault}. Save it again from a take."
-                )
-
-
-def _salutes(count: int) -> str:
-    return "a Vulcan salute" if count == 1 else f"{count} Vulcan salutes"
+            if source is not None and source.faults:
+                yield source.faults[0].sentence

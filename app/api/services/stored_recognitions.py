@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from app.api.http.problems import ProblemError
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
-from app.recognition import Language, PoseSequence, Recognition, Recognizer
-from app.recognition.explanation.context import RecognitionContext
+from app.api.services.salute_ranges import faults_of_language
+from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
+from app.recognition.explanation.context import KnownTake, RecognitionContext
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
-from app.recognition.recording.clip_range import find_surroundings
-from app.store import NO_QUOTA, Clip, LanguageState, Quota, RecognitionRecord
+from app.recognition.recording.clip_range import find_demonstration, find_surroundings
+from app.store import (
+    NO_QUOTA,
+    Clip,
+    LabelledTake,
+    LanguageState,
+    NotFound,
+    PracticeTake,
+    Quota,
+    RecognitionRecord,
+)
 
 
 @dataclass(frozen=True)
@@ -91,17 +104,88 @@ def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) ->
         require_seen_landmarks(language, poses, clip.name)
 
 
-def load_situation(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
-    """Return the situation in which a recognition was made, by the language as it was then."""
+MOST_KNOWN = 60
+"""Most known takes by which remedies are judged, the newest first; each is recognised again with
+every remedy."""
+
+
+def load_context(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
+    """Return the context in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id)
-    trigger = studio.language(state).trigger
     view = view_recognition(record)
+    recognizer = make_recognizer(studio, state, record.profile, view.tuning, view.trial)
+    language = recognizer.language
     return RecognitionContext(
-        recognizer=make_recognizer(studio, state, record.profile, view.tuning, view.trial),
-        poses=demonstration_in(recording, record.start, record.end, trigger=trigger).poses,
-        whole=find_surroundings(recording, record.start, record.end, trigger),
+        recognizer=recognizer,
+        poses=demonstration_in(recording, record.start, record.end, trigger=language.trigger).poses,
+        whole=find_surroundings(recording, record.start, record.end, language.trigger),
+        known=tuple(_load_known(studio, record, recognizer)),
+        faults=faults_of_language(studio, language, find_sources(studio, language)),
+        recorded=load_recognition(record),
     )
+
+
+def _load_known(
+    studio: Studio, record: RecognitionRecord, recognizer: Recognizer
+) -> Iterator[KnownTake]:
+    """Yield the takes of the test set and of practice but the recognised one and demonstrations."""
+    language = recognizer.language
+    shown = {
+        source.clip_id
+        for row in find_sources(studio, language).values()
+        for source in row
+        if source is not None
+    }
+    tested = [each.take for each in studio.labelled.of(record.language_id)]
+    practised = studio.practice.of(record.language_id)
+    takes: list[LabelledTake | PracticeTake] = [*tested, *practised]
+    ranges = {(each.clip_id, round(each.start, 2)): each for each in takes}
+    count = 0
+    for take in reversed(ranges.values()):
+        if take.clip_id in shown or take.clip_id == record.clip_id or count == MOST_KNOWN:
+            continue
+        end = take.end if isinstance(take, LabelledTake) else None
+        try:
+            recording = studio.recording(take.clip_id)
+            found = find_demonstration(recording, take.start, end, trigger=language.trigger)
+            yield KnownTake(take.expected, recognizer.query(found.poses))
+        except (OsgError, ProblemError, NotFound):
+            continue
+        count += 1
+
+
+def locate_cuts(
+    studio: Studio, language: Language, counterfactuals: list[dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return the counterfactuals with the clip's range of every cut demonstration.
+
+    A cut is left out where the clip of the demonstration is not known, or where it is not the
+    gesture's first one, which alone can be replaced.
+    """
+    sources, located = find_sources(studio, language), []
+    for found in counterfactuals:
+        change = found["change"]
+        if change["kind"] != "demonstration_cut":
+            located.append(found)
+            continue
+        source = sources[change["label"]][0] if change["demonstration"] == 0 else None
+        if source is None:
+            continue
+        begin = demonstration_in(
+            studio.recording(source.clip_id),
+            source.start,
+            source.end,
+            keep_transit=source.keep_transit,
+            trigger=language.trigger,
+        ).start
+        where = {
+            "clip_id": source.clip_id,
+            "clip_start": begin + change["start"],
+            "clip_end": begin + change["end"],
+        }
+        located.append(found | {"change": change | where})
+    return located
 
 
 def make_recognizer(

@@ -53,10 +53,6 @@ from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOT
 _TEMPO = VOTER_NAMES.index(Tempo.name)
 _ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 
-CLOSE_SCORES = 0.05
-"""Tolerance in score of `FusedVote.may_win`: a new weight may select another traversal, which is
-usually nearer by about as much."""
-
 
 class FusedVote:
     """Fuses the distances of all voters, weighted by how well each separates the gestures.
@@ -365,18 +361,6 @@ class FusedVote:
         """Recognise a condensed query; None if no landmark that a gesture needs moves."""
         compared = self.compare(trajectory)
         return self.decide(compared) if np.isfinite(compared.scores).any() else None
-
-    def may_win(
-        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
-    ) -> bool:
-        """Return whether a gesture comes close to the least score when a voter is reweighted."""
-        if voter in HAND_VOTER_NAMES:  # which have no weight factors
-            return False
-        comparable = np.isfinite(table.scores)
-        scores = table.scores
-        added = table.contributions[table.voters.index(voter)]
-        scores[comparable] += (factor - 1) * added[comparable]
-        return bool(comparable[gesture] and scores[gesture] < scores.min() + CLOSE_SCORES)
 
     def decide(self, compared: ScoreTable) -> Recognition:
         """Return the gesture with the smallest score, a pair or a rejection; see `find_answer`.

@@ -92,16 +92,6 @@ class MajorityVote:
             views=np.zeros(count, dtype=np.intp),
         )
 
-    def may_win(
-        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
-    ) -> bool:
-        """Return whether no gesture has more votes when a voter's vote is reweighted."""
-        count: dict[str, float] = defaultdict(float)
-        for name, vote in result.counted.items():
-            weight = result.weights[name]
-            count[vote] += weight * factor if name == voter else weight
-        return count[self._labels[gesture]] >= max(count.values())
-
     def decide(self, compared: ScoreTable) -> Recognition:
         """Return the gesture with most votes; see `count_votes`."""
         return self.count_votes(compared.distances)

@@ -12,6 +12,7 @@ import numpy as np
 
 from app.recognition.decision.asking import find_answer
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.preprocessing.quality import QualityFaultKind
 
 Outcome = Literal["recognized", "pair", "rejected"]
 """What a recognition answers: a label, a pair that the diver decides between, or neither."""
@@ -57,6 +58,8 @@ class Recognition:
     fault
         Reason why there is no recognition, in words: the poses are too poor, or no hand is seen
         although the hand shape of `nearest` counts; `label` is then None.
+    fault_kind
+        The kind of `fault`; None without one, and in results of earlier versions.
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
@@ -89,6 +92,7 @@ class Recognition:
     weights: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     findings: tuple[str, ...] = ()
     fault: str | None = None
+    fault_kind: QualityFaultKind | None = None
     scores: FloatArray = field(default_factory=lambda: np.empty(0))
     novelty: FloatArray = field(default_factory=lambda: np.empty(0))
     novelty_by_view: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
@@ -122,6 +126,15 @@ class Recognition:
             return self.pair or ()
         answer = find_answer(self.scores, self.novelty)
         return tuple(self.gestures[index] for index in answer) if len(answer) > 2 else ()
+
+    @property
+    def runner_up(self) -> str | None:
+        """The gesture with the smallest score but `nearest`; None where no other is comparable."""
+        if not self.scores.size:
+            return None
+        scores = self.scores.copy()
+        scores[self.gestures.index(self.nearest)] = np.inf
+        return self.gestures[int(scores.argmin())] if np.isfinite(scores).any() else None
 
     @property
     def nearest_novelty(self) -> float:
@@ -182,6 +195,7 @@ class Recognition:
             weights=content.get("weights", {}),
             findings=tuple(content.get("findings", ())),
             fault=content.get("fault"),
+            fault_kind=content.get("fault_kind"),
             scores=np.array(content.get("scores", []), dtype=np.float64),
             novelty=np.array(content.get("novelty", []), dtype=np.float64),
             novelty_by_view={
@@ -204,6 +218,7 @@ class Recognition:
             "weights": dict(self.weights),
             "findings": list(self.findings),
             "fault": self.fault,
+            "fault_kind": self.fault_kind,
             "voters": list(self.voters),
             "gestures": list(self.gestures),
             "distances": [_finite(row) for row in self.distances.tolist()],

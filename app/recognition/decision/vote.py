@@ -45,9 +45,3 @@ class Vote(Protocol):
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
         ...
-
-    def may_win(
-        self, table: ScoreTable, result: Recognition, gesture: int, voter: str, factor: float
-    ) -> bool:
-        """Estimate whether a gesture may win when a voter's weight is multiplied by a factor."""
-        ...

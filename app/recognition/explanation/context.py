@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.trace import Trace
+from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.language.language import Language
@@ -15,6 +17,23 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
 from app.recognition.recording.segmentation import Take
+
+
+@dataclass(frozen=True, eq=False)
+class KnownTake:
+    """A take whose gesture is known: of a test set, of practice, or of a clip with a label.
+
+    Attributes
+    ----------
+    label
+        The gesture's.
+    query
+        The trajectory that the voters compare, see `Recognizer.query`.
+
+    """
+
+    label: str
+    query: Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -29,12 +48,21 @@ class RecognitionContext:
         The stroke to recognise.
     whole
         The poses that the stroke was cut out of, for other cuts.
+    known
+        Other takes whose gesture is known, by which remedies are judged.
+    faults
+        By label the known faults of each of the gesture's demonstrations.
+    recorded
+        The result as it was answered, which then stands for a new one; None: none was.
 
     """
 
     recognizer: Recognizer
     poses: PoseSequence
     whole: PoseSequence
+    known: tuple[KnownTake, ...] = ()
+    faults: Mapping[str, Sequence[tuple[DemonstrationFault, ...]]] = field(default_factory=dict)
+    recorded: Recognition | None = None
 
     @classmethod
     def of_take(cls, recognizer: Recognizer, take: Take) -> RecognitionContext:
@@ -80,17 +108,19 @@ class RecognitionContext:
 
     @property
     def result(self) -> Recognition:
-        """The recognition."""
-        return self.trace.result
+        """The recognition, as it was answered if it was."""
+        return self.trace.result if self.recorded is None else self.recorded
+
+    def with_poses(self, poses: PoseSequence) -> RecognitionContext:
+        """Return the context with another stroke."""
+        return replace(self, poses=poses, recorded=None)
+
+    def _with_recognizer(self, recognizer: Recognizer) -> RecognitionContext:
+        return replace(self, recognizer=recognizer, recorded=None)
 
     def with_tuning(self, tuning: Tuning) -> RecognitionContext:
         """Return the context with another tuning."""
-        return replace(self, recognizer=Recognizer(self.language, self.profile, tuning=tuning))
-
-    def with_profile(self, profile: str) -> RecognitionContext:
-        """Return the context with another profile, without the weight factors of this one."""
-        tuning = replace(self.tuning, weights={})
-        return replace(self, recognizer=Recognizer(self.language, profile, tuning=tuning))
+        return self._with_recognizer(Recognizer(self.language, self.profile, tuning=tuning))
 
     def with_gesture(self, changed: Gesture) -> RecognitionContext:
         """Return the context with another gesture for the one of the same label."""
@@ -99,5 +129,4 @@ class RecognitionContext:
             for gesture in self.language.gestures
         ]
         language = replace(self.language, gestures=gestures)
-        recognizer = Recognizer(language, self.profile, tuning=self.tuning)
-        return replace(self, recognizer=recognizer)
+        return self._with_recognizer(Recognizer(language, self.profile, tuning=self.tuning))

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.explanation.alignment import Alignment, align
-from app.recognition.explanation.pairing import Pairing
+from app.recognition.explanation.alignment import Alignment
 from app.recognition.features.motion import STEPS
 from app.recognition.poses.sequence import FloatArray
 
@@ -55,13 +54,6 @@ class Divergence:
     share: float
     shown: str
     expected: str
-
-
-def find_divergence(pairing: Pairing) -> Divergence:
-    """Find the stretch at which a query differs most from a gesture."""
-    alignment = align(pairing.query, pairing.example, pairing.landmarks, start=pairing.start)
-    assert alignment is not None  # paths can always be compared
-    return measure_divergence(alignment, pairing.query.paths, pairing.example.movement.paths)
 
 
 def measure_divergence(alignment: Alignment, query: FloatArray, gesture: FloatArray) -> Divergence:

@@ -1,10 +1,10 @@
-"""Explanations: what decided a recognition, and what would have corrected it."""
+"""Explanations: what decided a recognition, why, and what would have corrected it."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,33 +20,163 @@ from app.recognition.explanation.alignment import (
     align,
     find_nearest_example,
 )
-from app.recognition.explanation.analysis import Analysis
+from app.recognition.explanation.blame import Blame, find_blame
+from app.recognition.explanation.causes import Cause, find_causes
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.counterfactual_search import (
+from app.recognition.explanation.counterfactuals import (
     NONE_NEEDED,
+    Counterfactuals,
+    KeptRange,
     find_counterfactuals,
 )
-from app.recognition.explanation.differences import Difference, find_differences
-from app.recognition.explanation.hand_differences import (
-    find_held_differences,
-    find_moving_hand_differences,
-)
-from app.recognition.explanation.pairing import Pairing
-from app.recognition.explanation.sentence import write_sentence
-from app.recognition.explanation.vote_breakdown import break_down_votes
+from app.recognition.explanation.divergence import Divergence, measure_divergence
+from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.text.wording import humanize, join_words
+
+CLEAR = 0.5
+"""Least share of a path's cost in the stretch where it differs most to be told as the reason."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Explanation(Analysis):
-    """What decided one recognition, with a sentence; see `Analysis` for its attributes."""
+class Explanation:
+    """What decided one recognition, and why.
+
+    Attributes
+    ----------
+    profile
+        The recogniser's.
+    expected
+        The gesture that should have been recognised.
+    label, nearest, runner_up, confidence, between
+        The recognition as it was answered, see `Recognition`.
+    other
+        The gesture that the expected one is compared with: the nearest one, or the runner-up where
+        the expected one is nearest; None in a language of one gesture.
+    score, other_score
+        Scores of the expected gesture and of the other one, see `ScoreTable.scores`; infinite where
+        not comparable.
+    novelty
+        Score of the query for the expected gesture, relative to the limit: above 1 it is rejected;
+        NaN in profile ``paper``.
+    fault
+        Why the poses are too poor to recognise; None if they are not.
+    votes
+        By label the number of voters with weight that voted for it.
+    support
+        By label the total weight of these voters.
+    verdicts
+        The breakdown by voter, those most against the expected gesture first.
+    facing
+        Degrees by which the diver is turned from the camera, positive to the diver's own left; None
+        where not known.
+    turned
+        Share of `score` minus `other_score` that comes from the penalties of traversals.
+    alignments
+        Alignments of the query with the expected gesture and with the other: of the paths, and in
+        profile ``full`` of the postures.
+    causes
+        Why, the cause first; empty for a right recognition and without evidence.
+    blame
+        Demonstrations of the expected gesture that are at fault for the known takes.
+    divergence
+        Where the query's path differs most from the expected gesture's; None without paths.
+    counterfactuals
+        Interventions that would have corrected the recognition.
+
+    """
+
+    profile: str
+    expected: str
+    label: str | None
+    nearest: str
+    runner_up: str | None
+    confidence: float
+    between: tuple[str, ...]
+    other: str | None
+    score: float
+    other_score: float
+    novelty: float
+    fault: str | None
+    votes: Mapping[str, int]
+    support: Mapping[str, float]
+    verdicts: tuple[VoterBreakdown, ...]
+    facing: float | None
+    turned: float
+    alignments: tuple[Alignment, ...]
+    causes: tuple[Cause, ...]
+    blame: tuple[Blame, ...]
+    divergence: Divergence | None
+    counterfactuals: Counterfactuals
+
+    @property
+    def right(self) -> bool:
+        """Whether the expected gesture was recognised."""
+        return self.label == self.expected
+
+    @property
+    def margin(self) -> float:
+        """How much nearer the expected gesture is than the other; negative: farther."""
+        return self.other_score - self.score
+
+    @property
+    def cause(self) -> Cause | None:
+        """The first cause; None where the recognition is right and without evidence."""
+        return self.causes[0] if self.causes else None
 
     @property
     def sentence(self) -> str:
-        """The reason for the recognition, in words."""
-        return write_sentence(self)
+        """The cause and what the diver can do, at most fifteen words with one-word labels."""
+        if self.right:
+            return f"Read as {self.expected!r}, as expected."
+        if self.blame:
+            return self.blame[0].sentence
+        if self.causes:
+            return self.causes[0].sentence
+        if self.between:
+            named = join_words([repr(each) for each in self.between])
+            return f"The take lies between {named}. Show it again, more clearly."
+        if self.label is not None:
+            return f"The take looks like {self.label!r}. Compare the drawings."
+        parted = self.divergence
+        if parted is None or parted.share < CLEAR or parted.shown == parted.expected:
+            return "No single cause explains it. Compare the drawings, or show it again."
+        return (
+            f"At {parted.start:.1f} s the {humanize(parted.landmark)} {parted.shown}, not "
+            f"{parted.expected.removeprefix('goes ')}."
+        )
+
+    @property
+    def details(self) -> tuple[str, ...]:
+        """The numbers behind the sentence, as sentences of their own."""
+        return tuple(self._list_details())
+
+    def _list_details(self) -> Iterator[str]:
+        if self.fault is not None:
+            yield f"The keypoints are too poor to judge: {self.fault}."
+        if math.isfinite(self.score) and self.other is not None:
+            yield (
+                f"{self.expected!r} is at distance {self.score:.2f}, "
+                f"{self.other!r} at {self.other_score:.2f}."
+            )
+        if not self.right and math.isfinite(self.novelty):
+            yield f"The take is {self.novelty:.1f} times as far as the limit allows."
+        if self.causes and self.causes[0].share < 1:
+            share = f"{self.causes[0].share:.0%}"
+            yield f"Undoing the cause removes {share} of the distance beyond that of usual takes."
+        if self.blame:
+            first = self.blame[0]
+            yield (
+                f"Of {first.takes} known takes this repairs {first.repaired} and breaks "
+                f"{first.broken}."
+            )
+        yield from (f"Also likely: {each.sentence}" for each in self.causes[1:3])
+        if self.facing is not None:
+            side = "left" if self.facing > 0 else "right"
+            yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
+        yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values become None."""
@@ -56,6 +186,7 @@ class Explanation(Analysis):
             "label": self.label,
             "pair": list(self.between) if len(self.between) == 2 else None,
             "nearest": self.nearest,
+            "runner_up": self.runner_up,
             "right": self.right,
             "confidence": self.confidence,
             "other": self.other,
@@ -69,13 +200,13 @@ class Explanation(Analysis):
             "verdicts": [verdict.to_dict() for verdict in self.verdicts],
             "turned": _finite(self.turned),
             "facing": self.facing,
-            "view": self.view,
             "alignments": [alignment.to_dict() for alignment in self.alignments],
-            "differences": [difference.to_dict() for difference in self.differences],
-            "lesson": None if self.lesson is None else self.lesson.to_dict(),
+            "causes": [cause.to_dict() for cause in self.causes],
+            "blame": [each.to_dict() for each in self.blame],
             "counterfactuals": [each.to_dict() for each in self.counterfactuals.found],
             "tried": self.counterfactuals.tried,
             "sentence": self.sentence,
+            "details": list(self.details),
         }
 
 
@@ -108,14 +239,17 @@ def explain(
         )
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
-    other = _find_other(table, result, at)
+    other = _find_other(result, expected)
     pairings = _Pairings(context)
     wanted = with_counterfactuals and result.label != expected
+    causes = find_causes(context, expected)
+    blame = find_blame(context.recognizer, context.known, [expected]) if wanted else ()
     return Explanation(
         profile=result.profile,
         expected=expected,
         label=result.label,
         nearest=result.nearest,
+        runner_up=result.runner_up,
         confidence=result.confidence,
         between=result.between,
         other=None if other is None else result.gestures[other],
@@ -127,7 +261,6 @@ def explain(
         support=result.support,
         verdicts=break_down_votes(table, result, at, other),
         facing=table.facing,
-        view=int(table.views[at]),
         turned=_difference(table, at, other),
         alignments=tuple(
             alignment
@@ -135,19 +268,36 @@ def explain(
             if index is not None
             for alignment in pairings.alignments(index)
         ),
-        differences=pairings.differences(at),
-        counterfactuals=find_counterfactuals(context, expected) if wanted else NONE_NEEDED,
+        causes=causes,
+        blame=blame,
+        divergence=None if result.label == expected else pairings.divergence(at),
+        counterfactuals=(
+            find_counterfactuals(context, expected, _list_cuts(causes, blame))
+            if wanted
+            else NONE_NEEDED
+        ),
     )
 
 
-def _find_other(table: ScoreTable, result: Recognition, expected: int) -> int | None:
+def _list_cuts(causes: Sequence[Cause], blame: Sequence[Blame]) -> list[KeptRange]:
+    """Return the better ranges of demonstrations that are at fault."""
+    by_takes = [
+        (each.demonstration, each.start, each.end)
+        for each in blame
+        if each.start is not None and each.end is not None
+    ]
+    seen = [
+        (each.demonstration, *each.keep)
+        for each in causes
+        if each.demonstration is not None and each.keep is not None
+    ]
+    return by_takes + seen
+
+
+def _find_other(result: Recognition, expected: str) -> int | None:
     """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
-    nearest = result.gestures.index(result.nearest)
-    if nearest != expected:
-        return nearest
-    scores = table.scores
-    scores[expected] = np.inf
-    return int(scores.argmin()) if np.isfinite(scores).any() else None
+    other = result.nearest if result.nearest != expected else result.runner_up
+    return None if other is None else result.gestures.index(other)
 
 
 def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
@@ -166,8 +316,6 @@ class _Pairings:
         self._start = float(context.poses.time[0])
         self._landmarks = context.recognizer.landmarks
         self._query = context.trajectory
-        counting = map(context.recognizer.sensitivity, context.language.labels)
-        self._counts = [each is not None and each.hand_shape for each in counting]
 
     def alignments(self, index: int) -> Iterator[Alignment]:
         """Yield alignments of the query with a gesture, if both have a movement."""
@@ -181,39 +329,16 @@ class _Pairings:
             if aligned is not None:
                 yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
 
-    def differences(self, index: int) -> tuple[Difference, ...]:
-        """Return the differences between the query and a gesture."""
-        gesture = self._gesture(index)
-        if gesture.is_held:
-            return find_held_differences(
-                gesture.label, self._query.held_shapes, gesture.held_shapes
-            )
+    def divergence(self, index: int) -> Divergence | None:
+        """Return where the query's path differs most from a gesture's."""
         example = self._example(index)
-        if example is None:
-            return ()
-        pairing = Pairing.of(
-            self._query,
-            self._gesture(index),
-            example.traversal,
-            mirrored=example.mirrored,
-            start=self._start,
-        )
-        if pairing is None:
-            return ()
-        found = find_differences(pairing, sees_direction=self._full)
-        return (*found, *self._compare_moving_hands(index, mirrored=example.mirrored))
-
-    def _compare_moving_hands(self, index: int, *, mirrored: bool) -> tuple[Difference, ...]:
-        """Return how the moving hands differ from those of a gesture whose hand shape counts."""
-        gesture = self._gesture(index)
-        if gesture.trajectory is None or not self._counts[index]:
-            return ()
-        shown = gesture.trajectory.mirror() if mirrored else gesture.trajectory
-        if not shown.moving_hands:
-            return ()
-        return find_moving_hand_differences(
-            gesture.label, self._query.moving_hands, shown.moving_hands
-        )
+        if example is None or len(self._query) < 2:
+            return None
+        query = build_movement(self._query, self._landmarks)
+        aligned = align(query, example, self._landmarks, start=self._start)
+        if aligned is None:
+            return None
+        return measure_divergence(aligned, query.paths, example.movement.paths)
 
     def _gesture(self, index: int) -> Gesture:
         return self._table.find_nearest_demonstration(self._gestures, index)

@@ -1,18 +1,18 @@
 """Hand differences: how a hand differs from the expected shape, finger by finger.
 
-Each is tested by undoing it, as in `differences`: the finger is replaced by that of the
+Each is tested by undoing it, as in `undoing`: the finger is replaced by that of the
 demonstration, or the hand turned back, and the voters compare again.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from app.recognition.decision.hand_references import HeldShapes
 from app.recognition.decision.moving_shapes import OTHER_SHAPE, measure_shapes
-from app.recognition.explanation.differences import Difference
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -53,9 +53,27 @@ _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_fi
 ORDINALS = ("first", "second")
 
 
+@dataclass(frozen=True, kw_only=True)
+class HandDifference:
+    """One way in which a hand differs from the expected shape.
+
+    Attributes
+    ----------
+    share
+        In [0, 1]: part of the distance between the shapes that undoing it removes; 0 where no hand
+        can be compared.
+    words
+        The difference as a clause.
+
+    """
+
+    share: float
+    words: str
+
+
 def find_held_differences(
     label: str, shapes: HeldShapes, shown: HeldShapes
-) -> tuple[Difference, ...]:
+) -> tuple[HandDifference, ...]:
     """Find how a query's held hands differ from a gesture's, the largest share first.
 
     Parameters
@@ -130,7 +148,7 @@ def _pair_parts(
 
 def find_hand_differences(
     label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
-) -> tuple[Difference, ...]:
+) -> tuple[HandDifference, ...]:
     """Find how a query's hand differs from a gesture's, the largest share first.
 
     Parameters
@@ -156,7 +174,7 @@ def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[t
 
 def find_moving_hand_differences(
     label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
-) -> tuple[Difference, ...]:
+) -> tuple[HandDifference, ...]:
     """Find how the moving hands of a query differ from those of a gesture whose shape counts.
 
     Parameters
@@ -196,16 +214,14 @@ def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
     return hand.turn(float(np.degrees(np.angle(one.conj() @ other))))
 
 
-def _name_largest(shares: Iterable[tuple[float, str]]) -> tuple[Difference, ...]:
+def _name_largest(shares: Iterable[tuple[float, str]]) -> tuple[HandDifference, ...]:
     """Return the differences with the largest shares, each given with its words."""
     found = [_difference(share, words) for share, words in shares if share >= LEAST_SHARE]
     return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
 
 
-def _difference(share: float, words: str) -> Difference:
-    return Difference(
-        kind="hand_shape", share=share, landmark=None, start=None, end=None, words=words
-    )
+def _difference(share: float, words: str) -> HandDifference:
+    return HandDifference(share=share, words=words)
 
 
 def measure_distance(one: HandShape, other: HandShape) -> float:

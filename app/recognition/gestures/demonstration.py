@@ -162,7 +162,7 @@ class Demonstration:
             return cls._of_holds(label, seen, trajectory, holds, diver)
         if poor := find_fault(seen, names):
             raise GestureError(
-                f"the demonstration of {label!r} is too poor to use: {poor}; show the "
+                f"the demonstration of {label!r} is too poor to use: {poor.words}; show the "
                 f"gesture again in view of the camera, or choose another range of the clip"
             )
         kept = condense(trajectory).select(_choose_kept_landmarks(trajectory, names))
@@ -189,7 +189,7 @@ class Demonstration:
                 "of them"
             )
         if poor := find_fault(poses, ()):
-            raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor}")
+            raise GestureError(f"the demonstration of {label!r} is too poor to use: {poor.words}")
         few = trajectory.fill_gaps().resample_in_time(min(len(trajectory), HELD_MOMENTS))
         kept = condense(few).select(_choose_kept_landmarks(trajectory, ()))
         kept = keep_holds(kept, holds)

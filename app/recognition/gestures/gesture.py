@@ -23,6 +23,7 @@ from app.recognition.gestures.demonstration import (
     DEMONSTRATION_KINDS,
     MAX_DEMONSTRATIONS,
     MAX_MOMENTS,
+    MIN_FRAMES,
     Demonstration,
     check_diver,
     freeze_descriptors,
@@ -294,6 +295,32 @@ class Gesture:
         if index == 0:
             return self._with_shown(self.further)
         return replace(self, further=self.further[: index - 1] + self.further[index:])
+
+    def with_cut(self, index: int, start: float, end: float) -> Gesture:
+        """Return the gesture with one of its demonstrations, counted from 0, cut at both ends.
+
+        Parameters
+        ----------
+        index
+            Which demonstration.
+        start, end
+            Seconds of the demonstration's own clock between which it is kept.
+
+        Raises
+        ------
+        GestureError
+            When there is no such demonstration, or fewer than `MIN_FRAMES` moments are left.
+
+        """
+        shown = [self._require_first("cannot be cut: define it again from a clip"), *self.further]
+        if not 0 <= index < len(shown):
+            raise GestureError(f"{self.label!r} has no demonstration {index}, counted from 0")
+        kept = shown[index].trajectory.between(start, end)
+        if len(kept) < MIN_FRAMES:
+            raise GestureError(f"only {len(kept)} moments of {self.label!r} would be left")
+        kept = replace(kept, time=kept.time - kept.time[0])
+        shown[index] = replace(shown[index], trajectory=kept).redraw()
+        return self._with_shown(shown)
 
     def mirror(self) -> Gesture:
         """Return the mirror image, as if shown with the other hand.

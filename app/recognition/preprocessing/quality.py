@@ -6,6 +6,8 @@ A refusal with a reason is better than the nearest gesture, which would be a gue
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -36,9 +38,30 @@ MOST_LEAPS = 0.2
 landmark's positions are outliers."""
 
 
+QualityFaultKind = Literal["few_frames", "nothing_seen", "not_followed", "leaps", "unseen_hand"]
+
+
+@dataclass(frozen=True)
+class QualityFault:
+    """Why poses are too poor to recognise.
+
+    Attributes
+    ----------
+    kind
+        Too few frames, nothing seen, a landmark not followed for long enough or leaping about, or
+        no hand seen although its shape counts.
+    words
+        A clause for users with the values seen.
+
+    """
+
+    kind: QualityFaultKind
+    words: str
+
+
 def find_fault(
     poses: PoseSequence, landmarks: Sequence[str], trajectory: Trajectory | None = None
-) -> str | None:
+) -> QualityFault | None:
     """Return why poses are too poor to recognise, or None.
 
     Parameters
@@ -50,15 +73,13 @@ def find_fault(
     trajectory
         The trajectory of `poses`, if it is computed already.
 
-    Returns
-    -------
-    A clause for users with the values seen; None where nothing is too poor.
-
     """
     if len(poses) < FEWEST_FRAMES:
-        return f"it has {len(poses)} frames, and at least {FEWEST_FRAMES} are needed"
+        words = f"it has {len(poses)} frames, and at least {FEWEST_FRAMES} are needed"
+        return QualityFault("few_frames", words)
     if not poses.seen.any():
-        return f"none of its {len(poses)} frames shows a landmark"
+        words = f"none of its {len(poses)} frames shows a landmark"
+        return QualityFault("nothing_seen", words)
     if trajectory is None:
         trajectory = Trajectory.from_poses(poses)
     unit = measure_body_unit(trajectory)
@@ -72,14 +93,16 @@ def find_fault(
             followed = _sum_followed_time(time, seen) / poses.duration
             if followed < LEAST_FOLLOWED:
                 only = f"only {followed:.0%} of its {poses.duration:.1f} s"
-                return f"the {humanize(name)} is followed for {only}"
+                words = f"the {humanize(name)} is followed for {only}"
+                return QualityFault("not_followed", words)
             time, places = time[seen], places[seen]
         lasts = time[1:] - time[:-1]
         steps = places[1:] - places[:-1]
         far = np.vecdot(steps, steps) > (LEAP * unit) ** 2
         leaps = np.count_nonzero(far & (lasts <= LEAP_SECONDS)) / len(lasts)
         if leaps > MOST_LEAPS:
-            return f"the {humanize(name)} leaps over a torso length in {leaps:.0%} of its frames"
+            words = f"the {humanize(name)} leaps over a torso length in {leaps:.0%} of its frames"
+            return QualityFault("leaps", words)
     return None
 
 

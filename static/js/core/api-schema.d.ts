@@ -254,6 +254,35 @@ export interface components {
             salient?: string[] | null;
         };
         /**
+         * DemonstrationFaultView
+         * @description One fault of a demonstration, with what mends it.
+         */
+        DemonstrationFaultView: {
+            kind: components["schemas"]["FaultKind"];
+            /**
+             * Sentence
+             * @description The fault and the remedy, at most fifteen words
+             */
+            sentence: string;
+            /**
+             * Words
+             * @description The fault as a clause, with the numbers seen
+             */
+            words: string;
+            /**
+             * Remedy
+             * @enum {string}
+             */
+            remedy: "set_range" | "show_again" | "arm_trigger";
+            /**
+             * Start
+             * @description Seconds in the clip of a better range; null: none
+             */
+            start: number | null;
+            /** End */
+            end: number | null;
+        };
+        /**
          * DemonstrationView
          * @description A demonstration of a gesture.
          */
@@ -340,8 +369,21 @@ export interface components {
              * @description Score of the other minus that of the expected
              */
             margin: number | null;
-            /** Sentence */
+            /**
+             * Runner Up
+             * @description The nearest gesture but `nearest`; null: none is comparable
+             */
+            runner_up?: string | null;
+            /**
+             * Sentence
+             * @description Why and what the diver can do, in at most fifteen words
+             */
             sentence: string;
+            /**
+             * Details
+             * @description The numbers behind the sentence
+             */
+            details: string[];
             /** Votes */
             votes: {
                 [key: string]: number;
@@ -357,20 +399,23 @@ export interface components {
             alignments: {
                 [key: string]: unknown;
             }[];
-            /** Differences */
-            differences: {
+            /**
+             * Causes
+             * @description Why, the cause first, each with its evidence; empty: none is known
+             */
+            causes: {
                 [key: string]: unknown;
             }[];
             /**
-             * Lesson
-             * @description The difference to avoid when it is shown again; null: none known
+             * Blame
+             * @description Demonstrations of the gesture meant that are at fault for the known takes
              */
-            lesson?: {
+            blame: {
                 [key: string]: unknown;
-            } | null;
+            }[];
             /**
              * Counterfactuals
-             * @description Verified; by none does a gesture of the language lose a take. What teaches most comes first, weights and a replaced demonstration last
+             * @description Verified; by none does a gesture lose a demonstration. What repairs most known takes comes first, the take as another demonstration last
              */
             counterfactuals: {
                 [key: string]: unknown;
@@ -437,6 +482,12 @@ export interface components {
              */
             complete: boolean;
         };
+        /**
+         * FaultKind
+         * @description What is wrong with a demonstration, the gravest first.
+         * @enum {string}
+         */
+        FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand" | "unlike_takes";
         /**
          * FileFormat
          * @description The language files.
@@ -1378,12 +1429,17 @@ export interface components {
             /** Sentence */
             sentence: string;
             /**
-             * Lesson
-             * @description The difference to avoid the next time
+             * Details
+             * @description The numbers behind the sentence
              */
-            lesson: {
+            details: string[];
+            /**
+             * Causes
+             * @description Why, the cause first; empty: none is known
+             */
+            causes: {
                 [key: string]: unknown;
-            } | null;
+            }[];
             /** Notes */
             notes: string[];
             record: components["schemas"]["PracticeRecordView"];
@@ -1554,6 +1610,11 @@ export interface components {
              * @description How long the demonstration lasts
              */
             seconds: number | null;
+            /**
+             * Faults
+             * @description Why its range of the clip is a bad demonstration, the gravest fault first
+             */
+            faults: components["schemas"]["DemonstrationFaultView"][];
         };
         /**
          * ProfileView
@@ -1732,6 +1793,11 @@ export interface components {
              * @description Why the recording is too poor to judge, in words
              */
             fault?: string | null;
+            /**
+             * Fault Kind
+             * @description The kind of `fault`
+             */
+            fault_kind?: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
             /**
              * Facing
              * @description Degrees by which the diver is turned to the own left; null: not known
@@ -1981,9 +2047,14 @@ export interface components {
             salutes: number;
             /**
              * Fault
-             * @description Why it is a bad demonstration, as a clause: salutes or rests in it, cut short
+             * @description The gravest of `faults` as a clause with the numbers seen; null: none
              */
             fault?: string | null;
+            /**
+             * Faults
+             * @description Why it is a bad demonstration, the gravest fault first
+             */
+            faults: components["schemas"]["DemonstrationFaultView"][];
         };
         /**
          * SwitchView

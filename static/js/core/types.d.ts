@@ -38,6 +38,7 @@ export type Preview = Schemas["PreviewView"];
 export type Keypoint = Schemas["KeypointView"];
 export type Descriptor = Schemas["DescriptorView"];
 export type Source = Schemas["SourceView"];
+export type DemonstrationFault = Schemas["DemonstrationFaultView"];
 export type Workspace = Schemas["OpenedWorkspace"];
 export type LanguageSettings = Schemas["SettingsView"];
 export type PracticeRecord = Schemas["PracticeRecordView"];
@@ -99,30 +100,39 @@ export interface Alignment {
   costs: number[][];
 }
 
-/** A difference of a take from the expected gesture; `start` is null if it lasts throughout. */
-export interface Lesson {
-  words: string;
+/** Why a take is not read as the gesture meant; `start` is null if it lasts throughout. */
+export interface Cause {
+  kind: string;
+  sentence: string;
+  share: number;
   start: number | null;
+  end: number | null;
+  label: string | null;
+  demonstration: number | null;
 }
 
-/** The side effect of an intervention on the other gestures of the language. */
+/** The effect of an intervention on the known takes, and on the language's demonstrations. */
 export interface SideEffect {
-  right_before: number;
-  right_after: number;
   takes: number;
+  repaired: number;
+  broken: number;
   lost: string[];
 }
 
 /** What an intervention changes, also in words. */
 export type Intervention = { words: string } & (
   | { kind: "trim"; start: number; end: number }
-  | { kind: "voter_weight" | "weight_factor"; voter: string; factor: number }
-  | { kind: "simplification"; tolerance: number }
+  | { kind: "weight_factor"; voter: string; factor: number }
   | { kind: "keypoint_repair"; on: boolean }
-  | { kind: "profile"; profile: Language["profile"] }
-  | { kind: "salient"; label: string; salient: string[] }
   | { kind: "switch"; label: string; switch: SwitchName; position: Gesture["direction"] }
-  | { kind: "demonstration" | "further_demonstration"; label: string }
+  | { kind: "further_demonstration"; label: string }
+  | {
+      kind: "demonstration_cut";
+      label: string;
+      clip_id: string;
+      clip_start: number;
+      clip_end: number;
+    }
 );
 
 /** The properties of a movement that can count or not. */
@@ -146,7 +156,9 @@ export interface Explanation {
   sentence: string;
   alignments: Alignment[];
   counterfactuals: Counterfactual[];
-  lesson: Lesson | null;
+  causes: Cause[];
+  blame: { label: string; sentence: string }[];
+  details: string[];
   /** How many changes were tried. */
   tried: number;
   notes: string[];
@@ -181,9 +193,7 @@ export interface Recognition {
 }
 
 /** The answer to a practised take. */
-export type PracticeAnswer = Omit<Schemas["PracticeAnswerView"], "lesson"> & {
-  lesson: Lesson | null;
-};
+export type PracticeAnswer = Omit<Schemas["PracticeAnswerView"], "causes"> & { causes: Cause[] };
 
 export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;

@@ -100,6 +100,7 @@ export function take({ language, gesture, drawn, pick }) {
   );
   const note = h("p", { className: "dim" });
   const salutes = h("p", { className: "salute-warning", role: "alert", hidden: true });
+  const faults = h("p", { className: "salute-warning", role: "status", hidden: true });
   const played = h(
     "div",
     { className: "scrub" },
@@ -321,6 +322,10 @@ export function take({ language, gesture, drawn, pick }) {
   /** @param {Proposal | null} preview */
   function draw(preview) {
     chosen = chosenIn(preview);
+    const [fault] = preview?.faults ?? [];
+    faults.textContent = fault?.sentence ?? "";
+    faults.title = fault ? `It ${fault.words}.` : "";
+    faults.hidden = !fault || !salutes.hidden;
     drawChoices();
     note.textContent = draft().clip
       ? ""
@@ -358,6 +363,7 @@ export function take({ language, gesture, drawn, pick }) {
     played,
     note,
     salutes,
+    faults,
     trim,
   );
   return {

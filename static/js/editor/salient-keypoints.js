@@ -4,9 +4,9 @@ import { h, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { change, draft } from "./gesture-draft.js";
 
-/** @import { Keypoint, Preview } from "../core/types.d.ts" */
+/** @import { DemonstrationFault, Keypoint, Preview } from "../core/types.d.ts" */
 
-/** @typedef {{ keypoints: Pick<Keypoint, "landmark" | "proposed">[] }} Proposal */
+/** @typedef {{ keypoints: Pick<Keypoint, "landmark" | "proposed">[], faults?: DemonstrationFault[] }} Proposal */
 
 /**
  * The keypoints that are followed: as chosen, or as proposed.

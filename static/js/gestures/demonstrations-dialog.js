@@ -1,19 +1,20 @@
 // The demonstrations of a gesture side by side: each can be removed, and a clip's take added.
 
 import { olderClipsButton } from "../clips/older-clips.js";
-import { endName, takesLanguage } from "../clips/salutes.js";
+import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
-import { moment, plural } from "../core/format.js";
+import { moment } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
+import { openTrigger } from "../languages/language-trigger.js";
 import { edit } from "../languages/revision-edit.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
-/** @import { Clip, Demonstration, Gesture, Source, Take } from "../core/types.d.ts" */
+/** @import { Clip, Demonstration, DemonstrationFault, Gesture, Source, Take } from "../core/types.d.ts" */
 
 /** @typedef {{ text: string, start: number | null, end: number | null }} Range */
 
@@ -36,17 +37,73 @@ let followed = false;
 export const withMarks = (thumbnail) =>
   `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
 
+const SHORT_FAULTS = {
+  whole_clip: "whole clip",
+  contains_salute: "contains a salute",
+  reaches_salute: "reaches the salutes",
+  cut_short: "cut short",
+  contains_rest: "contains rest",
+  other_person: "another person",
+  keypoints_jumped: "keypoints jump",
+  keypoints_missing: "keypoints missing",
+  no_hand: "no hand seen",
+  unlike_takes: "unlike its takes",
+};
+
 /**
- * The fault of a demonstration in two words; `fault` has the full text.
+ * The gravest fault of a demonstration in a few words, for a tag.
  *
- * @param {Pick<Source, "salutes" | "fault">} source
+ * @param {Pick<Source, "faults">} source
  */
-export const shortFault = ({ salutes, fault }) =>
-  salutes
-    ? `contains ${plural(salutes, endName(currentLanguage()))}`
-    : fault?.startsWith("is cut short")
-      ? "cut short"
-      : "contains rest";
+export const shortFault = ({ faults }) => SHORT_FAULTS[faults[0].kind];
+
+/**
+ * Give a demonstration the range of its clip that mends its fault.
+ *
+ * @param {string} label
+ * @param {Source} source
+ * @param {DemonstrationFault} fault
+ */
+async function setRange(label, { clip_id }, { start, end }) {
+  try {
+    await edit("Setting the range", `Range of ${label}`, (language) =>
+      api.languages.changeGesture(language, label, { demonstration: { clip_id, start, end } }),
+    );
+    showDone("Range set", label);
+  } catch (error) {
+    complain(error, "Setting the range");
+  }
+}
+
+/**
+ * The faults of a demonstration as a note, with the one remedy of the gravest.
+ *
+ * @param {string} label
+ * @param {number} index which demonstration
+ * @param {Source | null | undefined} source
+ */
+export function faultNote(label, index, source) {
+  const [fault] = source?.faults ?? [];
+  if (!source || !fault) return null;
+  const ranged = fault.remedy === "set_range" && fault.start !== null && index === 0;
+  /** @type {[string, () => void] | null} */
+  const mend = ranged
+    ? [
+        `Set ${moment(fault.start ?? 0)} to ${moment(fault.end ?? 0)}`,
+        () => setRange(label, source, fault),
+      ]
+    : fault.remedy === "arm_trigger"
+      ? ["Choose the arm trigger", openTrigger]
+      : null;
+  return h(
+    "p",
+    { className: "demonstration-fault", title: `It ${fault.words}.` },
+    `${fault.sentence} `,
+    mend
+      ? h("button", { type: "button", className: "link", ...WRITES, onclick: mend[1] }, mend[0])
+      : null,
+  );
+}
 
 const gestureShown = () => currentLanguage().gestures.find(({ label }) => label === shown?.label);
 
@@ -119,13 +176,7 @@ function figure(gesture, demonstration) {
     h("span", { className: "num" }, seconds === null ? "only its image is known" : moment(seconds)),
     h("span", { className: "dim" }, listFollowed(demonstration)),
     origin(source),
-    source?.fault
-      ? h(
-          "p",
-          { className: "demonstration-fault" },
-          `It ${source.fault}. Save it again from a take.`,
-        )
-      : null,
+    faultNote(gesture.label, index, source),
     h(
       "button",
       {

@@ -38,16 +38,9 @@ async function remove(gesture) {
  * @param {Gesture} gesture
  */
 function faultTag({ demonstrations }) {
-  const bad = demonstrations.map(({ source }) => source).find((source) => source?.fault);
+  const bad = demonstrations.map(({ source }) => source).find((source) => source?.faults.length);
   return bad
-    ? h(
-        "span",
-        {
-          className: "tag fault",
-          title: `The demonstration ${bad.fault}. Save it again from a take.`,
-        },
-        shortFault(bad),
-      )
+    ? h("span", { className: "tag fault", title: bad.faults[0].sentence }, shortFault(bad))
     : null;
 }
 

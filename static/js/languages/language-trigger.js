@@ -153,7 +153,7 @@ function labelChoice({ labels = [], draft }, changed) {
 }
 
 /** Open the dialog that sets the trigger of the language on display. */
-function openTrigger() {
+export function openTrigger() {
   const dialog = byId("dialog");
   const language = currentLanguage();
   const offered = choices();

@@ -1,7 +1,7 @@
 // The feedback to a diver about the last take.
 
 import { h } from "../core/dom.js";
-import { askWhich, moment } from "../core/format.js";
+import { askWhich } from "../core/format.js";
 
 /** @import { PracticeAnswer } from "../core/types.d.ts" */
 
@@ -10,7 +10,7 @@ import { askWhich, moment } from "../core/format.js";
  *
  * @param {PracticeAnswer} answer
  */
-export function feedback({ take, sentence, lesson, notes }) {
+export function feedback({ take, sentence, notes }) {
   const look = take.right ? "right" : take.pair ? "asked" : "wrong";
   const heads = {
     right: "\u2713 Right: ",
@@ -24,14 +24,6 @@ export function feedback({ take, sentence, lesson, notes }) {
       h("b", {}, heads[look]),
       take.right ? take.expected : sentence,
     ),
-    lesson
-      ? h(
-          "p",
-          { className: "lesson" },
-          h("b", {}, "Show it again: "),
-          `in this take ${lesson.words}${lesson.start === null ? "" : ` (from ${moment(lesson.start)})`}.`,
-        )
-      : null,
     ...notes.map((text) => h("p", { className: "dim" }, text)),
   ].filter((each) => each !== null);
 }

@@ -55,39 +55,23 @@ function requestOf(change) {
     case "trim":
       update({ take: null, start: change.start, end: change.end });
       return {};
-    case "voter_weight": {
-      const { weights } = tuning();
-      const factor = (weights[change.voter] ?? 1) * change.factor;
-      return tuned({ weights: { ...weights, [change.voter]: factor } });
-    }
     case "weight_factor":
       return tuned({ weights: withFactor(change.voter, change.factor) });
-    case "simplification":
-      return tuned({ simplification: change.tolerance });
     case "keypoint_repair":
       return tuned({ keypoints_repaired: change.on });
-    case "profile":
-      // Weights are for the voters of a profile.
-      return { profile: change.profile, ...tuned({ weights: {} }) };
-    case "salient":
-      return changed(change.label, { salient: change.salient });
     case "switch":
       return changed(change.label, { [change.switch]: change.position });
-    case "demonstration":
-      return changed(change.label, { demonstration: rangeOf() });
+    case "demonstration_cut": {
+      const { clip_id, clip_start: start, clip_end: end } = change;
+      return changed(change.label, { demonstration: { clip_id, start, end } });
+    }
     case "further_demonstration":
       return changed(change.label, { demonstration: rangeOf(), further: true });
   }
 }
 
 /** Changes that affect the whole language. */
-const TUNING = new Set([
-  "voter_weight",
-  "weight_factor",
-  "simplification",
-  "keypoint_repair",
-  "profile",
-]);
+const TUNING = new Set(["weight_factor", "keypoint_repair"]);
 
 /**
  * Apply an intervention and recognise again; it can be discarded until it is kept.

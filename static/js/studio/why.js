@@ -1,4 +1,4 @@
-// The explanation of a recognition: its sentence, the differences in time, and counterfactuals.
+// The explanation of a recognition: its cause, the differences in time, and counterfactuals.
 
 import * as api from "../core/api.js";
 import { byId, h, svg, WRITES } from "../core/dom.js";
@@ -8,6 +8,7 @@ import { sessionExport } from "../clips/session-export.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
+import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
 import { addToTestSet } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
@@ -123,16 +124,16 @@ export function drawCosts({ why, timeline }) {
 }
 
 /**
- * The side effect of an intervention on the other gestures, in words.
+ * The effect of an intervention on other takes whose gesture is known; nothing without such takes.
  *
  * @param {SideEffect | null} effect
  */
 const effectOf = (effect) =>
-  effect
+  effect?.takes
     ? h(
         "small",
-        { className: "dim" },
-        `the others stay right (${effect.right_after} of ${effect.takes})`,
+        { className: "dim num" },
+        `of ${effect.takes} other takes repairs ${effect.repaired}, breaks ${effect.broken}`,
       )
     : null;
 
@@ -142,8 +143,8 @@ const effectOf = (effect) =>
  * @param {Counterfactual} found
  */
 const resultOf = ({ change, label, confidence }) =>
-  change.kind.endsWith("demonstration")
-    ? null
+  change.kind === "further_demonstration"
+    ? h("small", { className: "dim" }, "right by construction")
     : h("small", { className: "dim num" }, `${label}, ${Math.round(100 * confidence)} %`);
 
 /** @param {Counterfactual} found */
@@ -227,29 +228,53 @@ async function keepAsTest({ clip_id, start, end, expected }) {
 const note = (text) => h("p", { className: "dim" }, text);
 
 /**
- * The advice what to show differently next time, with its moment.
+ * The button that goes to the moment of the cause; nothing where it lasts throughout.
  *
  * @param {Explanation} why
  */
-function lesson(why) {
-  if (!why.lesson) return null;
-  const { words, start } = why.lesson;
+function momentOf({ causes: [cause] }) {
+  if (!cause || cause.start === null) return null;
+  const { start } = cause;
   const to = () => {
-    if (state.timeline && start !== null) seek(nearestFrame(state.timeline.time, start));
+    if (state.timeline) seek(nearestFrame(state.timeline.time, start));
   };
+  return h("button", { type: "button", className: "link", onclick: to }, `Go to ${moment(start)}`);
+}
+
+/**
+ * The button that shows the demonstrations of a gesture of which one is at fault.
+ *
+ * @param {Explanation} why
+ */
+function demonstrationsOf({ causes: [cause], blame: [blamed] }) {
+  const label = blamed?.label ?? cause?.label;
+  if (!label || (!blamed && cause.kind !== "demonstration")) return null;
   return h(
-    "p",
-    { className: "lesson" },
-    h("b", {}, "Show it again: "),
-    `in this take ${words}. `,
-    start === null
-      ? null
-      : h("button", { type: "button", className: "link", onclick: to }, `Go to ${moment(start)}`),
+    "button",
+    { type: "button", className: "link", onclick: () => openDemonstrations(label) },
+    "Show its demonstrations",
   );
 }
 
 /**
- * The counterfactuals as buttons that try them; advice to the diver comes first.
+ * The numbers behind the sentence, folded.
+ *
+ * @param {Explanation} why
+ */
+const detailsOf = ({ details }) =>
+  h(
+    "details",
+    { className: "why-details" },
+    h("summary", {}, "Numbers"),
+    h(
+      "ul",
+      {},
+      details.map((line) => h("li", { className: "num" }, line)),
+    ),
+  );
+
+/**
+ * The counterfactuals as buttons that try them.
  *
  * @param {Explanation} why
  */
@@ -259,7 +284,6 @@ function remediesOf(why) {
   return h(
     "div",
     { className: "remedies" },
-    lesson(why),
     offered.length
       ? [
           h("h2", {}, `It would have been recognised as ${why.expected}`),
@@ -281,9 +305,10 @@ const notesOf = ({ notes }) =>
 
 /** @param {Explanation} why */
 const reasons = (why) => [
-  h("p", { className: "why-sentence" }, why.sentence),
+  h("p", { className: "why-sentence" }, `${why.sentence} `, demonstrationsOf(why) ?? momentOf(why)),
   notesOf(why),
   remediesOf(why),
+  detailsOf(why),
 ];
 
 const ASK_RECOGNITION =

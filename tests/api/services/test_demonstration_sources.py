@@ -26,7 +26,13 @@ def saved(client: httpx.Client, language_id: str, circle_clip: str) -> dict[str,
     """Return the source recorded for a saved gesture's demonstration."""
     (take,) = client.get(f"{CLIPS}/{circle_clip}/takes").json()
     (gesture,) = add_gesture(client, language_id, circle_clip).json()["gestures"]
-    expected = {"start": take["start"], "end": take["end"], "keep_transit": False, "salutes": 0}
+    expected = {
+        "start": take["start"],
+        "end": take["end"],
+        "keep_transit": False,
+        "salutes": 0,
+        "faults": [],
+    }
     expected |= {"fault": None}
     assert gesture["source"] == {"clip_id": circle_clip, **expected}
     found: dict[str, Any] = gesture["source"]

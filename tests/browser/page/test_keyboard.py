@@ -79,7 +79,7 @@ def test_from_a_clip_to_the_file_for_the_robot(
     page.keyboard.type("circle")
     press(page, "Recognise")
     expect(page.locator("#outcome")).to_contain_text("Recognised as line")
-    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'circle'")
+    expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
 
     # The health check is opened, with two gestures side by side.
     open_view(page, "Health")

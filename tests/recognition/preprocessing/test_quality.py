@@ -10,7 +10,7 @@ from hypothesis import given
 from app.recognition import Gesture, GestureError, Language, PoseSequence, Recognizer
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.preprocessing.quality import find_fault
+from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.side_swaps import pair_sides
 from tests.recognition.strategies import SHAPES, circle, recording, recordings
 
@@ -54,7 +54,8 @@ def test_a_clock_that_does_not_run_in_seconds_is_no_fault() -> None:
 
 def test_half_a_gesture_out_of_view_is_told_with_its_share() -> None:
     poses = unseen(recording(circle), slice(10, 58))
-    assert find_fault(poses, HAND) == "the right wrist is followed for only 17% of its 2.0 s"
+    words = "the right wrist is followed for only 17% of its 2.0 s"
+    assert find_fault(poses, HAND) == QualityFault("not_followed", words)
     assert find_fault(poses, ("left_wrist",)) is None
 
 
@@ -67,20 +68,22 @@ def test_short_gaps_are_no_fault() -> None:
 def test_leaps_are_told_with_their_share() -> None:
     told = find_fault(leaping(recording(circle)), HAND)
     assert told is not None
-    assert told.startswith("the right wrist leaps over a torso length in ")
+    assert told.kind == "leaps"
+    assert told.words.startswith("the right wrist leaps over a torso length in ")
 
 
 @pytest.mark.parametrize("frames", [0, 1, 4])
 def test_a_few_frames_are_too_few(frames: int) -> None:
-    assert find_fault(recording(circle, frames=frames), HAND) == (
-        f"it has {frames} frames, and at least 5 are needed"
-    )
+    words = f"it has {frames} frames, and at least 5 are needed"
+    fault = find_fault(recording(circle, frames=frames), HAND)
+    assert fault == QualityFault("few_frames", words)
 
 
 def test_an_empty_recording_shows_nothing() -> None:
     poses = recording(circle)
     nothing = replace(poses, xy=np.full_like(poses.xy, np.nan))
-    assert find_fault(nothing, HAND) == "none of its 60 frames shows a landmark"
+    words = "none of its 60 frames shows a landmark"
+    assert find_fault(nothing, HAND) == QualityFault("nothing_seen", words)
 
 
 @pytest.mark.parametrize("poor", [leaping, lambda poses: unseen(poses, slice(15, 59))])
@@ -91,7 +94,8 @@ def test_recognition_names_the_fault_and_no_gesture(
     assert result.label is None
     assert result.nearest in SHAPES
     assert result.fault is not None
-    assert type(result).from_dict(result.to_dict()).fault == result.fault
+    again = type(result).from_dict(result.to_dict())
+    assert (again.fault, again.fault_kind) == (result.fault, result.fault_kind)
 
 
 def test_profile_paper_judges_whatever_it_gets(recognizer: Recognizer) -> None:

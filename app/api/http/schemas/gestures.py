@@ -16,6 +16,7 @@ from app.api.http.schemas.values import (
     NewLabel,
     Seconds,
 )
+from app.recognition.explanation.demonstration_faults import FaultKind, Remedy
 from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
 
 SwitchPosition = Literal["auto", "on", "off"]
@@ -88,6 +89,17 @@ class GestureChange(Body):
     command: Command = None
 
 
+class DemonstrationFaultView(BaseModel):
+    """One fault of a demonstration, with what mends it."""
+
+    kind: FaultKind
+    sentence: str = Field(description="The fault and the remedy, at most fifteen words")
+    words: str = Field(description="The fault as a clause, with the numbers seen")
+    remedy: Remedy
+    start: float | None = Field(description="Seconds in the clip of a better range; null: none")
+    end: float | None
+
+
 class SourceView(BaseModel):
     """Where a demonstration comes from."""
 
@@ -100,7 +112,10 @@ class SourceView(BaseModel):
     )
     fault: str | None = Field(
         default=None,
-        description="Why it is a bad demonstration, as a clause: salutes or rests in it, cut short",
+        description="The gravest of `faults` as a clause with the numbers seen; null: none",
+    )
+    faults: list[DemonstrationFaultView] = Field(
+        description="Why it is a bad demonstration, the gravest fault first"
     )
 
 

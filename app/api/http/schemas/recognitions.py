@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.api.http.schemas.gestures import GestureChange
 from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
 from app.recognition.language.file_schema import TuningEntry
+from app.recognition.preprocessing.quality import QualityFaultKind
 
 
 class GestureTrial(Body):
@@ -72,6 +73,7 @@ class RecognitionView(BaseModel):
         description="What was repaired, or is more than a gesture has, in sentences",
     )
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
+    fault_kind: QualityFaultKind | None = Field(None, description="The kind of `fault`")
     facing: float | None = Field(
         None, description="Degrees by which the diver is turned to the own left; null: not known"
     )
@@ -96,17 +98,23 @@ class ExplanationView(BaseModel):
     confidence: float
     other: str | None = Field(description="The gesture that the expected one is held against")
     margin: float | None = Field(description="Score of the other minus that of the expected")
-    sentence: str
+    runner_up: str | None = Field(
+        default=None, description="The nearest gesture but `nearest`; null: none is comparable"
+    )
+    sentence: str = Field(description="Why and what the diver can do, in at most fifteen words")
+    details: list[str] = Field(description="The numbers behind the sentence")
     votes: dict[str, int]
     verdicts: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
     alignments: list[dict[str, Any]]
-    differences: list[dict[str, Any]]
-    lesson: dict[str, Any] | None = Field(
-        default=None, description="The difference to avoid when it is shown again; null: none known"
+    causes: list[dict[str, Any]] = Field(
+        description="Why, the cause first, each with its evidence; empty: none is known"
+    )
+    blame: list[dict[str, Any]] = Field(
+        description="Demonstrations of the gesture meant that are at fault for the known takes"
     )
     counterfactuals: list[dict[str, Any]] = Field(
-        description="Verified; by none does a gesture of the language lose a take. What teaches "
-        "most comes first, weights and a replaced demonstration last"
+        description="Verified; by none does a gesture lose a demonstration. What repairs most "
+        "known takes comes first, the take as another demonstration last"
     )
     tried: int
     notes: list[str] = Field(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
@@ -15,8 +15,14 @@ from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
-from app.api.http.schemas.gestures import HELD_SHAPES, GestureChange, SwitchPosition
+from app.api.http.schemas.gestures import (
+    HELD_SHAPES,
+    DemonstrationFaultView,
+    GestureChange,
+    SwitchPosition,
+)
 from app.api.http.schemas.values import Body, Label
+from app.api.services.demonstration_sources import view_faults
 from app.api.services.gesture_edits import (
     change_gesture_of,
     demonstration_at,
@@ -110,6 +116,9 @@ class PreviewView(BaseModel):
     start: float | None = Field(description="Seconds of the clip; null without one")
     end: float | None
     seconds: float | None = Field(description="How long the demonstration lasts")
+    faults: list[DemonstrationFaultView] = Field(
+        description="Why its range of the clip is a bad demonstration, the gravest fault first"
+    )
 
 
 class SwitchView(BaseModel):
@@ -175,7 +184,9 @@ def _preview(
         gesture = draft.gesture()
     except GestureError as error:
         return _view(None, draft, str(error), marks=marks)
-    return _view(gesture, draft, None, marks=marks)
+    where = request.change.demonstration
+    faults = [] if where is None else view_faults(studio, where, gesture, language.trigger)
+    return _view(gesture, draft, None, marks=marks, faults=faults)
 
 
 def _outlook(
@@ -278,7 +289,12 @@ def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draf
 
 
 def _view(
-    gesture: Gesture | None, draft: _Draft, problem: str | None, *, marks: bool
+    gesture: Gesture | None,
+    draft: _Draft,
+    problem: str | None,
+    *,
+    marks: bool,
+    faults: Sequence[DemonstrationFaultView] = (),
 ) -> PreviewView:
     trajectory, shown = draft.trajectory(), draft.demonstration
     known = trajectory is not None and len(trajectory) > 0
@@ -294,6 +310,7 @@ def _view(
         start=None if shown is None else shown.start,
         end=None if shown is None else shown.end,
         seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
+        faults=list(faults),
     )
 
 

@@ -14,7 +14,7 @@ from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
-    load_situation,
+    load_context,
     read_pair,
     recognize_range,
     write_pair,
@@ -73,7 +73,8 @@ class PracticeAnswerView(BaseModel):
 
     take: PracticeTakeView
     sentence: str
-    lesson: dict[str, Any] | None = Field(description="The difference to avoid the next time")
+    details: list[str] = Field(description="The numbers behind the sentence")
+    causes: list[dict[str, Any]] = Field(description="Why, the cause first; empty: none is known")
     notes: list[str]
     record: PracticeRecordView
 
@@ -124,13 +125,14 @@ def show_gesture(
             recognition_id=record.id,
         )
     )
-    why = explain(load_situation(record, studio), draft.expected, with_counterfactuals=False)
+    why = explain(load_context(record, studio), draft.expected, with_counterfactuals=False)
     records = _records(studio, state)
     return PracticeAnswerView(
         take=_view(take),
         sentence=why.sentence,
-        lesson=None if why.lesson is None else why.lesson.to_dict(),
-        notes=[] if why.right else write_notes(studio, record, language, draft.expected),
+        details=list(why.details),
+        causes=[cause.to_dict() for cause in why.causes],
+        notes=[] if why.right else write_notes(studio, record, language),
         record=next(each for each in records if each.diver == take.diver),
     )
 

@@ -9,7 +9,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.services.running_studio import CurrentStudio, computed
-from app.api.services.stored_recognitions import load_recognition, load_situation
+from app.api.services.stored_recognitions import load_context, load_recognition
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.recognition.explanation.explanation import explain
 from app.ui.charts import data_url
@@ -54,7 +54,7 @@ def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
     record = studio.recognitions.get(recognition_id)
     view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
     meant = record.expected
-    why = None if meant is None else explain(load_situation(record, studio), meant)
+    why = None if meant is None else explain(load_context(record, studio), meant)
     name = quote(f"{view.title}.html", safe="")
     disposition = f"attachment; filename=\"analysis.html\"; filename*=utf-8''{name}"
     return Response(

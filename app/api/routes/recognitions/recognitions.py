@@ -13,7 +13,8 @@ from app.api.ingest.quotas import SenderQuota
 from app.api.services.explanation_notes import write_notes
 from app.api.services.running_studio import CurrentStudio, computed, computed_briefly
 from app.api.services.stored_recognitions import (
-    load_situation,
+    load_context,
+    locate_cuts,
     recognize_range,
     view_recognition,
 )
@@ -85,9 +86,13 @@ def explain_recognition(
     if meant is None:
         detail = "say which gesture was meant: add ?expected=LABEL"
         raise ProblemError(422, "expected_missing", detail)
-    situation = load_situation(record, studio)
-    # A recognition never changes, nor does the revision that it was made with.
-    response.headers["Cache-Control"] = "private, max-age=86400"
-    explanation = explain(situation, meant)
-    notes = write_notes(studio, record, situation.language, meant, explanation.nearest)
-    return ExplanationView(id=record.id, **explanation.to_dict(), notes=notes)
+    context = load_context(record, studio)
+    # The recognition never changes, but the known takes by which remedies are judged do.
+    response.headers["Cache-Control"] = "private, max-age=60"
+    explanation = explain(context, meant)
+    others = [] if explanation.right else [explanation.nearest]
+    notes = write_notes(studio, record, context.language, *others)
+    notes = [note for note in notes if note != explanation.sentence]
+    answer = explanation.to_dict()
+    cuts = locate_cuts(studio, context.language, answer["counterfactuals"])
+    return ExplanationView(id=record.id, **answer | {"counterfactuals": cuts}, notes=notes)

@@ -69,7 +69,7 @@ def test_a_sequence_is_recognised_and_its_swap_is_explained(
     swapped = recognize(client, signs, add_clip(studio, FIST, FLAT, seed=5))
     assert swapped["label"] is None
     place = f"/api/v1/recognitions/{swapped['id']}/explanation"
-    assert "the shapes come in the other order" in client.get(place).json()["sentence"]
+    assert "The shapes come in the other order" in client.get(place).json()["sentence"]
 
 
 def test_a_language_with_a_sequence_has_slate_report_and_contrast(

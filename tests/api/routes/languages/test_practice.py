@@ -38,8 +38,8 @@ def test_a_diver_is_told_what_to_change_and_has_a_record(
     assert not record["reached"]
     wrong = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": line}).json()
     assert (wrong["take"]["label"], wrong["take"]["right"]) == ("line", False)
-    assert wrong["lesson"]["words"]
-    assert "instead of 'circle'" in wrong["sentence"]
+    assert len(wrong["sentence"].split()) <= 15
+    assert wrong["details"]
     assert (wrong["record"]["errors"], wrong["record"]["more"]) == (1, 91)
     # The same take sent again is not further evidence.
     again = client.post(place, json={"diver": "Ana", "expected": "circle", "clip_id": circle})
@@ -61,7 +61,7 @@ def test_a_pair_with_the_gesture_meant_is_neither_right_nor_an_error(
     asked = client.post(place, json=shown).json()
     assert (asked["take"]["label"], asked["take"]["right"]) == (None, False)
     assert set(asked["take"]["pair"]) == {"circle", "ring"}
-    assert asked["sentence"].startswith("The take lies between")
+    assert "are nearly alike" in asked["sentence"]
     record = asked["record"]
     assert (record["takes"], record["errors"], record["pairs"]) == (0, 0, 1)
     again = add_recorded_clip(studio, recording_of("circle"), "again.mp4")

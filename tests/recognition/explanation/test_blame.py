@@ -1,0 +1,85 @@
+"""Blame: the demonstration that is at fault for the known takes is found, and no other."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+import pytest
+
+from app.recognition import Gesture, Language, PoseSequence, Recognizer
+from app.recognition.explanation.blame import find_blame
+from app.recognition.explanation.context import KnownTake
+from app.recognition.poses.sequence import FloatArray
+from tests.recognition.explanation.test_causes import HOOK, corners, hook
+from tests.recognition.strategies import Shape, circle, line, recording, wedge
+
+SHAPES: dict[str, Shape] = {"hook": hook, "circle": circle, "line": line, "wedge": wedge}
+SALUTE = (0.3, -1.0)
+
+
+def language_of(bad: PoseSequence | None = None) -> Language:
+    shown = {label: recording(shape) for label, shape in SHAPES.items()}
+    if bad is not None:
+        shown["hook"] = bad
+    return Language("pool", [Gesture.from_demonstration(*each) for each in shown.items()])
+
+
+def _resize(shape: Shape, size: float, share: FloatArray) -> FloatArray:
+    return np.asarray(shape(share) * size)
+
+
+def known(recognizer: Recognizer) -> list[KnownTake]:
+    """Return three takes of each gesture, as large as their divers' arms."""
+    takes = []
+    for label, shape in SHAPES.items():
+        for seed, size in enumerate((0.9, 1.0, 1.1)):
+            poses = recording(partial(_resize, shape, size), jitter=0.01, seed=seed)
+            takes.append(KnownTake(label, recognizer.query(poses)))
+    return takes
+
+
+@pytest.mark.parametrize(
+    ("bad", "change"),
+    [
+        (recording(corners(SALUTE, *HOOK, SALUTE), frames=90), "cut"),
+        (recording(corners((-0.3, 0.8), (-1.2, 0.1), (-0.2, 0.1), (-1.2, 0.8))), "show_again"),
+    ],
+)
+def test_a_bad_demonstration_is_blamed(bad: PoseSequence, change: str) -> None:
+    recognizer = Recognizer(language_of(bad), "full")
+    blamed = find_blame(recognizer, known(recognizer))
+    assert [(each.label, each.demonstration) for each in blamed] == [("hook", 0)]
+    assert blamed[0].change == change
+    assert blamed[0].failing == 3
+    assert blamed[0].unlike > 1.8
+    assert blamed[0].repaired >= 2
+    assert len(blamed[0].sentence.split()) <= 15
+
+
+def test_a_good_language_has_no_demonstration_to_blame() -> None:
+    recognizer = Recognizer(language_of(), "full")
+    assert find_blame(recognizer, known(recognizer)) == ()
+    assert find_blame(recognizer, []) == ()
+
+
+def test_the_one_bad_demonstration_of_several_is_left_out() -> None:
+    ways = recording(corners((-0.3, 0.8), (-1.2, 0.1), (-0.2, 0.1), (-1.2, 0.8)))
+    good = language_of()
+    both = good.gesture("hook").with_demonstration(ways, "Ben")
+    recognizer = Recognizer(good.with_changed(both), "full")
+    takes = [KnownTake("hook", recognizer.query(recording(hook)))]
+    # The takes are read by the good demonstration: none fails.
+    assert find_blame(recognizer, takes) == ()
+
+
+def test_a_cut_says_what_it_keeps() -> None:
+    bad = recording(corners(SALUTE, *HOOK, SALUTE), frames=90)
+    recognizer = Recognizer(language_of(bad), "full")
+    (blamed,) = find_blame(recognizer, known(recognizer), ["hook"])
+    assert blamed.start is not None
+    assert blamed.end is not None
+    assert 0.1 < blamed.start < blamed.end < bad.time[-1] - 0.1
+    repaired = recognizer.language.gesture("hook").with_cut(0, blamed.start, blamed.end)
+    after = Recognizer(recognizer.language.with_changed(repaired), "full")
+    assert after.recognize(recording(hook)).label == "hook"
+    assert replace(blamed, change="leave_out").sentence.endswith("Leave it out.")
