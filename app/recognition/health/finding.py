@@ -38,6 +38,7 @@ of one gesture by the same person; 1 is two typical gestures."""
 
 FindingKind = Literal[
     "blind_angle",
+    "demonstration_fault",
     "duplicate",
     "empty",
     "hand_shape_only",

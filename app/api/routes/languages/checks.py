@@ -14,8 +14,11 @@ from app.api.http.revisions import Revision
 from app.api.jobs.check import CheckJob
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.salute_ranges import faults_of_language
 from app.api.workers.worker_messages import Failed
+from app.recognition.health.finding import Finding
 from app.store import LanguageState
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -46,8 +49,10 @@ async def check_language(
     who asked for it has left.
     """
     state = await run_in_threadpool(studio.languages.get, language_id, revision)
-    # Another version of the recogniser may give another report for the same revision.
-    tag = f'"{state.revision.revision}-{__version__}"'
+    faults = await run_in_threadpool(_find_faults, studio, state)
+    # Another version of the recogniser may give another report for the same revision, and clips
+    # come and go.
+    tag = f'"{state.revision.revision}-{__version__}-{len(faults)}"'
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
@@ -57,7 +62,8 @@ async def check_language(
         raise _refusal(studio) from error
     if isinstance(report, Failed):
         raise ProblemError(422, report.code, report.detail)
-    return report
+    warnings = [*faults, *report["warnings"]]
+    return report | {"ok": report["ok"] and not faults, "warnings": warnings}
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
@@ -78,6 +84,18 @@ def _job(state: LanguageState, studio: Studio) -> CheckJob:
         studio.workers,
         studio.clips.folder,
     )
+
+
+def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
+    """Return the faults of demonstrations whose clips are known, as findings."""
+    language = studio.language(state)
+    known = faults_of_language(studio, language, find_sources(studio, language))
+    return [
+        Finding("demonstration_fault", (label,), faults[0].describe(label), True).to_dict()
+        for label, demonstrations in known.items()
+        for faults in demonstrations
+        if faults
+    ]
 
 
 def _refusal(studio: Studio) -> ProblemError:

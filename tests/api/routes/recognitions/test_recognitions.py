@@ -229,6 +229,11 @@ def test_a_bad_demonstration_is_named_as_the_reason(
     assert saved["gestures"][0]["source"]["fault"].startswith("is cut short: it keeps 1.0 of")
     line = add_recorded_clip(studio, recording_of("line"), "line.mp4")
     client.post(gestures, json={"label": "line", "clip_id": line}).raise_for_status()
+    report = client.get(f"/api/v1/languages/{language_id}/check").json()
+    finding = report["warnings"][0]
+    assert (finding["kind"], finding["gestures"]) == ("demonstration_fault", ["circle"])
+    assert finding["message"] == "The demonstration of 'circle' is cut short. Set its range."
+    assert report["ok"] is False
     other = add_recorded_clip(studio, recording_of("circle"), "other.mp4")
     body = {"clip_id": other, "language_id": language_id, "expected": "circle"}
     recognised = client.post("/api/v1/recognitions", json=body).json()
