@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import PoseError
+from app.recognition.explanation.causes import ALIKE
 from app.recognition.gestures.demonstration import condense
 from app.recognition.health.finding import Finding
 from app.recognition.language.language import Language
@@ -16,7 +17,7 @@ from app.recognition.recognizer import Recognizer
 def find_known_signs(
     language: Language, known: Language, advance: Callable[[], None] = lambda: None
 ) -> Iterator[Finding]:
-    """Yield one finding for each gesture that is recognised as one of the known signs.
+    """Yield one finding for each gesture that is much like one of the known signs.
 
     Each demonstration is recognised by profile ``full`` among the known signs, as if it were a
     take. A gesture with the label of the sign is meant to be that sign.
@@ -37,8 +38,7 @@ def find_known_signs(
     meanings = {gesture.label: gesture.description for gesture in known.gestures}
     for gesture in language.gestures:
         read = [_recognize(recognizer, shown) for shown in gesture.trajectories]
-        # A pair looks like a sign too, though the robot would ask.
-        signs = [each.nearest for each in read if each is not None and each.outcome != "rejected"]
+        signs = [each.nearest for each in read if each is not None and _is_alike(each)]
         sign = next((each for each in signs if not _same_word(each, gesture.label)), None)
         if sign is not None:
             meaning = f' ("{meanings[sign]}")' if meanings[sign] else ""
@@ -57,6 +57,15 @@ def _recognize(recognizer: Recognizer, shown: Trajectory) -> Recognition | None:
         return recognizer.recognize_trajectory(condense(shown))
     except PoseError:  # no landmark that a sign needs moves
         return None
+
+
+def _is_alike(result: Recognition) -> bool:
+    """Return whether a take is nearer to its nearest gesture than other people's takes mostly are.
+
+    Whether it is accepted does not matter: a pair looks like a sign too, and of gestures that a
+    language lacks every second one is accepted.
+    """
+    return float(result.novelty[result.gestures.index(result.nearest)]) < ALIKE
 
 
 def _same_word(one: str, other: str) -> bool:
