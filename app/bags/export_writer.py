@@ -152,7 +152,7 @@ def _events(
 ) -> Iterator[_Event]:
     """Yield all messages in the order of time."""
     sources = [
-        _log(recording),
+        _log(recording.list_warnings(trigger)),
         _frames(recording, trigger, progress),
         _takes(takes_in(recording, trigger=trigger)),
         _recognition_events(recognitions),
@@ -163,8 +163,8 @@ def _events(
     yield from heapq.merge(*sources, key=lambda event: event.time)
 
 
-def _log(recording: Recording) -> Iterator[_Event]:
-    for warning in recording.warnings:
+def _log(warnings: Sequence[str]) -> Iterator[_Event]:
+    for warning in warnings:
         content = {"timestamp": stamp_of(0), "level": WARNING, "message": warning}
         yield _Event(0.0, "/log", content | {"name": "osg-studio", "file": "", "line": 0})
 

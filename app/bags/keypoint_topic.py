@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -151,11 +151,12 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
         poses=poses,
         hands=hands,
         salute=salute.at(stamps),
-        warnings=(*warnings, *_warnings(gathered, salute, topic)),
+        warnings=(*warnings, *_warnings(gathered, topic)),
+        salute_warnings=tuple(_salute_warnings(salute)),
     )
 
 
-def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[str]:
+def _warnings(gathered: _Gathered, topic: Topic) -> list[str]:
     frames, clock = len(gathered.posed), gathered.clock
     found = [f"there is no picture: the skeleton is drawn from the keypoints of {topic.name}"]
     if gathered.broken:
@@ -175,14 +176,17 @@ def _warnings(gathered: _Gathered, salute: SaluteTrack, topic: Topic) -> list[st
     given = frozenset[str]().union(*(posed.given for posed in gathered.posed))
     if missing := find_missing_landmarks(tuple(given)):
         found.append(f"{topic.name} has no {', '.join(missing)}")
+    return found
+
+
+def _salute_warnings(salute: SaluteTrack) -> Iterator[str]:
     if salute.topic is None:
-        found.append(
+        yield (
             "the recording holds no topic of the salute; choose the gesture's range by hand, or "
             "record the salute beside the keypoints"
         )
     elif not salute.any:
-        found.append(f"no salute in {salute.topic}; choose the gesture's range by hand")
-    return found
+        yield f"no salute in {salute.topic}; choose the gesture's range by hand"
 
 
 def _pixels(posed: Posed, size: tuple[int, int]) -> FloatArray:

@@ -403,14 +403,9 @@ def read_clip(
         read = _read_pictures(source, path, options, how, language)
     else:
         read = _read_keypoints(source, path, options, language)
-    recording = read.recording
-    if how.trigger.kind != "salute":
-        # Without salutes, warnings about them do not apply.
-        kept = tuple(each for each in recording.warnings if "salute" not in each)
-        recording = replace(recording, warnings=kept)
-    for warning in recording.warnings:
+    for warning in read.recording.list_warnings(how.trigger):
         people.print(f"{clip}: {warning}", markup=False)
-    return replace(read, recording=recording, trigger=how.trigger)
+    return replace(read, trigger=how.trigger)
 
 
 def _read_keypoints(

@@ -122,8 +122,11 @@ class KeypointFileSource:
         recording = read.recording
         show_recording(recording, video, progress, observer)
         if video is not None:
-            notes = (DRAWN,) if read.has_hands else (DRAWN, NO_HANDS)
-            recording = replace(recording, warnings=(*notes, *recording.warnings))
+            recording = replace(
+                recording,
+                warnings=(DRAWN, *recording.warnings),
+                salute_warnings=() if read.has_hands else (NO_HANDS,),
+            )
         return RecordedClip(recording, read.has_hands, recording.poses.landmarks)
 
     def refuse(self, error: OsgError, path: Path) -> Refusal:

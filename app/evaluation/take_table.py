@@ -64,8 +64,9 @@ def rows_of_clip(
         Known labels, by number of the take from 1.
 
     """
+    warnings = recording.list_warnings(recognizer.language.trigger)
     if not results:
-        return [row_of_fault(clip, recognizer, *recording.warnings, NO_TAKE)]
+        return [row_of_fault(clip, recognizer, *warnings, NO_TAKE)]
     known = expected or {}
     return [
         _constant(clip, recognizer)
@@ -125,9 +126,10 @@ def _find_runner_up(result: Recognition) -> str | None:
 def _list_faults(
     recording: Recording, take: Take, result: Recognition, recognizer: Recognizer
 ) -> list[str]:
-    unclosed = [] if take.closed else [f"no second {recognizer.language.trigger.noun}"]
+    trigger = recognizer.language.trigger
+    unclosed = [] if take.closed else [f"no second {trigger.noun}"]
     poor = [result.fault] if result.fault else []
-    return [*recording.warnings, *unclosed, *result.findings, *poor]
+    return [*recording.list_warnings(trigger), *unclosed, *result.findings, *poor]
 
 
 def _to_cell(value: Any) -> str:

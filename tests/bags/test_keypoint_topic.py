@@ -77,7 +77,7 @@ def test_a_skeleton_of_ros4hri_fills_the_landmarks_that_it_has(tmp_path: Path) -
     assert np.allclose(read.poses.xy[:, wrist], recording.poses.xy[:, wrist] * scale, atol=0.01)
     assert np.isnan(read.poses.xy[:, POSE_LANDMARKS.index("left_thumb")]).all()
     assert read.poses.frame_size == ASSUMED_SIZE
-    warnings = " ".join(read.warnings)
+    warnings = " ".join(read.list_warnings())
     assert "1280 x 720 is taken" in warnings
     assert "skeleton2d has no left_pinky" in warnings
     assert "no topic of the salute" in warnings

@@ -88,7 +88,7 @@ def add_clip(
     added = clips.add(clip, partial, "test")
     server.studio.jobs.start(added.job.id)
     recording.save(clips.recording(clip.id))
-    server.studio.jobs.complete(added.job.id, len(recording.poses), recording.warnings)
+    server.studio.jobs.complete(added.job.id, len(recording.poses), recording.list_warnings())
     return clip.id
 
 

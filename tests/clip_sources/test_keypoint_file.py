@@ -75,7 +75,7 @@ def test_what_is_missing_is_told_with_the_recording(tmp_path: Path) -> None:
     )
     assert not recorded.has_hands
     warnings = recorded.recording.warnings
-    assert warnings[:2] == (DRAWN, NO_HANDS)
-    left_out, missing = warnings[2:]
+    assert (warnings[0], recorded.recording.salute_warnings) == (DRAWN, (NO_HANDS,))
+    left_out, missing = warnings[1:]
     assert left_out.startswith("left out, for they mean no landmark here: PAW")
     assert missing == "the file gives no right_wrist"

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
+from dataclasses import replace
+from typing import Literal
 
 import pytest
 
 from app.evaluation.take_table import COLUMNS, NO_TAKE, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer, takes_in
+from app.recognition.triggers.trigger import Trigger
 from tests.api.recordings import recording_of
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line
@@ -38,6 +41,17 @@ def test_a_take_between_two_gestures_has_no_label_but_a_pair() -> None:
     first, second = rows_of_clip("dive.mp4", asking, recording, results)
     assert (first["label"], first["pair"]) == (None, "circle or ring")
     assert (second["label"], second["pair"]) == ("line", None)
+
+
+@pytest.mark.parametrize("kind", ["salute", "none"])
+def test_warnings_of_salutes_reach_languages_with_salutes_alone(
+    recognizer: Recognizer, kind: Literal["salute", "none"]
+) -> None:
+    recording = replace(recording_of("circle"), warnings=("dark",), salute_warnings=("few hands",))
+    spoken = Recognizer(replace(recognizer.language, trigger=Trigger(kind)))
+    (row,) = rows_of_clip("dive.mp4", spoken, recording, [])
+    told = "dark; few hands" if kind == "salute" else "dark"
+    assert row["faults"] == f"{told}; {NO_TAKE}"
 
 
 def test_a_language_of_one_gesture_has_no_runner_up() -> None:

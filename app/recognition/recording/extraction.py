@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Final
@@ -192,66 +192,61 @@ class _Collector:
                 self._hands[row] = _sort_hands(found)
         hands = tuple(self._hands)
         missing = sum(place is None for place in choice.index)
-        several = bool(choice.notes)
-        said = self._warnings(hands, choice.salute, missing, several=several)
         return Recording(
             poses=join_sequences(self._moments),
             hands=hands,
             salute=choice.salute,
-            warnings=(*warnings, *choice.notes, *said),
+            warnings=(
+                *warnings,
+                *choice.notes,
+                *self._warn_of_body(missing, several=bool(choice.notes)),
+            ),
             people=choice.count,
+            salute_warnings=self._warn_of_salutes(hands, choice.salute),
         )
 
     def _build_moment(self, time: float, found: FrameLandmarks) -> PoseSequence:
         size = (self._info.width, self._info.height)
         return build_frame_sequence(found, time, size, self._landmarks)
 
-    def _warnings(
-        self,
-        hands: tuple[tuple[Hand, ...], ...],
-        salute: FloatArray,
-        missing: int,
-        *,
-        several: bool,
-    ) -> tuple[str, ...]:
-        """Return what is missing in the clip, as sentences with counts and remedies.
+    def _warn_of_body(self, missing: int, *, several: bool) -> Iterator[str]:
+        """Yield what is missing of the body, as sentences with counts.
 
         Parameters
         ----------
-        hands, salute
-            As in the recording.
         missing
             Number of frames without the body.
         several
             Whether several people are seen, so that others may be seen in these frames.
 
         """
-        frames = len(hands)
-        found = []
         if missing:
             who = "that person is not seen" if several else "no person"
-            found.append(f"{who} in {missing} of {frames} frames")
+            yield f"{who} in {missing} of {len(self._moments)} frames"
         if names := find_missing_landmarks(self._landmarks):
-            found.append(f"this pose model gives no {', '.join(names)}")
-        if not self._hands_sought:
-            return tuple(found)
-        with_hand = sum(map(bool, hands))
+            yield f"this pose model gives no {', '.join(names)}"
+
+    def _warn_of_salutes(
+        self, hands: tuple[tuple[Hand, ...], ...], salute: FloatArray
+    ) -> tuple[str, ...]:
+        """Return why no salute is seen, with a remedy; nothing where one is, or none is sought."""
+        frames, with_hand = len(hands), sum(map(bool, hands))
+        if not self._hands_sought or (with_hand and salute.max() > ENTER_SCORE):
+            return ()
         if not with_hand:
-            found.append(
+            return (
                 f"no hand in any of {frames} frames, so no salute can be seen; choose the "
-                "gesture's range by hand, choose a trigger of the arms, or film from nearer"
+                "gesture's range by hand, choose a trigger of the arms, or film from nearer",
             )
-        elif salute.max() <= ENTER_SCORE and with_hand < FEW_HANDS * frames:
-            found.append(
+        if with_hand < FEW_HANDS * frames:
+            return (
                 f"hands seen in {with_hand / frames:.0%} of {frames} frames: choose a trigger of "
-                "the arms, or film from nearer"
+                "the arms, or film from nearer",
             )
-        elif salute.max() <= ENTER_SCORE:
-            found.append(
-                f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
-                "salute with the palm or back of the hand towards the camera"
-            )
-        return tuple(found)
+        return (
+            f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
+            "salute with the palm or back of the hand towards the camera",
+        )
 
 
 def _sort_hands(found: FrameLandmarks) -> tuple[Hand, ...]:

@@ -18,6 +18,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.recording.hand_sides import place_hands
+from app.recognition.triggers.trigger import SALUTE, Trigger
 
 FILE_VERSION = 1
 """Version of the file that `Recording.save` writes; increased when older readers would fail."""
@@ -38,6 +39,8 @@ class Recording:
         ``(T,)`` in [0, 1]: score of the best salute in the frame (`best_salute`), 0 without a hand.
     warnings
         Problems of the clip, as sentences with counts.
+    salute_warnings
+        Those that concern salutes, and no language with another trigger or none.
     people
         ``(T,)`` number of people seen in each frame, whose body is among them; None where it is not
         known, as in files of older versions.
@@ -54,6 +57,7 @@ class Recording:
     salute: FloatArray
     warnings: tuple[str, ...] = ()
     people: npt.NDArray[np.int64] | None = None
+    salute_warnings: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Validate, and freeze a private copy of the scores."""
@@ -79,6 +83,10 @@ class Recording:
         if self.poses.hands is None and any(self.hands):
             placed = place_hands(self.hands, _wrists(self.poses))
             object.__setattr__(self, "poses", replace(self.poses, hands=placed))
+
+    def list_warnings(self, trigger: Trigger = SALUTE) -> tuple[str, ...]:
+        """Return the warnings that concern a language with this trigger."""
+        return self.warnings + (self.salute_warnings if trigger.kind == "salute" else ())
 
     def save(self, path: str | Path) -> None:
         """Write a compressed NumPy archive atomically.
@@ -111,6 +119,7 @@ class Recording:
             "hand_is_right": np.array([hand.side == "right" for hand in found], dtype=np.bool_),
             "hand_score": np.array([hand.score for hand in found], dtype=np.float64),
             "warnings": np.array(self.warnings, dtype=np.str_),
+            "salute_warnings": np.array(self.salute_warnings, dtype=np.str_),
         }
         if self.poses.confidence is not None:
             arrays["confidence"] = self.poses.confidence
@@ -173,6 +182,7 @@ class Recording:
             hands=tuple(tuple(found[start:end]) for start, end in zip(starts, ends, strict=True)),
             salute=arrays["salute"],
             warnings=tuple(str(warning) for warning in arrays["warnings"]),
+            salute_warnings=tuple(str(warning) for warning in arrays.get("salute_warnings", ())),
             people=arrays.get("people"),
         )
 

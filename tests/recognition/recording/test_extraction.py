@@ -134,17 +134,17 @@ def test_a_clip_without_anybody_is_no_silent_success(clip: Path) -> None:
     recording = record(clip, estimator=ScriptedEstimator(bodiless=frozenset(range(20))))
     assert not recording.poses.seen.any()
     assert recording.warnings[0] == "no person in 20 of 20 frames"
-    assert "no hand in any of 20 frames" in recording.warnings[1]
+    assert "no hand in any of 20 frames" in recording.salute_warnings[0]
     assert takes_in(recording) == ()
 
 
 def test_a_clip_in_which_fingers_cannot_be_told_advises_a_trigger_of_the_arms(clip: Path) -> None:
     few = record(clip, estimator=ScriptedEstimator(with_flat_hand=frozenset({3, 9})))
-    assert few.warnings == (
+    assert few.salute_warnings == (
         "hands seen in 10% of 20 frames: choose a trigger of the arms, or film from nearer",
     )
     many = record(clip, estimator=ScriptedEstimator(with_flat_hand=frozenset(range(20))))
-    assert "no salute in any of 20 frames" in many.warnings[0]
+    assert "no salute in any of 20 frames" in many.salute_warnings[0]
 
 
 @pytest.mark.withstands(row="H11")
