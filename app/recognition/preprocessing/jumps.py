@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -37,7 +38,7 @@ OTHER_SIZE = 1.35
 """Ratio of torso lengths from which a moment shows another body; a diver who leans towards the
 camera or away from it changes by less."""
 
-Mask = npt.NDArray[np.bool_]
+Mask: TypeAlias = npt.NDArray[np.bool_]
 
 
 def find_leaps(trajectory: Trajectory, landmarks: Sequence[str], fastest: float = FASTEST) -> Mask:

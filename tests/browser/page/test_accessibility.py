@@ -33,7 +33,7 @@ def library(server: Running) -> Iterator[Library]:
 def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library, scheme: str) -> None:
     query = {**library.address, "recognition": library.recognise("line")}
     page = open_page(query, scene=False, scheme=scheme)
-    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of")
+    expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
     assert faults(page) == []
 
 

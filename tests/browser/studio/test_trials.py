@@ -47,19 +47,15 @@ def try_out(page: Page, words: str | re.Pattern[str]) -> Locator:
     return trial
 
 
-def test_every_kind_of_change_is_tried_and_taken_back(
+def test_a_change_is_tried_and_taken_back(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
     page = opened_at_a_mistake(open_page, server, library)
     outcome = page.locator("#outcome")
-    for words in (
-        REPAIR,
-        "with this take as another demonstration of 'circle'",
-    ):
-        expect(outcome).to_contain_text("Recognised as line, expected circle")
-        trial = try_out(page, re.compile(words))
-        expect(outcome).to_contain_text("Recognised as circle, as expected")
-        trial.get_by_role("button", name="Discard").click()
+    expect(outcome).to_contain_text("Recognised as line, expected circle")
+    trial = try_out(page, REPAIR)
+    expect(outcome).to_contain_text("Recognised as circle, as expected")
+    trial.get_by_role("button", name="Discard").click()
     expect(outcome).to_contain_text("Recognised as line, expected circle")
     assert library.client.get(f"/api/v1/languages/{library.language}").json()["tuning"] is None
 
