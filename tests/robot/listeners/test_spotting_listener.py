@@ -61,7 +61,7 @@ def test_a_gesture_of_the_past_does_not_come_out_in_the_next_language() -> None:
 
 def test_what_is_abandoned_is_forgotten() -> None:
     listener = SpottingListener(spoken("circle", "line"))
-    for moment, salute in moments_of(recording_of("circle"))[:30]:
+    for moment, salute in moments_of(recording_of("circle"))[:20]:
         listener.feed(moment, salute)
     assert len(listener) > 0
     assert listener.abandon(2.0, "the source was lost") == ()
