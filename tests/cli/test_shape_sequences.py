@@ -54,7 +54,7 @@ def test_a_sequence_is_defined_and_recognised(
     swapped = write_clip(tmp_path / "swapped", FIST, FLAT, seed=9)
     ended = osg_studio("recognize", swapped, "--language", signs, "--expected", "again", *RATE)
     assert ended.code == 1
-    assert "the shapes come in the other order" in ended.out + ended.error
+    assert "The shapes come in the other order" in ended.out + ended.error
 
 
 def test_three_shapes_are_refused_in_one_line(osg_studio: OsgStudio, tmp_path: Path) -> None:
