@@ -60,7 +60,7 @@ def test_a_take_between_two_gestures_is_a_question_and_no_error(
     page.get_by_label("Gesture to show").select_option("circle")
     page.get_by_role("button", name="Show it by this clip").click()
     answer = page.locator(".practice-asked")
-    expect(answer).to_contain_text("? circle or ring? The take lies between 'circle' and 'ring'")
+    expect(answer).to_contain_text("? circle or ring? 'circle' and 'ring' are nearly alike.")
     record = page.get_by_role("region", name="Ana")
     expect(record).to_contain_text("0 errors in 0 takes")
     expect(record).to_contain_text("1 take asked back with the right gesture")
