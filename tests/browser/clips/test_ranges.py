@@ -64,6 +64,5 @@ def test_a_range_with_salutes_is_warned_of_before_and_after_it_is_saved(
     recognition = library.recognise("whole clip")
     page = open_page({**library.address, "recognition": recognition}, scene=False)
     expect(page.get_by_role("region", name="Why")).to_contain_text(
-        "The demonstration of 'whole clip' is a likely reason: 0.00-3.65 s of its clip is the "
-        "whole clip, with 2 Vulcan salutes"
+        "The demonstration of 'whole clip' is the whole clip, with its salutes. Set its range."
     )
