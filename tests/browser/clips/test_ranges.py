@@ -58,8 +58,7 @@ def test_a_range_with_salutes_is_warned_of_before_and_after_it_is_saved(
     expect(panel.get_by_role("alert")).to_contain_text(WARNING)
     page.get_by_role("button", name="Save gesture").click()
     card = page.get_by_role("list", name="Gestures").get_by_role("listitem")
-    expect(card.filter(has_text="whole clip")).to_contain_text("contains 2 salutes")
-    expect(card.filter(has_text="salutes")).to_have_count(1)
+    expect(card.locator(".tag.fault")).to_have_text(["whole clip"])
 
     recognition = library.recognise("whole clip")
     page = open_page({**library.address, "recognition": recognition}, scene=False)
