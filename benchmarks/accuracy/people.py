@@ -51,7 +51,7 @@ from app.recognition import (
     Recognition,
     Recognizer,
 )
-from app.recognition.decision.asking import ASK_RATIO
+from app.recognition.decision.rejection import ASK_RATIO
 from app.recognition.health.forecast import OUTCOMES, Outcome, make_forecast
 from app.recognition.health.forecast import judge as find_outcome
 from app.recognition.matching.dtw import dtw_distances

@@ -9,7 +9,6 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.asking import find_answer
 from app.recognition.decision.confidence import estimate_confidence
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
 from app.recognition.decision.hand_references import (
@@ -33,6 +32,7 @@ from app.recognition.decision.rejection import (
     NOVELTIES,
     OthersScores,
     choose_limit,
+    find_answer,
     is_rejected,
 )
 from app.recognition.decision.result import Recognition

@@ -6,7 +6,8 @@ take that is much smaller than the gesture; above 1 the gesture is rejected. Whe
 have shown the gestures, the limit is measured: it is the quantile of the scores of one person's
 demonstrations among those of the others (leave one person out). One person's demonstrations do not
 tell how other people's takes differ; then the limit is a cautious constant. Held hand shapes have a
-limit of their own (`hand_references`).
+limit of their own (`hand_references`). A take between two gestures is answered with both, and the
+diver is asked (`find_answer`).
 """
 
 from __future__ import annotations
@@ -44,6 +45,9 @@ MOST_REFUSED_AT_ALL: Final = 0.5
 SCORE_FLOOR: Final = 0.02
 """Added to scores and novelties before the logarithm: below that of two takes by one careful
 person."""
+
+ASK_RATIO: Final = 1.16
+"""Largest ratio of a gesture's score to the nearest one's at which the take may be either."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,3 +132,30 @@ def choose_limit(others: OthersScores, refused: float, *, arms: bool, alike: flo
 def is_rejected(novelty: float) -> bool:
     """Return whether a gesture is rejected; profile ``paper`` (NaN) never rejects."""
     return novelty > 1.0
+
+
+def find_answer(scores: FloatArray, novelty: FloatArray) -> tuple[int, ...]:
+    """Find the gestures that a take may be: one is the label, two are a pair, more a rejection.
+
+    Parameters
+    ----------
+    scores
+        ``(G,)``, smaller = more alike, infinite where not comparable; one of them finite.
+    novelty
+        ``(G,)``, above 1: rejected; NaN where nothing is rejected.
+
+    Returns
+    -------
+    Indices of the gestures, nearest first: those within `ASK_RATIO` of the nearest one that are not
+    rejected themselves. Empty where the nearest one is rejected.
+
+    """
+    order = np.argsort(scores, kind="stable").tolist()
+    if is_rejected(float(novelty[order[0]])):
+        return ()
+    limit = ASK_RATIO * float(scores[order[0]])
+    return tuple(
+        index
+        for index in order
+        if scores[index] <= limit and not is_rejected(float(novelty[index]))
+    )

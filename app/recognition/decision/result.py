@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from app.recognition.decision.asking import find_answer
+from app.recognition.decision.rejection import find_answer
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind
 

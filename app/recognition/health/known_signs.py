@@ -65,7 +65,7 @@ def _is_alike(result: Recognition) -> bool:
     Whether it is accepted does not matter: a pair looks like a sign too, and of gestures that a
     language lacks every second one is accepted.
     """
-    return float(result.novelty[result.gestures.index(result.nearest)]) < ALIKE
+    return result.nearest_novelty < ALIKE
 
 
 def _same_word(one: str, other: str) -> bool:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, Recognition, Recognizer
-from app.recognition.decision.asking import ASK_RATIO, find_answer
+from app.recognition.decision.rejection import ASK_RATIO, find_answer
 from tests.recognition.strategies import circle, line, recording, square, wedge
 
 WITHIN, BEYOND = (1 + ASK_RATIO) / 2, 2 * ASK_RATIO - 1
