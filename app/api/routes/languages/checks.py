@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
@@ -51,8 +53,9 @@ async def check_language(
     state = await run_in_threadpool(studio.languages.get, language_id, revision)
     faults = await run_in_threadpool(_find_faults, studio, state)
     # Another version of the recogniser may give another report for the same revision, and clips
-    # come and go.
-    tag = f'"{state.revision.revision}-{__version__}-{len(faults)}"'
+    # come and go, with the faults that they show.
+    shown = hashlib.sha256(json.dumps(faults).encode()).hexdigest()[:16]
+    tag = f'"{state.revision.revision}-{__version__}-{shown}"'
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
