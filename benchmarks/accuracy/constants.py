@@ -34,9 +34,8 @@ from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.voters.motion import velocity
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.place import Place
+from app.recognition.voters import motion_voters
+from app.recognition.voters.motion_voters import Path, Place
 from app.recognition.voters.registry import MOTION_VOTERS
 from benchmarks.accuracy.people import all_sets, is_of_bodies, recognize
 from benchmarks.arguments import set_arguments
@@ -47,7 +46,7 @@ from benchmarks.sets.simulated_bodies import CARRIED_DOMAINS
 from benchmarks.sets.whole_body_sets import far_movements
 
 TRIED: Final[Sequence[tuple[Any, str, tuple[float, ...]]]] = (
-    (velocity, "SLOW", (0.1, 0.2, 0.3, 0.5, 1.0)),
+    (motion_voters, "SLOW", (0.1, 0.2, 0.3, 0.5, 1.0)),
     (Place, "prior", (0.5, 1.0, 1.5, 2.0)),
     (Place, "within", (0.5, 0.57, 0.64, 0.75)),
     (Path, "prior", (0.0, 0.25, 0.5, 1.0)),

@@ -46,8 +46,7 @@ from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
-from app.recognition.voters.motion.tempo import Tempo
-from app.recognition.voters.motion.velocity import Velocity
+from app.recognition.voters.motion_voters import Tempo, Velocity
 from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOTER_NAMES
 
 _TEMPO = VOTER_NAMES.index(Tempo.name)

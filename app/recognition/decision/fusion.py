@@ -18,7 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.voter import Voter
+from app.recognition.voters.voter import WeightedVoter
 
 PAIRS_BEFORE = 1
 """Weight, in pairs of gestures, of the voter's general between-class distance: a language of two
@@ -26,7 +26,7 @@ has one pair, which may be alike by chance."""
 
 
 def weigh_voters(
-    voters: Sequence[Voter], own: Sequence[FloatArray], *, arms: bool
+    voters: Sequence[WeightedVoter], own: Sequence[FloatArray], *, arms: bool
 ) -> tuple[FloatArray, FloatArray]:
     """Compute the weight of each voter in a language.
 

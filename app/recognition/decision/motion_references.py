@@ -24,9 +24,7 @@ from app.recognition.matching.dtw import BAND, OPEN_ENDS, DtwBatch, DtwReference
 from app.recognition.matching.dtw_kernel import compute_alignment_costs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.motion_voter import DtwVoter
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.tempo import Tempo
+from app.recognition.voters.motion_voters import DtwVoter, Path, Tempo
 from app.recognition.voters.registry import MOTION_VOTERS
 
 SAME_FIGURE = 0.25

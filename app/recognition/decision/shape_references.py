@@ -13,7 +13,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.recognition.voters.shape.shape_voter import ShapeVoter, describe_drawing
+from app.recognition.voters.shape_voters import ShapeVoter, describe_drawing
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import BAND, dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.path import Path
+from app.recognition.voters.motion_voters import Path
 
 DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond."""

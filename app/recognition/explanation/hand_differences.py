@@ -16,8 +16,7 @@ from app.recognition.decision.moving_shapes import OTHER_SHAPE, measure_shapes
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.hand.finger_directions import FingerDirections
-from app.recognition.voters.hand.hand_landmarks import HandLandmarks
+from app.recognition.voters.hand_voters import FingerDirections, HandLandmarks
 
 FINGERS = ("thumb", "index finger", "middle finger", "ring finger", "little finger")
 

@@ -34,7 +34,7 @@ from app.recognition.preprocessing.salience import (
 )
 from app.recognition.text.joiners import is_printable
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.recognition.voters.shape.shape_voter import describe_drawing
+from app.recognition.voters.shape_voters import describe_drawing
 
 MAX_DEMONSTRATIONS = 5
 """Most demonstrations of one gesture: nobody records more before a dive, and it bounds the work."""

@@ -4,24 +4,24 @@ from __future__ import annotations
 
 from typing import Final
 
-from app.recognition.voters.hand.finger_directions import FingerDirections
-from app.recognition.voters.hand.fingertip_distances import FingertipDistances
-from app.recognition.voters.hand.hand_landmarks import HandLandmarks
-from app.recognition.voters.hand.hand_voter import HandVoter
-from app.recognition.voters.motion.motion_voter import MotionVoter
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.place import Place
-from app.recognition.voters.motion.tempo import Tempo
-from app.recognition.voters.motion.velocity import Velocity
-from app.recognition.voters.motion.wrist_bend import WristBend
-from app.recognition.voters.shape.aspect_ratio import AspectRatio
-from app.recognition.voters.shape.circularity import Circularity
-from app.recognition.voters.shape.fourier import FourierDescriptors
-from app.recognition.voters.shape.hu import HuMoments
-from app.recognition.voters.shape.path_complexity import PathComplexity
-from app.recognition.voters.shape.shape_voter import ShapeVoter
-from app.recognition.voters.shape.solidity import Solidity
-from app.recognition.voters.shape.zernike import ZernikeMoments
+from app.recognition.voters.fourier import FourierDescriptors
+from app.recognition.voters.hand_voters import (
+    FingerDirections,
+    FingertipDistances,
+    HandLandmarks,
+    HandVoter,
+)
+from app.recognition.voters.hu import HuMoments
+from app.recognition.voters.motion_voters import MotionVoter, Path, Place, Tempo, Velocity
+from app.recognition.voters.shape_voters import (
+    AspectRatio,
+    Circularity,
+    PathComplexity,
+    ShapeVoter,
+    Solidity,
+)
+from app.recognition.voters.wrist_bend import WristBend
+from app.recognition.voters.zernike import ZernikeMoments
 
 PAPER_VOTERS: Final[tuple[ShapeVoter, ...]] = (
     HuMoments(),

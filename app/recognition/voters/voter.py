@@ -1,4 +1,4 @@
-"""Base class of voters: a distance between descriptors, with its measured constants."""
+"""Base classes of voters: a distance between descriptors, and the constants that weigh it."""
 
 from __future__ import annotations
 
@@ -11,11 +11,7 @@ from app.recognition.poses.sequence import FloatArray
 
 
 class Voter(ABC):
-    """One voter: a distance between a query and each reference, with measured constants.
-
-    The constants were measured on drawn digits, letters and commands, two-handed figures, aircraft
-    marshalling and whole bodies, by other people: the geometric mean over the sets
-    (``benchmarks/studies/people.md``).
+    """One voter: a distance between a query and each reference.
 
     Attributes
     ----------
@@ -23,24 +19,11 @@ class Voter(ABC):
         In results and language files, in snake_case.
     unit
         What a distance of 1 means, in words.
-    prior
-        Importance before it is adapted to a language; `velocity` has 1.
-    within
-        Within-class distance: mean between two people's takes of one gesture.
-    between
-        Between-class distance: median between two gestures; stands in where a language has one.
 
     """
 
     name: ClassVar[str]
     unit: ClassVar[str]
-    prior: ClassVar[float]
-    within: ClassVar[float]
-    between: ClassVar[float]
-
-    def prior_for(self, *, arms: bool) -> float:
-        """Return the prior in a language in which the elbows are seen, or hands alone."""
-        return self.prior
 
     @abstractmethod
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
@@ -58,6 +41,33 @@ class Voter(ABC):
         ``(M,)`` in `unit`, >= 0, 0 for the same descriptor; infinite where nothing is comparable.
 
         """
+
+
+class WeightedVoter(Voter):
+    """Base of the voters of profile ``full``, with constants that give their weight (`fusion`).
+
+    The constants were measured on drawn digits, letters and commands, two-handed figures, aircraft
+    marshalling and whole bodies, by other people: the geometric mean over the sets
+    (``benchmarks/studies/people.md``).
+
+    Attributes
+    ----------
+    prior
+        Importance before it is adapted to a language; `velocity` has 1.
+    within
+        Within-class distance: mean between two people's takes of one gesture.
+    between
+        Between-class distance: median between two gestures; stands in where a language has one.
+
+    """
+
+    prior: ClassVar[float]
+    within: ClassVar[float]
+    between: ClassVar[float]
+
+    def prior_for(self, *, arms: bool) -> float:
+        """Return the prior in a language in which the elbows are seen, or hands alone."""
+        return self.prior
 
 
 def euclidean_distances(query: FloatArray, references: FloatArray) -> FloatArray:

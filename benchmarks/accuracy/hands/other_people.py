@@ -32,7 +32,7 @@ from app.evaluation.proportion import Share
 from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.hand.hand_voter import HandVoter
+from app.recognition.voters.hand_voters import HandVoter
 from app.recognition.voters.registry import HAND_VOTERS
 from benchmarks.sets.held_signs import HandLetters, read_hand_letters
 

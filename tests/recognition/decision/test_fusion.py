@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from app.recognition.decision.fusion import fuse, weigh_voters
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.place import Place
+from app.recognition.voters.motion_voters import Path, Place
 from app.recognition.voters.registry import MOTION_VOTERS
-from app.recognition.voters.voter import Voter
+from app.recognition.voters.voter import WeightedVoter
 
 
-def weight_of(voter: Voter, between: float, arms: bool = False, pairs: int = 10) -> float:
+def weight_of(voter: WeightedVoter, between: float, arms: bool = False, pairs: int = 10) -> float:
     weights, _ = weigh_voters([voter], [np.full(pairs, between)], arms=arms)
     return float(weights[0])
 

@@ -19,7 +19,7 @@ from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.recognition.voters.shape.shape_voter import describe_drawing
+from app.recognition.voters.shape_voters import describe_drawing
 from tests.recognition.demonstrations import drawn_language
 from tests.recognition.strategies import SHAPES, circle, line, recording, rest, wedge
 from tests.recognition.voters.figures import drawing_of

@@ -5,7 +5,7 @@ import pytest
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.recognition.voters.shape.shape_voter import DESCRIPTOR_DIGITS, ShapeVoter, describe_drawing
+from app.recognition.voters.shape_voters import DESCRIPTOR_DIGITS, ShapeVoter, describe_drawing
 from app.recognition.voters.voter import euclidean_distances
 from tests.recognition.voters.figures import CIRCLE, FIGURES, SIX, drawing_of
 

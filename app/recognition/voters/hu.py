@@ -4,7 +4,7 @@ import numpy as np
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.shape_voters import ShapeVoter
 from app.recognition.voters.voter import euclidean_distances
 
 FLOOR = 1e-2
@@ -25,9 +25,6 @@ class HuMoments(ShapeVoter):
 
     name = "hu"
     unit = "Euclidean distance between the seven invariants, each in decades"
-    prior = 0.025
-    within = 2.9
-    between = 4.7
 
     def length(self, keypoints: int) -> int:
         """Return the length of the descriptor, the same for any number of landmarks."""

@@ -10,11 +10,7 @@ from hypothesis import strategies as st
 from app.recognition.features.motion import Movement, build_movement
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion.motion_voter import MotionVoter
-from app.recognition.voters.motion.path import Path
-from app.recognition.voters.motion.place import Place
-from app.recognition.voters.motion.tempo import Tempo
-from app.recognition.voters.motion.velocity import Velocity
+from app.recognition.voters.motion_voters import MotionVoter, Path, Place, Tempo, Velocity
 from app.recognition.voters.registry import MOTION_VOTERS
 from tests.recognition.strategies import Shape, circle, line, recording, recordings
 

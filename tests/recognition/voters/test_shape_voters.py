@@ -6,10 +6,7 @@ import pytest
 from hypothesis import given
 
 from app.recognition.features.trajectory_image import Drawing
-from app.recognition.voters.shape.aspect_ratio import AspectRatio
-from app.recognition.voters.shape.circularity import Circularity
-from app.recognition.voters.shape.path_complexity import PathComplexity
-from app.recognition.voters.shape.solidity import Solidity
+from app.recognition.voters.shape_voters import AspectRatio, Circularity, PathComplexity, Solidity
 from tests.recognition.strategies import Shape, strokes
 from tests.recognition.voters.figures import CIRCLE, FIGURES, drawing_of
 

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.shape_voters import ShapeVoter
 from app.recognition.voters.voter import euclidean_distances
 
 DEGREE = 8
@@ -28,9 +28,6 @@ class ZernikeMoments(ShapeVoter):
 
     name = "zernike"
     unit = "Euclidean distance between the 25 magnitudes"
-    prior = 0.025
-    within = 0.4
-    between = 0.62
 
     def length(self, keypoints: int) -> int:
         """Return the length of the descriptor, the same for any number of landmarks."""

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from app.recognition.features.contour import Polygon
 from app.recognition.features.trajectory_image import Drawing
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.shape.shape_voter import ShapeVoter
+from app.recognition.voters.shape_voters import ShapeVoter
 
 ComplexArray: TypeAlias = npt.NDArray[np.complex128]
 
@@ -48,9 +48,6 @@ class FourierDescriptors(ShapeVoter):
 
     name = "fourier"
     unit = "Euclidean distance between outlines of norm 1 at their best common start point"
-    prior = 0.025
-    within = 0.33
-    between = 0.8
 
     def length(self, keypoints: int) -> int:
         """Return the length of the descriptor, the same for any number of landmarks."""

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from app.recognition.features.motion import LIMBS, Movement
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.voters.motion.motion_voter import MotionVoter
+from app.recognition.voters.motion_voters import MotionVoter
 
 FOREARM = LIMBS.index(("elbow", "wrist"))
 HAND = [

@@ -1,1 +1,0 @@
-"""Motion voters: compare movements by path, posture, order of steps and time."""

@@ -1,0 +1,130 @@
+"""Motion voters: compare the movements of two takes, most of them aligned by DTW."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Final
+
+import numpy as np
+
+from app.recognition.features.motion import Movement, central_differences, normalize_size
+from app.recognition.matching.dtw import BAND, OPEN_ENDS, DtwReferences
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.voters.voter import WeightedVoter, absolute_differences
+
+SLOW: Final = 0.3
+"""Speed, as a share of the usual one, at which a step counts half as much as a fast one. From 0.1
+to 0.5 the accuracy is the same; with plain velocities it is 3 points lower
+(`benchmarks/studies/people.md`)."""
+
+SHORTEST_SECONDS: Final = 0.05
+"""Lower limit of durations, two frames, for the logarithm."""
+
+
+class MotionVoter(WeightedVoter):
+    """Base of voters that compare a query's movement with each gesture's."""
+
+    @abstractmethod
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the descriptor of a movement: of one shape for all gestures of a language."""
+
+
+class DtwVoter(MotionVoter):
+    """Base of voters that align two movements step by step by dynamic time warping (DTW).
+
+    All of them are computed together, which costs hardly more than one.
+    """
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return the DTW distances, ``(M,)``; infinite where nothing can be compared."""
+        return DtwReferences(references, BAND, OPEN_ENDS).distances(query)
+
+
+class Velocity(DtwVoter):
+    """DTW distance between the velocities of elbows and wrists at equal times.
+
+    A velocity v is divided by ``|v| + SLOW`` of the root of the mean square, so that its direction
+    counts at any speed but that of rest: between a velocity, of which most people keep the order of
+    fast and slow steps only, and Jackknife's unit vectors (Taranta et al. 2017), of which the sway
+    at rest is as long as a stroke.
+    """
+
+    name = "velocity"
+    unit = "mean difference along the alignment, of compressed velocities below 1"
+    prior = 1.0
+    within = 0.0
+    between = 0.6
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 A)`` compressed velocities, NaN where not seen."""
+        steps = normalize_size(central_differences(movement.places)).reshape(
+            len(movement.places), -1
+        )
+        known = np.nan_to_num(steps)
+        speed = np.sqrt(np.vecdot(known, known))
+        return np.asarray(steps / (speed + SLOW)[:, None])
+
+
+class Place(DtwVoter):
+    """DTW distance between the places of elbows and wrists at equal times, in torso lengths.
+
+    People differ in where they draw a figure, so that the voter gets no weight in a language of
+    figures drawn at one place: there its between-class distance is below its within-class distance.
+    """
+
+    name = "place"
+    unit = "mean distance along the alignment, in torso lengths"
+    prior = 1.5
+    within = 0.64
+    between = 1.35
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 A)`` places, NaN where not seen or where no torso is seen."""
+        places = movement.places if movement.relative_to_body else movement.places * np.nan
+        return np.asarray(places.reshape(len(places), -1))
+
+
+class Path(DtwVoter):
+    """DTW distance between the paths, independent of position and size (Sakoe and Chiba 1978).
+
+    Each landmark's path is relative to its own mean; all are divided by one size, the root of the
+    mean over the steps of the summed squares. ``1/N sum |q - r|`` along the best alignment.
+
+    It has weight where hands alone are seen: the paths of whole arms differ between bodies
+    (`benchmarks/studies/people.md`).
+    """
+
+    name = "path"
+    unit = "mean distance along the alignment, in sizes of the gesture"
+    prior = 0.5
+    within = 0.0
+    between = 0.67
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 2 L)`` coordinates in sizes."""
+        return movement.figure.reshape(len(movement.paths), -1)
+
+    def prior_for(self, *, arms: bool) -> float:
+        """Return the prior where hands alone are seen, otherwise 0."""
+        return 0.0 if arms else self.prior
+
+
+class Tempo(MotionVoter):
+    """Difference of durations."""
+
+    name = "tempo"
+    unit = "doublings of the duration"
+    prior = 0.0
+    within = 0.38
+    between = 0.5
+    weight_where_needed = 0.3
+    """Amount added to the score per doubling of the duration, for a gesture whose tempo counts:
+    more than the distance of two takes (0.1), less than that of two gestures (1)."""
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return the logarithm to base 2 of the seconds, ``(1,)``."""
+        return np.log2([max(movement.duration, SHORTEST_SECONDS)])
+
+    def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
+        """Return absolute differences, ``(M,)``."""
+        return absolute_differences(query, references)

@@ -1,1 +1,0 @@
-"""Shape voters: compare the trajectory images of a query and a gesture."""
