@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.majority_vote import MajorityVote
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.trace import Trace
-from app.recognition.decision.vote import Vote
+from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.errors import LanguageError, PoseError
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import find_profile
@@ -34,6 +33,42 @@ from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.voters.registry import HAND_VOTER_NAMES
+
+
+class Vote(Protocol):
+    """Compares a query with every gesture of a language, and decides for one or none."""
+
+    @property
+    def landmarks(self) -> tuple[str, ...]:
+        """The salient landmarks of all gestures, in alphabetical order."""
+        ...
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """The salient landmarks of which a query must move at least one."""
+        ...
+
+    @property
+    def weights(self) -> Mapping[str, float]:
+        """Each voter's weight in the decision, summing to 1."""
+        ...
+
+    @property
+    def shape_twins(self) -> frozenset[tuple[int, int]]:
+        """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
+        ...
+
+    def compare(self, trajectory: Trajectory) -> ScoreTable:
+        """Compare a condensed query with every gesture, voter by voter."""
+        ...
+
+    def decide(self, compared: ScoreTable) -> Recognition:
+        """Decide for one gesture or none; one of the scores must be finite."""
+        ...
+
+    def sensitivity(self, gesture: int) -> Sensitivity | None:
+        """Return which properties of a gesture count; None for a gesture without movement."""
+        ...
 
 
 class Recognizer:

@@ -220,7 +220,7 @@ def test_a_query_is_drawn_once_per_set_of_keypoints_not_once_per_gesture(
         drawn.append(trajectory.landmarks)
         return draw(trajectory, simplification)
 
-    monkeypatch.setattr("app.recognition.decision.shape_references.draw", noted)
+    monkeypatch.setattr("app.recognition.decision.majority_vote.draw", noted)
     recognizer.recognize(recording(circle))
     assert sorted(drawn) == [("left_wrist",), ("right_wrist",)]
 

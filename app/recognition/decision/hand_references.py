@@ -1,51 +1,70 @@
-"""Hand references: the held hand shapes of a language, for the hand voters."""
+"""Hand references: a language's hand shapes, held or carried by a movement, for the hand voters."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final, NamedTuple
+from itertools import combinations
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
 from app.recognition.decision.fusion import weigh_distances
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.poses.frame import SIDES
+from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.hand_shape import HandShape, mirror_hands
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.preprocessing.moving_hands import list_moving_sides
 from app.recognition.voters.registry import HAND_VOTERS
 
 BETWEEN: Final = np.array([voter.between for voter in HAND_VOTERS])
 """The hand voters' distances between two shapes: a language has too few shapes to measure its own.
 """
 
-HAND_LIMIT = 0.45
+HAND_LIMIT: Final = 0.45
 """Largest share of the distance between two hand shapes that is accepted as the same one, for every
 shape and language (`benchmarks/studies/hand-shapes.md`)."""
 
-SAME_SHAPE = 0.3
+SAME_SHAPE: Final = 0.3
 """Score below which two held shapes are the same one: that of half of the takes from another view.
 """
 
-Described = list[FloatArray]
-"""Per voter the descriptors of M hands, ``(M, D)``."""
+MOST_TURNED: Final = 45.0
+"""Degrees by which a moving hand may be turned in the image at no cost, more than a held one: it
+turns with the arm, whose elbow is elsewhere in another take (`benchmarks/studies/hand-shapes.md`).
+"""
+
+SAME_MOVEMENT: Final = 0.3
+"""Score below which two gestures may be the same movement with two hand shapes: most of one
+person's pairs of takes are below it, and few pairs of different movements
+(`benchmarks/studies/people.md`)."""
+
+OTHER_SHAPE: Final = 0.5
+"""Mean relative distance of the hand voters from which two shapes are clearly different: beyond
+99 % of the pairs of takes of one shape and view (0.45), below 99 % of those of two signs (0.61)."""
+
+WEIGHT: Final = 0.5
+"""Amount added to the score of a gesture whose hand shape counts, for a shape as different as that
+of another sign: more than the score between two takes of one movement, less than that between two
+movements."""
 
 HeldShapes = Sequence[Sequence[HandShape]]
 """The hands of one shape, or of two in sequence (`Trajectory.held_shapes`)."""
 
+MovingShapes = Mapping[Side, HandShape]
+"""By side the shapes of the hands that carry a movement; empty where none is known."""
+
 
 @dataclass(frozen=True, eq=False)
-class HandReferences:
-    """The held hand shapes among S references of a language.
+class HeldReferences:
+    """The demonstrations of a language that hold a hand shape, M of them.
 
     Attributes
     ----------
-    count
-        S.
-    rows
-        ``(M,)``: indices of the references that hold a shape.
+    members
+        ``(M,)``: their indices among all demonstrations.
     shapes
         Their hands: of one shape, or of two in sequence.
     mirrored
@@ -54,139 +73,204 @@ class HandReferences:
 
     """
 
-    count: int
-    rows: npt.NDArray[np.intp]
+    members: npt.NDArray[np.intp]
     shapes: tuple[HeldShapes, ...]
     mirrored: npt.NDArray[np.bool_]
 
     @classmethod
-    def of(cls, gestures: Sequence[Gesture], owners: npt.NDArray[np.intp]) -> HandReferences:
-        """Return the references of S gestures of one demonstration each.
+    def of(cls, shown: Sequence[Gesture], owners: npt.NDArray[np.intp]) -> HeldReferences:
+        """Return the held ones of S demonstrations.
 
         The mirror image of a shape is the same gesture, unless the gesture's switch is off, or it
         is automatic and the mirror image is another gesture of the language.
 
         Parameters
         ----------
-        gestures
-            S gestures.
+        shown
+            S gestures of one demonstration each.
         owners
             ``(S,)``: index of each one's gesture in the language.
 
         """
-        held = [(row, each.held_shapes) for row, each in enumerate(gestures) if each.is_held]
-        rows = np.array([row for row, _ in held], dtype=np.intp)
-        shapes = tuple(each for _, each in held)
-        switches = [gestures[row].switches.mirror for row in rows]
-        made = cls(
-            count=len(gestures),
-            rows=rows,
-            shapes=shapes,
-            mirrored=np.array([switch != "off" for switch in switches], dtype=bool),
-        )
-        if not held:
-            return made
-        apart = owners[rows][:, None] != owners[rows]
-        shown = replace(made, mirrored=np.zeros(len(rows), dtype=bool))
-        turned = np.array([shown.distances(_mirror(each))[:, rows] for each in shapes])
-        alike = (score_hands(turned.transpose(1, 0, 2)) < SAME_SHAPE) & apart
-        other = np.array([switch == "auto" for switch in switches]) & alike.any(axis=1)
-        return replace(made, mirrored=made.mirrored & ~other)
+        members = np.flatnonzero([each.is_held for each in shown])
+        held = [each for each in shown if each.is_held]
+        shapes = tuple(each.held_shapes for each in held)
+        switches = np.array([each.switches.mirror for each in held])
+        if not len(members):
+            return cls(members, shapes, np.zeros(0, dtype=bool))
+        as_shown = cls(members, shapes, np.zeros(len(members), dtype=bool))
+        turned = np.array([score_hands(as_shown.distances(_mirror(each))) for each in shapes])
+        apart = owners[members][:, None] != owners[members]
+        other = ((turned < SAME_SHAPE) & apart).any(axis=1)
+        return replace(as_shown, mirrored=(switches == "on") | (switches == "auto") & ~other)
 
     def __len__(self) -> int:
-        """Return M, the number of references that hold a shape."""
-        return len(self.rows)
+        """Return M."""
+        return len(self.members)
 
     def distances(self, shapes: HeldShapes) -> FloatArray:
-        """Compute the distances of held hands to all references.
+        """Compute the distances of held hands to all M demonstrations.
 
-        A reference with one hand is compared with each hand of the query, a reference with two
-        hands with both; the nearest arrangement counts. Two shapes in sequence are compared in
-        their order and with the same hand; the farther one counts, so that both must fit.
+        A demonstration of one hand is compared with each hand of the query, one of two hands with
+        both; the nearest arrangement counts. Two shapes in sequence are compared in their order and
+        with the same hand; the farther one counts, so that both must fit.
 
         Returns
         -------
-        ``(3, S)`` by voter; infinite for references that hold no shape, another number of shapes,
-        or more hands than the query.
+        ``(3, M)`` by voter; infinite for demonstrations of another number of shapes, or of more
+        hands than the query has.
 
         """
-        nearest = np.full((len(HAND_VOTERS), self.count), np.inf)
-        scores = np.full(self.count, np.inf)
-        for number, group in self._described.items():
-            if len(shapes) != len(group.parts):
-                continue
-            members = group.members
-            for seen, allowed in ((shapes, True), (_mirror(shapes), self.mirrored[members])):
-                for arranged in _arrange(seen, number.hands):
-                    found, score = self._compare_parts(arranged, group)
-                    better = (score < scores[self.rows[members]]) & allowed
-                    rows = self.rows[members[better]]
-                    scores[rows], nearest[:, rows] = score[better], found[:, better]
+        nearest = np.full((len(HAND_VOTERS), len(self)), np.inf)
+        scores, every = np.full(len(self), np.inf), np.ones(len(self), dtype=bool)
+        for seen, allowed in ((shapes, every), (_mirror(shapes), self.mirrored)):
+            for hands in (1, 2):
+                rows = np.flatnonzero(allowed & (self._numbers == (len(shapes), hands)).all(axis=1))
+                for arranged in _arrange(seen, hands) if len(rows) else ():
+                    found, score = self._compare(arranged, rows)
+                    better = score < scores[rows]
+                    scores[rows[better]], nearest[:, rows[better]] = score[better], found[:, better]
         return nearest
 
-    def _compare_parts(self, shapes: HeldShapes, group: _Group) -> tuple[FloatArray, FloatArray]:
-        """Return the distances ``(3, M)`` and scores ``(M,)`` of the farther parts."""
-        found = [_compare(*part) for part in zip(shapes, group.parts, strict=True)]
-        scores = [score_hands(each) for each in found]
-        nearest, score = found[0], scores[0]
-        for other, farther in zip(found[1:], scores[1:], strict=True):
-            nearest = np.where(farther > score, other, nearest)
+    def _compare(
+        self, shapes: HeldShapes, rows: npt.NDArray[np.intp]
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return distances ``(3, m)`` and scores ``(m,)`` of the farther shape of m references."""
+        found, score = np.zeros((len(HAND_VOTERS), len(rows))), np.full(len(rows), -1.0)
+        for hands, described in zip(shapes, self._described, strict=False):
+            apart = [
+                _measure(hand, [each[rows] for each in of_hand])
+                for hand, of_hand in zip(hands, described, strict=False)
+            ]
+            part = apart[0] if len(apart) == 1 else np.mean(apart, axis=0)
+            farther = score_hands(part)
+            found = np.where(farther > score, part, found)
             score = np.maximum(farther, score)
-        return nearest, score
+        return found, score
 
     @cached_property
-    def _described(self) -> dict[_Number, _Group]:
-        """The references grouped by their numbers of shapes and hands."""
-        numbers = [_Number(len(each), len(each[0])) for each in self.shapes]
-        return {
-            number: _Group.of(
-                np.flatnonzero([each == number for each in numbers]), self.shapes, number
-            )
-            for number in sorted(set(numbers))
-        }
+    def _numbers(self) -> npt.NDArray[np.intp]:
+        """``(M, 2)``: numbers of shapes and of hands."""
+        return np.array([(len(each), len(each[0])) for each in self.shapes], dtype=np.intp)
 
+    @cached_property
+    def _described(self) -> list[list[list[FloatArray]]]:
+        """By shape, hand and voter the descriptors ``(M, D)``.
 
-class _Number(NamedTuple):
-    """The number of shapes that a reference holds in sequence, and the number of hands."""
+        The last hand and shape stand in for missing ones, which are never compared.
+        """
+        return [
+            [
+                [
+                    np.array([voter.describe(each[part][place]) for each in self._filled])
+                    for voter in HAND_VOTERS
+                ]
+                for place in range(2)
+            ]
+            for part in range(2)
+        ]
 
-    shapes: int
-    hands: int
+    @property
+    def _filled(self) -> list[HeldShapes]:
+        """The shapes, each filled up to two shapes of two hands with its last ones."""
+        filled = [[[*hands, hands[-1]][:2] for hands in each] for each in self.shapes]
+        return [[*each, each[-1]][:2] for each in filled]
 
 
 @dataclass(frozen=True, eq=False)
-class _Group:
-    """M references with the same numbers of shapes and hands.
+class MovingReferences:
+    """The shapes of the hands that carry a language's movements, of S demonstrations.
 
     Attributes
     ----------
-    members
-        ``(M,)``: their places in `HandReferences.shapes`.
-    parts
-        By shape and hand their descriptors.
+    shapes
+        Of each demonstration.
+    owners
+        ``(S,)``: index of each one's gesture in the language.
+    counting
+        ``(S,)``: whether the shape counts.
+    twins
+        Pairs of gestures, the first index the smaller, that are the same movement with two shapes
+        that both count.
 
     """
 
-    members: npt.NDArray[np.intp]
-    parts: list[list[Described]]
+    shapes: tuple[MovingShapes, ...]
+    owners: npt.NDArray[np.intp]
+    counting: npt.NDArray[np.bool_]
+    twins: frozenset[tuple[int, int]] = frozenset()
 
     @classmethod
     def of(
-        cls, members: npt.NDArray[np.intp], shapes: Sequence[HeldShapes], number: _Number
-    ) -> _Group:
-        chosen = [shapes[index] for index in members.tolist()]
-        return cls(
-            members,
-            [
-                [
-                    [
-                        np.array([voter.describe(each[part][hand]) for each in chosen])
-                        for voter in HAND_VOTERS
-                    ]
-                    for hand in range(number.hands)
-                ]
-                for part in range(number.shapes)
-            ],
-        )
+        cls, shown: Sequence[Gesture], owners: npt.NDArray[np.intp], movements: FloatArray
+    ) -> MovingReferences:
+        """Return the shapes of S demonstrations, and find which of them count.
+
+        Those count whose switch is on, and automatically those that distinguish twins: two gestures
+        of the same movement whose hand shapes differ clearly, also in the demonstrations that are
+        nearest to each other.
+
+        Parameters
+        ----------
+        shown
+            S gestures of one demonstration each.
+        owners
+            ``(S,)``: index of each one's gesture in the language.
+        movements
+            ``(S, S)``: scores of the demonstrations' movements; infinite where not comparable.
+
+        """
+        shapes = tuple(_find_shapes(each) for each in shown)
+        known = np.array([bool(each) for each in shapes], dtype=bool)
+        switches = np.array([each.switches.hand_shape for each in shown])
+        counting = known & (switches == "on")
+        if known.sum() < 2:
+            return cls(shapes, owners, counting)
+        apart = np.array([[measure_shapes(one, other) for other in shapes] for one in shapes])
+        twins = set()
+        for one, other in combinations(range(int(owners.max()) + 1), 2):
+            pair = np.ix_(owners == one, owners == other)
+            alike = min(movements[pair].min(), movements.T[pair].min()) < SAME_MOVEMENT
+            if alike and OTHER_SHAPE < apart[pair].min() < np.inf:
+                twins.add((one, other))
+        with_twin = np.isin(owners, [owner for pair in twins for owner in pair])
+        counting |= known & with_twin & (switches == "auto")
+        both = {pair for pair in twins if set(pair) <= set(owners[counting].tolist())}
+        return cls(shapes, owners, counting, frozenset(both))
+
+    @cached_property
+    def any_counts(self) -> bool:
+        """Whether any shape counts."""
+        return bool(self.counting.any())
+
+    def distances(self, hands: Sequence[HandShape], *, exchanged: bool) -> FloatArray:
+        """Compute the distances of a query's moving hands to all demonstrations.
+
+        Every hand that carries a demonstration's movement is compared with the query's hand of the
+        same side, and with its mirror image; a demonstration whose shape is not known is as far as
+        the nearest other one of its gesture.
+
+        Parameters
+        ----------
+        hands
+            Of the query.
+        exchanged
+            Whether the query's left and right are exchanged.
+
+        Returns
+        -------
+        ``(3, S)`` by voter; infinite where the shape does not count or is not known.
+
+        """
+        seen = {_other(hand.side) if exchanged else hand.side: hand for hand in hands}
+        found = np.full((len(HAND_VOTERS), len(self.shapes)), np.inf)
+        for index in np.flatnonzero(self.counting).tolist():
+            found[:, index] = compare_shapes(seen, self.shapes[index])
+        for owner in np.unique(self.owners[self.counting]):
+            rows = np.flatnonzero(self.owners == owner)
+            nearest = rows[int(found[:, rows].sum(axis=0).argmin())]
+            found[:, rows[~self.counting[rows]]] = found[:, [nearest]]
+        return found
 
 
 def weigh_hands(distances: FloatArray) -> FloatArray:
@@ -200,6 +284,78 @@ def weigh_hands(distances: FloatArray) -> FloatArray:
 def score_hands(distances: FloatArray) -> FloatArray:
     """Return the scores of hand voters' distances ``(3, ...)``: 1 for two shapes, typically."""
     return np.asarray(weigh_hands(distances).sum(axis=0))
+
+
+def measure_hand_novelty(distances: FloatArray) -> FloatArray:
+    """Return the novelties of hand voters' distances ``(3, ...)``; NaN where not comparable."""
+    score = score_hands(distances)
+    return np.where(np.isfinite(score), score / HAND_LIMIT, np.nan)
+
+
+def weigh_moving_hands(distances: FloatArray) -> FloatArray:
+    """Return what distances ``(3, M)`` add to the scores, by voter; 0 where not comparable.
+
+    The nearest shape adds nothing, so that a gesture whose shape counts is not farther than one
+    whose shape does not; the others add the distance by which they exceed it. A take whose shape
+    resembles none is rejected by its novelty.
+    """
+    known = np.isfinite(distances).all(axis=0)
+    if not known.any():
+        return np.zeros(distances.shape)
+    relative = weigh_hands(np.where(known, distances, 0.0))
+    whole = relative.sum(axis=0)
+    beyond = np.where(known, whole - whole[known].min(), 0.0)
+    return np.asarray(WEIGHT * relative * (beyond / np.maximum(whole, 1e-12)))
+
+
+def measure_shapes(seen: MovingShapes, shown: MovingShapes) -> float:
+    """Return the mean relative distance of the hand voters; infinite without a common side."""
+    return float(score_hands(compare_shapes(seen, shown)))
+
+
+def compare_shapes(seen: MovingShapes, shown: MovingShapes) -> FloatArray:
+    """Return the voters' mean distances over the hands of the same sides: ``(3,)``.
+
+    Of each hand and its mirror image, the palm or the back, the nearer one counts. Infinite without
+    a common side.
+    """
+    pairs = [
+        min(
+            (_measure_turned(each, shown[side]) for each in (seen[side], seen[side].mirror())),
+            key=lambda found: float(score_hands(found)),
+        )
+        for side in SIDES
+        if side in seen and side in shown
+    ]
+    return np.mean(pairs, axis=0) if pairs else np.full(len(HAND_VOTERS), np.inf)
+
+
+def _measure(hand: HandShape, described: Sequence[FloatArray]) -> FloatArray:
+    """Return the voters' distances of a hand to those of m demonstrations, ``(3, m)``."""
+    return np.array(
+        [
+            voter.distances(voter.describe(hand), others)
+            for voter, others in zip(HAND_VOTERS, described, strict=True)
+        ]
+    )
+
+
+def _measure_turned(seen: HandShape, shown: HandShape) -> FloatArray:
+    """Return the voters' distances ``(3,)`` of two moving hands."""
+    return np.concatenate(
+        [
+            voter.distances_turned(voter.describe(seen), voter.describe(shown)[None], MOST_TURNED)
+            for voter in HAND_VOTERS
+        ]
+    )
+
+
+def _find_shapes(gesture: Gesture) -> MovingShapes:
+    """Return the shapes of the hands that carry a gesture of one demonstration."""
+    if gesture.trajectory is None:
+        return {}
+    sides = list_moving_sides(gesture.salient)
+    return {hand.side: hand for hand in gesture.trajectory.moving_hands if hand.side in sides}
 
 
 def _mirror(shapes: HeldShapes) -> HeldShapes:
@@ -216,13 +372,5 @@ def _arrange(shapes: HeldShapes, count: int) -> list[HeldShapes]:
     return [[sorted(hands, key=lambda hand: SIDES.index(hand.side)) for hands in shapes]]
 
 
-def _compare(hands: Sequence[HandShape], described: Sequence[Described]) -> FloatArray:
-    """Return the voters' mean distances of some hands to those of M references, ``(3, M)``."""
-    apart = [
-        [
-            voter.distances(voter.describe(hand), others)
-            for voter, others in zip(HAND_VOTERS, each, strict=True)
-        ]
-        for hand, each in zip(hands, described, strict=True)
-    ]
-    return np.asarray(np.mean(apart, axis=0))
+def _other(side: Side) -> Side:
+    return SIDES[1 - SIDES.index(side)]

@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from functools import partial
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from app.recognition.decision.rejection import NOVELTIES
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.shape_references import ShapeReferences
+from app.recognition.features.trajectory_image import SIMPLIFICATION, draw
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.voters.registry import PAPER_VOTERS
+from app.recognition.voters.shape_voters import describe_drawing
 
 
 class MajorityVote:
@@ -42,17 +46,21 @@ class MajorityVote:
         self._factors = tuning.weights_of([voter.name for voter in PAPER_VOTERS])
         shown = [gesture.single_demonstrations() for gesture in gestures]
         self._first = np.cumsum([0, *map(len, shown[:-1])])
-        self._shapes = ShapeReferences([*chain(*shown)], tuning.simplification)
+        self._simplification = tuning.simplification
+        every = [*chain(*shown)]
+        if self._simplification != SIMPLIFICATION:
+            every = [gesture.redraw(self._simplification) for gesture in every]
+        self._count, self._drawings = len(every), _group_drawings(every)
 
     @property
     def landmarks(self) -> tuple[str, ...]:
         """The salient landmarks of all gestures, in alphabetical order."""
-        return self._shapes.needed
+        return self.needed
 
     @property
     def needed(self) -> tuple[str, ...]:
         """The same landmarks: a query must move one of them."""
-        return self._shapes.needed
+        return tuple(sorted({name for salient in self._drawings for name in salient}))
 
     @property
     def weights(self) -> Mapping[str, float]:
@@ -74,7 +82,7 @@ class MajorityVote:
 
         A gesture's distance is that of its nearest demonstration.
         """
-        of_all = self._shapes.distances(trajectory)
+        of_all = self._measure(trajectory)
         distances = np.minimum.reduceat(of_all, self._first, axis=1)
         relative = weigh_relative_distances(of_all, self._factors).sum(axis=0)
         count = len(self._labels)
@@ -91,6 +99,27 @@ class MajorityVote:
             ),
             views=np.zeros(count, dtype=np.intp),
         )
+
+    def _measure(self, query: Trajectory) -> FloatArray:
+        """Compute the distances ``(7, S)`` of a query to all demonstrations.
+
+        The query is drawn and described once per distinct set of salient landmarks. Infinite where
+        it lacks a salient landmark, or does not move it.
+        """
+        distances = np.full((len(PAPER_VOTERS), self._count), np.inf)
+        for salient, drawings in self._drawings.items():
+            if not set(salient) <= set(query.landmarks):
+                continue
+            described = query.compute_once(
+                ("drawing", salient, self._simplification),
+                partial(_describe, query, salient, self._simplification),
+            )
+            if described:
+                distances[:, drawings.members] = [
+                    voter.distances(described[voter.name], drawings.described[voter.name])
+                    for voter in PAPER_VOTERS
+                ]
+        return distances
 
     def decide(self, compared: ScoreTable) -> Recognition:
         """Return the gesture with most votes; see `count_votes`."""
@@ -165,3 +194,52 @@ def _margin(relative: FloatArray, winner: int) -> float:
     if relative[winner] >= nearest_other:
         return 0.0
     return 1.0 - float(relative[winner]) / nearest_other
+
+
+class _Drawings(NamedTuple):
+    """The demonstrations with the same salient landmarks, which share one drawing of the query.
+
+    Attributes
+    ----------
+    members
+        ``(M,)``: their indices.
+    described
+        Per voter ``(M, D)`` descriptors.
+
+    """
+
+    members: npt.NDArray[np.intp]
+    described: dict[str, FloatArray]
+
+
+def _group_drawings(shown: Sequence[Gesture]) -> dict[tuple[str, ...], _Drawings]:
+    """Group the demonstrations that can be compared by their salient landmarks."""
+    members: dict[tuple[str, ...], list[int]] = {}
+    for index, gesture in enumerate(shown):
+        if gesture.salient and gesture.image.any():
+            members.setdefault(gesture.salient, []).append(index)
+    return {
+        salient: _Drawings(np.array(indices), _stack([shown[index] for index in indices]))
+        for salient, indices in members.items()
+    }
+
+
+def _stack(shown: Sequence[Gesture]) -> dict[str, FloatArray]:
+    """Return the descriptors of M drawings, computing those that are not stored."""
+    described = []
+    for gesture in shown:
+        missing = [voter for voter in PAPER_VOTERS if voter.name not in gesture.descriptors]
+        described.append({**gesture.descriptors, **describe_drawing(gesture.drawing, missing)})
+    return {
+        voter.name: np.stack([each[voter.name] for each in described]) for voter in PAPER_VOTERS
+    }
+
+
+def _describe(
+    query: Trajectory, salient: tuple[str, ...], simplification: float
+) -> dict[str, FloatArray]:
+    """Draw and describe salient landmarks; empty where one of them is never seen."""
+    seen = query.select(salient)
+    if not np.isfinite(seen.xy).all(axis=2).any(axis=0).all():
+        return {}
+    return describe_drawing(draw(seen, simplification), PAPER_VOTERS)

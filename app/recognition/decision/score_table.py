@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from app.recognition.decision.result import Recognition
 from app.recognition.features.traversals import Traversal
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -95,3 +97,23 @@ class ScoreTable:
         NaN for all gestures in profile ``paper``.
         """
         return np.asarray(np.fmax.reduce(self.novelty_by_view, axis=0))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Trace:
+    """The query, score table and result of one recognition.
+
+    Attributes
+    ----------
+    query
+        The trajectory that the voters compared.
+    score_table
+        Its distances to every gesture.
+    result
+        The recognition.
+
+    """
+
+    query: Trajectory
+    score_table: ScoreTable
+    result: Recognition

@@ -7,14 +7,9 @@ never compared: the depth of a pose model is too noisy for that.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
-import numpy.typing as npt
 
-from app.recognition.decision.motion_references import MotionReferences
-from app.recognition.gestures.gesture import Gesture
+from app.recognition.decision.references import References
 
 STEP = 30
 """Degrees between views: DTW tolerates the up to 15 degrees from the nearest view; steps of 15
@@ -31,81 +26,30 @@ SIDEWAYS = 105
 """Degrees from which a diver counts as not turned: seen from behind, left and right are uncertain.
 """
 
-CACHED = 8
-"""Number of cached views of one language: a dive has a few, each of up to ten megabytes."""
 
-Turns = tuple[int, ...]
-"""Degrees by which each of S references is turned, multiples of `STEP`."""
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """The references of a language as seen when each is turned.
-
-    Attributes
-    ----------
-    turns
-        ``(S,)`` degrees by which each reference is turned, positive to the body's own left.
-    motions
-        The turned references.
-
-    """
-
-    turns: npt.NDArray[np.intp]
-    motions: MotionReferences
-
-
-class Views:
-    """The views of a language, made when first needed.
+def list_views(references: References, facing: float | None) -> list[References]:
+    """Return the references as seen in the views that a query is compared with.
 
     Parameters
     ----------
-    gestures
-        S gestures of one demonstration each.
-    motions
-        Their references as demonstrated.
+    references
+        As demonstrated.
+    facing
+        `Trajectory.facing` of the query. Where it is None but demonstrations have depth, all turns
+        are listed, because the diver may face any direction.
 
     """
-
-    def __init__(self, gestures: Sequence[Gesture], motions: MotionReferences) -> None:
-        self._gestures = tuple(gestures)
-        self._facings = tuple(
-            None if each.trajectory is None else each.trajectory.facing for each in gestures
-        )
-        self._as_shown = View(np.zeros(len(self._gestures), dtype=np.intp), motions)
-        self._made: dict[Turns, View] = {}
-
-    def list_for(self, facing: float | None) -> list[View]:
-        """Return the views that a query is compared with.
-
-        Parameters
-        ----------
-        facing
-            `Trajectory.facing` of the query. Where it is None but demonstrations have depth, all
-            turns are listed, because the diver may face any direction.
-
-        """
-        if all(each is None for each in self._facings):
-            return [self._as_shown]
-        if facing is not None:
-            rounded = PRECISION * round(facing / PRECISION)
-            return [self._view(tuple(choose_turn(rounded, each) for each in self._facings))]
-        return [
-            self._view(tuple(0 if each is None else turn for each in self._facings))
-            for turn in sorted(range(-FARTHEST, FARTHEST + 1, STEP), key=abs)
-        ]
-
-    def _view(self, turns: Turns) -> View:
-        if not any(turns):
-            return self._as_shown
-        if (made := self._made.get(turns)) is None:
-            made = View(
-                np.array(turns, dtype=np.intp), self._as_shown.motions.turn(self._gestures, turns)
-            )
-            # Replaced, never changed: several threads may recognise with one recogniser.
-            kept = list(self._made.items())[-(CACHED - 1) :]
-            self._made = dict([*kept, (turns, made)])
-        return made
+    trajectories = [each.trajectory for each in references.shown]
+    facings = [None if each is None else each.facing for each in trajectories]
+    if all(each is None for each in facings):
+        return [references]
+    if facing is not None:
+        rounded = PRECISION * round(facing / PRECISION)
+        return [references.turn([choose_turn(rounded, each) for each in facings])]
+    return [
+        references.turn([0 if each is None else turn for each in facings])
+        for turn in sorted(range(-FARTHEST, FARTHEST + 1, STEP), key=abs)
+    ]
 
 
 def choose_turn(query: float, reference: float | None) -> int:

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from app.recognition.decision.result import Recognition
-from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.trace import Trace
+from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Final, Literal
 
 import numpy as np
 
-from app.recognition.decision.motion_references import CLEARLY_SLOWER
+from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import read_all
 from app.recognition.explanation.context import KnownTake, RecognitionContext

@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.recognition.decision.hand_references import HeldShapes
-from app.recognition.decision.moving_shapes import OTHER_SHAPE, measure_shapes
+from app.recognition.decision.hand_references import OTHER_SHAPE, HeldShapes, measure_shapes
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray

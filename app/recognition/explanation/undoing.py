@@ -16,7 +16,7 @@ import numpy.typing as npt
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
-from app.recognition.decision.motion_references import SMALLER, MotionReferences
+from app.recognition.decision.references import SMALLER, References, describe_movement
 from app.recognition.features.motion import (
     SHARES,
     SIZE,
@@ -168,17 +168,11 @@ class Comparison:
 
     def _measure_all(self, query: Movement, shown: Sequence[Movement]) -> FloatArray:
         """Return the novelties ``(M,)`` of a movement for M others."""
-        described = [_describe(each) for each in shown]
-        references = MotionReferences(
-            self._landmarks,
-            np.arange(len(shown)),
-            (AS_SHOWN,) * len(shown),
-            {name: np.stack([each[name] for each in described]) for name in described[0]},
-        )
-        of_query = _describe(query)
-        near = references.find_nearest(of_query, self._weights, self._between, len(shown))
-        scores = fuse(near.distances, self._weights, self._between) * near.corrections
-        smallness = references.measure_smallness(of_query[SIZE], np.arange(len(shown)))
+        references = References.of_movements(shown, self._landmarks)
+        described = describe_movement(query)
+        scores = fuse(references.measure(described), self._weights, self._between)
+        scores *= references.correct(described[SHARES])
+        smallness = references.measure_smallness(described[SIZE])
         return np.asarray(scores * smallness / self._vote.limit, dtype=np.float64)
 
     def undo_all(self, raw: Trajectory) -> Iterator[Undone]:
@@ -299,11 +293,6 @@ def flip(movement: Movement, way: tuple[int, int]) -> Movement:
         limbs=movement.limbs * factors,
         places=mean + (movement.places - mean) * factors,
     )
-
-
-def _describe(movement: Movement) -> dict[str, FloatArray]:
-    described = {voter.name: voter.describe(movement) for voter in MOTION_VOTERS}
-    return described | {SHARES: movement.shares, SIZE: movement.size}
 
 
 def _count_steps(cut: tuple[float, float]) -> tuple[int, int]:

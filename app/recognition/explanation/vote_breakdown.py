@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.voters.registry import HAND_VOTERS, MOTION_VOTERS, PAPER_VOTERS
@@ -89,7 +87,7 @@ def break_down_votes(
                 wrong=voter in result.counted and vote != label,
                 distance=float(distances[expected]),
                 other_distance=math.inf if other is None else float(distances[other]),
-                share=float(np.nan_to_num(shares[expected] / whole, posinf=0.0)),
+                share=float(shares[expected]) / whole if math.isfinite(whole) else 0.0,
                 against=0.0 if math.isnan(against) else against,
             )
         )

@@ -125,7 +125,7 @@ class Movement:
         """``(2, 2 A)``: how much each coordinate of `places` moves, by its path and its extent.
 
         Both are unit vectors; 0 for landmarks that were not seen. They give the correction factor
-        of a score (`MotionReferences.correct`).
+        of a score (`References.correct`).
         """
         flat = self._flat_places
         moved = np.stack([np.abs(np.diff(flat, axis=0)).sum(axis=0), np.ptp(flat, axis=0)])

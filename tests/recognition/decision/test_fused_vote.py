@@ -15,7 +15,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-from app.recognition.decision.motion_references import MAX_GESTURES_TRAVERSED
+from app.recognition.decision.references import MAX_GESTURES_TRAVERSED
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.landmarks import other_side
 from app.recognition.poses.sequence import FloatArray

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.decision.hand_references import HandReferences, score_hands
+from app.recognition.decision.hand_references import HeldReferences, score_hands
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.hand_shape import HandShape, mirror_hands
@@ -19,8 +19,8 @@ GESTURES = [
 ]
 
 
-def references(gestures: list[Gesture]) -> HandReferences:
-    return HandReferences.of(gestures, np.arange(len(gestures)))
+def references(gestures: list[Gesture]) -> HeldReferences:
+    return HeldReferences.of(gestures, np.arange(len(gestures)))
 
 
 def held(gesture: Gesture) -> tuple[tuple[HandShape, ...], ...]:
