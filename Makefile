@@ -42,7 +42,7 @@ run: models  ## Set up if need be and open the app at http://127.0.0.1:8000
 	$(BIN)/osg-studio serve
 
 models: $(VENV)/.runtime  ## Obtain the pose and hand models once
-	$(BIN)/osg-studio models install
+	$(BIN)/python -m release.models
 
 # Style and types are checked in parallel with the tests, which leave the processor idle at times.
 test: $(VENV)/.development models  ## Check and test everything
@@ -120,7 +120,7 @@ docs: $(VENV)/.development  ## Build the documentation's site into build/site; d
 bench: $(VENV)/.development models  ## Print the benchmarks' ratios
 	$(BIN)/python -m benchmarks
 
-release: $(VENV)/.development  ## Build wheel and sdist twice from the last commit, into dist
+release: $(VENV)/.development models  ## Build wheel and sdist twice from the last commit, into dist
 	$(BIN)/python -m release
 
 languages: models  ## Rebuild the sample languages from their clips

@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from app.recognition.errors import ModelError
 from release.build import build_release
 from release.checkout import ROOT, ReleaseError
 
@@ -12,5 +13,5 @@ if __name__ == "__main__":
     try:
         for file in build_release(Path(sys.argv[1]) if sys.argv[1:] else ROOT / "dist"):
             print(f"{file.stat().st_size:>10,}  {file}")
-    except ReleaseError as error:
+    except (ReleaseError, ModelError) as error:
         sys.exit(f"release: {error}")

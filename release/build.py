@@ -11,7 +11,8 @@ import tempfile
 from pathlib import Path
 
 from app import __version__
-from app.recognition.models.catalogue import INSTALLED_FILES
+from app.recognition.models.catalogue import INSTALLED_FILES, PACKAGED_FILES, TASK_BUNDLES
+from app.recognition.models.storage import PACKAGED, verify_models
 from release.bill import FILE_NAME, build_bill
 from release.checkout import ROOT, ReleaseError, commit_seconds, export_commit
 from release.licences import Licensed, list_licences
@@ -23,14 +24,16 @@ def build_release(target: Path) -> list[Path]:
 
     Returns
     -------
-    The files of the release: wheel, source distribution, bill of materials, licences, notes, and
-    the checksums of these and of the models.
+    The files of the release: wheel, source distribution, bill of materials, licences, notes, the
+    bundles of models for MediaPipe's own library, and the checksums of these and of the models.
 
     Raises
     ------
     ReleaseError
         When there is no checkout, the changelog lacks the version, a build fails, or two builds
         differ.
+    ModelError
+        When the checkout lacks a model file.
 
     """
     notes = read_notes((ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), __version__)
@@ -48,6 +51,8 @@ def build_release(target: Path) -> list[Path]:
             if built.read_bytes() != (second / "dist" / built.name).read_bytes():
                 raise ReleaseError(f"two builds of {built.name} differ; find out what does")
             shutil.copyfile(built, target / built.name)
+    for bundle in TASK_BUNDLES.values():
+        shutil.copyfile(verify_models(bundle, PACKAGED), target / bundle.filename)
     (target / FILE_NAME).write_text(bill, encoding="utf-8")
     (target / "licences.txt").write_text(_format_licences(packages), encoding="utf-8")
     (target / "notes.md").write_text(notes, encoding="utf-8")
@@ -64,6 +69,10 @@ def _build_once(place: Path, bill: str, seconds: int) -> None:
     place.mkdir(parents=True)
     export_commit(place)
     (place / "release" / FILE_NAME).write_text(bill, encoding="utf-8")
+    models = place / PACKAGED.relative_to(ROOT)
+    models.mkdir()
+    for file in PACKAGED_FILES:
+        shutil.copyfile(verify_models(file, PACKAGED), models / file.filename)
     finished = subprocess.run(
         [sys.executable, "-m", "hatchling", "build", "--directory", "dist"],
         cwd=place,

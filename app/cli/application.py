@@ -373,10 +373,10 @@ def list_models() -> None:
 @models_command.command("install")
 def install_models_command(
     source: Annotated[
-        Path | None, typer.Option(help="Exported folder or wheel to install from, without network.")
+        Path | None, typer.Option(help="Folder to copy from: exported, or that of a release.")
     ] = None,
 ) -> None:
-    """Install the models from MediaPipe's wheel with pip, once; afterwards no network is needed."""
+    """Copy model files that are missing or damaged to the models folder; a wheel has them."""
     from app.recognition.models import install_models, models_dir
 
     with progress_bar("models") as advance:

@@ -9,7 +9,7 @@ pytest.importorskip("cyclonedx", reason="needs cyclonedx-python-lib")
 from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
-from app.recognition.models.catalogue import INSTALLED_FILES
+from app.recognition.models.catalogue import PACKAGED_FILES
 from release.bill import build_bill
 from release.licences import list_licences
 
@@ -22,10 +22,10 @@ def test_it_names_every_package_and_model_and_is_valid() -> None:
     assert JsonStrictValidator(SchemaVersion.V1_6).validate_str(text) is None
     bill = json.loads(text)
     named = {each["name"] for each in bill["components"]}
-    assert named == {each.name for each in packages} | {file.filename for file in INSTALLED_FILES}
+    assert named == {each.name for each in packages} | {file.filename for file in PACKAGED_FILES}
     models = [each for each in bill["components"] if each["type"] == "machine-learning-model"]
     assert {each["hashes"][0]["content"] for each in models} == {
-        file.sha256 for file in INSTALLED_FILES
+        file.sha256 for file in PACKAGED_FILES
     }
     assert all(each["licenses"] for each in bill["components"])
 

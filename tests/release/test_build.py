@@ -14,7 +14,7 @@ import pytest
 
 pytest.importorskip("cyclonedx", reason="needs cyclonedx-python-lib")
 
-from app.recognition.models.catalogue import INSTALLED_FILES
+from app.recognition.models.catalogue import INSTALLED_FILES, PACKAGED_FILES
 from release.build import build_release
 from release.checkout import ReleaseError, run_git
 from tests.conftest import ROOT
@@ -55,6 +55,14 @@ def test_a_release_is_complete_and_its_checksums_are_right(release: Path) -> Non
     assert models == [f"{file.sha256}  {file.filename}" for file in INSTALLED_FILES]
 
 
+def test_the_wheel_carries_the_models_with_their_licence(wheel: Path) -> None:
+    archive = zipfile.ZipFile(wheel)
+    for file in PACKAGED_FILES:
+        content = archive.read(f"app/recognition/models/files/{file.filename}")
+        assert hashlib.sha256(content).hexdigest() == file.sha256
+    assert not [name for name in archive.namelist() if name.endswith(".task")]
+
+
 def test_the_bill_of_materials_is_in_the_wheel(release: Path, wheel: Path) -> None:
     archive = zipfile.ZipFile(wheel)
     (name,) = [name for name in archive.namelist() if "/sboms/" in name]
@@ -71,7 +79,6 @@ def test_the_documented_commands_lead_from_the_wheel_alone_to_a_recognised_clip(
     kept = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     environment = kept | {
         "PATH": f"{home / 'env' / 'bin'}{os.pathsep}{kept.get('PATH', '')}",
-        "OSG_MODELS_DIR": str(home / "models"),
         "PIP_NO_COMPILE": "1",  # most of what is installed is never imported here
     }
     page = (ROOT / "docs" / "robots" / "without-ros.md").read_text(encoding="utf-8")

@@ -1,8 +1,7 @@
-"""Model files: MediaPipe's pose and hand models, downloaded once, converted and verified.
+"""Model files: MediaPipe's pose and hand models, converted to ONNX, part of every release.
 
-The models are Google's (Apache-2.0) and part of MediaPipe's wheel. `install_models` downloads that
-wheel with pip, checks it against its pinned SHA-256, converts the models to ONNX and stores them
-in `models_dir`; `model_path` returns a verified file or raises an error that names the remedy.
+`model_path` returns a file of `models_dir` whose content is verified, or raises an error that names
+the remedy. In a checkout, ``make models`` obtains them (`release.models`).
 """
 
 from app.recognition.models.catalogue import ModelName, TaskBundleName

@@ -11,12 +11,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Final, Literal
 
-import platformdirs
-
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
     INSTALLED_FILES,
     MODELS,
+    PACKAGED_FILES,
     TASK_BUNDLES,
     InstalledFile,
     ModelName,
@@ -29,6 +28,9 @@ State = Literal["ok", "missing", "damaged"]
 
 DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 """Environment variable that names another models folder."""
+
+PACKAGED: Final = Path(__file__).parent / "files"
+"""The package's own folder: a wheel has the models there, a checkout after `make models`."""
 
 
 @dataclass(frozen=True)
@@ -55,11 +57,9 @@ class InstalledModel:
 
 
 def models_dir() -> Path:
-    """Return the models folder: ``OSG_MODELS_DIR``, or one in the user's data folder."""
+    """Return the models folder: ``OSG_MODELS_DIR``, or the package's own."""
     chosen = os.environ.get(DIRECTORY_VARIABLE)
-    if chosen:
-        return Path(chosen).expanduser()
-    return platformdirs.user_data_path("osg-studio", appauthor=False) / "models"
+    return Path(chosen).expanduser() if chosen else PACKAGED
 
 
 def model_path(name: ModelName, directory: Path | None = None) -> Path:
@@ -99,12 +99,16 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
 
 
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
-    """Return every file of an installation with its state; damaged files raise no error."""
+    """Return every file of a models folder with its state; damaged files raise no error.
+
+    The bundles, which few need, are listed where they are present.
+    """
     directory = directory or models_dir()
     return tuple(
         InstalledModel(file.name, path, _size(path), file_state(file, directory))
         for file in INSTALLED_FILES
         for path in [directory / file.filename]
+        if file in PACKAGED_FILES or path.exists()
     )
 
 

@@ -1,49 +1,22 @@
-"""Installing: once by pip, from the wheel as a file, or from an exported folder without network."""
+"""Installing: model files are copied from the package, an exported folder or a release."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from app.recognition.errors import ModelError
-from app.recognition.models import export_models, install_models, installed_models
-
-ROBOT = """
-import sys
-for library in ("onnx", "flatbuffers"):
-    sys.modules[library] = None  # importing it fails, as where it is not installed
-from pathlib import Path
-from app.recognition.errors import ModelError
-from app.recognition.models import install_models, model_path
-try:
-    install_models(source=Path(sys.argv[1]))
-    print(model_path("pose_detection"))
-except ModelError as error:
-    print(error)
-"""
-"""A robot's program: it installs from an argument, without the converter's libraries."""
+from app.recognition.models import export_models, install_models, installed_models, model_path
 
 
 def states(directory: Path) -> set[str]:
     return {one.state for one in installed_models(directory)}
 
 
-def output_of_robot(source: Path) -> str:
-    finished = subprocess.run(
-        [sys.executable, "-c", ROBOT, str(source)], capture_output=True, text=True, check=False
-    )
-    assert finished.stderr == ""
-    return finished.stdout.strip()
-
-
 def contents(directory: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in directory.iterdir()}
 
 
-def test_what_was_exported_installs_again_without_network(
-    exported: Path, tmp_path: Path, pip_offline: Path
-) -> None:
+def test_what_was_exported_installs_again_without_network(exported: Path, tmp_path: Path) -> None:
     install_models(directory=tmp_path / "robot", source=exported)
     assert states(tmp_path / "robot") == {"ok"}
     assert contents(tmp_path / "robot") == contents(exported)
@@ -53,27 +26,32 @@ def test_the_licence_goes_with_the_models(exported: Path) -> None:
     assert "Apache License" in (exported / "LICENSE.mediapipe.txt").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
-def test_a_robot_installs_an_export_without_the_converters_libraries(
-    exported: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path))
-    assert output_of_robot(exported) == str(tmp_path / "pose_detection.onnx")
-
-
-@pytest.mark.slow
-def test_converting_without_the_libraries_says_which_is_missing(
+def test_without_a_source_the_packages_own_models_are_copied(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path))
-    message = output_of_robot(tmp_path / "mediapipe.whl")
-    assert "converting the models needs onnx, which is not installed; run `pip install" in message
-    assert "osg-studio models install --source DIR" in message
+    monkeypatch.setenv("OSG_MODELS_DIR", str(tmp_path / "robot"))
+    install_models()
+    assert states(tmp_path / "robot") == {"ok"}
+    assert model_path("pose_detection") == tmp_path / "robot" / "pose_detection.onnx"
 
 
-def test_a_complete_installation_needs_neither_network_nor_source(
-    models: Path, pip_offline: Path
+def test_a_checkout_without_models_says_how_to_obtain_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr("app.recognition.models.installation.PACKAGED", tmp_path)
+    with pytest.raises(ModelError, match=r"cannot read .*pose_detection\.onnx.*`make models`"):
+        install_models(directory=tmp_path / "robot")
+
+
+def test_the_bundles_are_copied_from_where_they_are(models: Path, tmp_path: Path) -> None:
+    (models / "hand_landmarker.task").unlink()
+    install_models(directory=tmp_path / "robot", source=models)
+    assert not (tmp_path / "robot" / "hand_landmarker.task").exists()
+    assert (tmp_path / "robot" / "pose_landmarker_full.task").exists()
+    assert states(tmp_path / "robot") == {"ok"}
+
+
+def test_a_complete_folder_is_left_as_it_is(models: Path) -> None:
     before = {path: path.stat().st_mtime_ns for path in models.iterdir()}
     install_models()
     assert {path: path.stat().st_mtime_ns for path in models.iterdir()} == before
@@ -132,21 +110,13 @@ def test_an_incomplete_export_names_the_missing_file(models: Path, tmp_path: Pat
 
 
 def test_a_source_that_does_not_exist_says_what_a_source_is(tmp_path: Path) -> None:
-    with pytest.raises(ModelError, match=r"nowhere: No such file.*models export DIR.*the wheel of"):
+    with pytest.raises(ModelError, match=r"nowhere is no folder: .*models export DIR"):
         install_models(directory=tmp_path / "robot", source=tmp_path / "nowhere")
 
 
-def test_another_file_in_the_wheels_place_is_refused_unopened(tmp_path: Path) -> None:
-    fake = tmp_path / "mediapipe-0.10.21-cp312-cp312-manylinux_2_28_x86_64.whl"
-    fake.write_bytes(b"PK not the wheel")
-    with pytest.raises(ModelError, match=r"not the pinned wheel of mediapipe==0\.10\.21.*SHA-256"):
-        install_models(directory=tmp_path / "robot", source=fake)
-    assert not (tmp_path / "robot").exists()
-
-
 def test_a_damaged_installation_is_not_exported(models: Path, tmp_path: Path) -> None:
-    (models / "hand_landmarker.task").unlink()
-    with pytest.raises(ModelError, match=r"hand_landmarker\.task is missing; run"):
+    (models / "pose_detection.onnx").unlink()
+    with pytest.raises(ModelError, match=r"pose_detection\.onnx is missing; run"):
         export_models(tmp_path / "usb")
     assert not (tmp_path / "usb").exists()
 
@@ -155,11 +125,3 @@ def test_exporting_to_where_a_file_lies_says_so(models: Path, tmp_path: Path) ->
     (tmp_path / "usb").write_text("a file")
     with pytest.raises(ModelError, match=r"cannot write .*usb.*choose another folder"):
         export_models(tmp_path / "usb")
-
-
-@pytest.mark.slow
-def test_the_wheel_as_a_file_gives_the_same_installation(
-    wheel: Path, exported: Path, tmp_path: Path, pip_offline: Path
-) -> None:
-    install_models(directory=tmp_path / "robot", source=wheel)
-    assert contents(tmp_path / "robot") == contents(exported)

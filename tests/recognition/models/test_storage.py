@@ -15,7 +15,7 @@ from app.recognition.models import (
     models_dir,
     task_bundle_path,
 )
-from app.recognition.models.storage import write_file
+from app.recognition.models.storage import PACKAGED, write_file
 
 NAMES: tuple[ModelName, ...] = get_args(ModelName)
 BUNDLES: tuple[TaskBundleName, ...] = get_args(TaskBundleName)
@@ -46,14 +46,9 @@ def test_the_folder_is_the_one_the_environment_names(
     assert models_dir() == tmp_path
 
 
-def test_the_folder_is_in_the_users_data_folder_by_default(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_the_folder_is_the_packages_own_by_default(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("OSG_MODELS_DIR", raising=False)
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
-    monkeypatch.setenv("HOME", str(tmp_path))
-    assert models_dir().is_relative_to(tmp_path)
-    assert models_dir().parts[-2:] == ("osg-studio", "models")
+    assert models_dir() == PACKAGED
 
 
 def test_a_missing_model_is_named_with_the_mending_command(models: Path) -> None:

@@ -15,8 +15,8 @@ from typing import Any, Final
 
 import flatbuffers  # type: ignore[import-untyped]
 
-from app.recognition.models.conversion.schemas import Schemas
-from app.recognition.models.conversion.tflite import FILE_IDENTIFIER
+from release.models.schemas import Schemas
+from release.models.tflite import FILE_IDENTIFIER
 
 METADATA_BUFFER: Final = b"TFLITE_METADATA"
 """Buffer name of a model's description in TensorFlow Lite's tools."""

@@ -11,9 +11,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.models import TaskBundleName, task_bundle_path
-from app.recognition.models.catalogue import BUNDLE_PARTS
-from app.recognition.models.conversion import Schemas, task_bundle
-from app.recognition.models.conversion.task_bundle import described
+from release.models.schemas import Schemas
+from release.models.sources import BUNDLE_PARTS
+from release.models.task_bundle import described, task_bundle
 
 from .one_operator import OneOperator, tflite_bytes
 from .runtimes import run_tflite
@@ -31,7 +31,6 @@ def small_model(channels: int, schemas: Schemas) -> bytes:
     return tflite_bytes(OneOperator("PRELU", None, shape, [slope], shape), schemas.model)
 
 
-@pytest.mark.usefixtures("installed_models_dir")
 @pytest.mark.parametrize("name", get_args(TaskBundleName))
 def test_an_installed_bundle_holds_its_parts_where_they_can_be_mapped(name: TaskBundleName) -> None:
     content = task_bundle_path(name).read_bytes()
@@ -42,7 +41,6 @@ def test_an_installed_bundle_holds_its_parts_where_they_can_be_mapped(name: Task
             assert data_offset(content, entry) % 64 == 0
 
 
-@pytest.mark.usefixtures("installed_models_dir")
 @pytest.mark.parametrize("name", get_args(TaskBundleName))
 def test_every_model_of_an_installed_bundle_is_described(
     schemas: Schemas, name: TaskBundleName

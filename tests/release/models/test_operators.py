@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.errors import ModelError
-from app.recognition.models.conversion import Schemas, to_onnx
+from release.models.onnx_model import to_onnx
+from release.models.schemas import Schemas
 
 from .one_operator import OneOperator, tflite_bytes
 from .runtimes import run_onnx, run_tflite

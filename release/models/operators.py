@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import ModelError
-from app.recognition.models.conversion.graph import GraphBuilder
-from app.recognition.models.conversion.tflite import Operator
+from release.models.graph import GraphBuilder
+from release.models.tflite import Operator
 
 _VALID_PADDING: Final = 1
 """``Padding.VALID``: no border. The other value, SAME, adds one so that stride alone shrinks."""

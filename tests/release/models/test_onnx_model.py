@@ -10,9 +10,10 @@ import onnx
 import pytest
 
 from app.recognition.models import ModelName, TaskBundleName, model_path, task_bundle_path
-from app.recognition.models.catalogue import BUNDLE_PARTS, UNUSED_OUTPUTS
-from app.recognition.models.conversion import Schemas, to_onnx
 from app.recognition.recording.video import read_frames
+from release.models.onnx_model import to_onnx
+from release.models.schemas import Schemas
+from release.models.sources import BUNDLE_PARTS, UNUSED_OUTPUTS
 
 from .one_operator import OneOperator, tflite_bytes
 from .runtimes import FloatTensor, run_onnx, run_tflite
@@ -62,7 +63,6 @@ def assert_equal(converted: Mapping[str, FloatTensor], original: Mapping[str, Fl
         np.testing.assert_allclose(converted[name], expected, rtol=0, atol=allowed, err_msg=name)
 
 
-@pytest.mark.usefixtures("installed_models_dir")
 @pytest.mark.parametrize("name", get_args(ModelName))
 def test_noise_gives_the_same_numbers(name: ModelName) -> None:
     side = side_of(name)
@@ -70,7 +70,6 @@ def test_noise_gives_the_same_numbers(name: ModelName) -> None:
     assert_equal(run_onnx(model_path(name).read_bytes(), noise), original_results(name, noise))
 
 
-@pytest.mark.usefixtures("installed_models_dir")
 @pytest.mark.parametrize("name", get_args(ModelName))
 def test_a_diver_gives_the_same_numbers(shared_data: Path, name: ModelName) -> None:
     side = side_of(name)
@@ -81,7 +80,6 @@ def test_a_diver_gives_the_same_numbers(shared_data: Path, name: ModelName) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("installed_models_dir")
 def test_the_persons_mask_is_left_out_with_all_that_only_it_needs(schemas: Schemas) -> None:
     original = tflite_of("pose_landmark_full")
     whole = onnx.load_from_string(to_onnx(original, schemas.model, "credit"))
@@ -93,7 +91,6 @@ def test_the_persons_mask_is_left_out_with_all_that_only_it_needs(schemas: Schem
     assert len(reduced.graph.initializer) < len(whole.graph.initializer)
 
 
-@pytest.mark.usefixtures("installed_models_dir")
 @pytest.mark.parametrize("name", get_args(ModelName))
 def test_a_converted_model_says_where_it_comes_from(name: ModelName) -> None:
     described = onnx.load(model_path(name)).doc_string

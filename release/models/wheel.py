@@ -8,13 +8,10 @@ from pathlib import Path
 from typing import Final
 
 from app.recognition.errors import ModelError
-from app.recognition.models.catalogue import WHEEL
 from app.recognition.text.hashing import hash_file
+from release.models.sources import WHEEL
 
-OFFLINE_WAY: Final = (
-    "or, without network, run `osg-studio models export DIR` where the models are installed and "
-    "`osg-studio models install --source DIR` here"
-)
+OFFLINE_WAY: Final = "or copy app/recognition/models/files from a checkout that has the models"
 """Remedy in messages where the wheel cannot be downloaded."""
 
 
@@ -93,8 +90,7 @@ def check_wheel(path: Path) -> None:
         found = hash_file(path)
     except OSError as error:
         raise ModelError(
-            f"cannot read {path}: {error.strerror}; give a folder made by "
-            f"`osg-studio models export DIR`, or the wheel of {WHEEL.requirement}"
+            f"cannot read {path}: {error.strerror}; give the wheel of {WHEEL.requirement}"
         ) from error
     if found != WHEEL.sha256:
         raise ModelError(

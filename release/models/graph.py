@@ -10,7 +10,7 @@ import numpy.typing as npt
 from onnx import NodeProto, TensorProto, helper, numpy_helper
 
 from app.recognition.errors import ModelError
-from app.recognition.models.conversion.tflite import TfliteModel
+from release.models.tflite import TfliteModel
 
 Layout = Literal["stored", "channels_first"]
 """Order of a value's axes: as in the TensorFlow Lite file, or batch, channels, height, width."""

@@ -9,9 +9,9 @@ from typing import Final
 import onnx
 from onnx import NodeProto, TensorProto, ValueInfoProto, helper
 
-from app.recognition.models.conversion.graph import GraphBuilder
-from app.recognition.models.conversion.operators import convert_operator
-from app.recognition.models.conversion.tflite import TfliteModel, read_tflite
+from release.models.graph import GraphBuilder
+from release.models.operators import convert_operator
+from release.models.tflite import TfliteModel, read_tflite
 
 OPERATOR_SET: Final = 13
 """The oldest ONNX operator set with all that is needed: any ONNX Runtime since 1.8 runs it,

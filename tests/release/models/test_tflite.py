@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 from app.recognition.errors import ModelError
-from app.recognition.models.conversion import Schemas
-from app.recognition.models.conversion.tflite import read_tflite
+from release.models.schemas import Schemas
+from release.models.tflite import read_tflite
 
 from .one_operator import OneOperator, tflite_bytes
 

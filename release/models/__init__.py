@@ -1,0 +1,1 @@
+"""Models of a release: MediaPipe's, taken from its wheel and converted to ONNX."""
