@@ -23,14 +23,9 @@ for module in pkgutil.walk_packages(app.recognition.__path__, "app.recognition."
 
 WANTED_BY_OPTIONS = {
     "app.robot.publishing.dds",
-    "app.robot.energy",
-    "app.robot.stage_profile",
-    "app.cli.robots.stages",
-    "app.cli.robots.ros2_topics",
-    "app.cli.robots.vehicle",
     "app.robot.mavlink",
 }
-"""Modules that `osg-studio robot` needs only where it is asked to publish, profile or command."""
+"""Modules that `osg-studio robot` needs only where it is asked to publish or command."""
 
 SHOW_THE_HELP = """
 import app.cli.application

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated
+from textwrap import wrap
+from typing import Annotated, Final
 
 import typer
 
-from app.cli.check_report import format_report
 from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
+from app.recognition.health.forecast import Outcome
+from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
 from app.resources import known_signs_file
 
 HAS_ERRORS = 1
@@ -39,3 +42,98 @@ def check(
         typer.echo(format_report(report), nl=False)
     if not report.ok:
         raise typer.Exit(HAS_ERRORS)
+
+
+OTHERWISE: Final[Mapping[Outcome, str]] = {
+    "asked": "asked back with the right one",
+    "refused": "refused",
+    "wrong": "read as another",
+}
+"""Outcomes that are not right, in words."""
+
+WIDTH: Final = 100
+"""Most characters of a line, where they can be chosen."""
+
+COUNTING: Final = ("direction", "tempo", "hand_shape")
+"""Properties that may count beside the figure, as in the answer's `counts`."""
+
+
+def format_report(report: HealthReport) -> str:
+    """Format the report as text with a trailing line break."""
+    lines = [
+        *_format_head(report),
+        *_format_trigger(report),
+        *_format_limit(report.limit),
+        *_format_gestures(report),
+        *_format_findings(report),
+    ]
+    return "\n".join([*lines, ""])
+
+
+def _format_head(report: HealthReport) -> Iterator[str]:
+    errors = sum(finding.below_bar for finding in report.findings)
+    counted = "1 error" if errors == 1 else f"{errors} errors"
+    result = "no errors" if report.ok else f"NOT READY, {counted}"
+    yield f"{report.language}, revision {report.revision}: {result}"
+    yield from wrap(report.forecast.words, WIDTH)
+    counts = {words: report.forecast.count(outcome) for outcome, words in OTHERWISE.items()}
+    if any(rate is not None for rate in counts.values()):
+        yield ", ".join(f"{words} {rate}" for words, rate in counts.items())
+
+
+def _format_trigger(report: HealthReport) -> Iterator[str]:
+    if (trigger := report.trigger) is not None:
+        yield f"takes lie {trigger.words}"
+        yield (
+            f"trigger: missed of {trigger.missed} simulated people, set off "
+            f"{trigger.false_per_hour:.0f} times in an hour of moving arms"
+        )
+
+
+def _format_limit(limit: LimitHealth | None) -> Iterator[str]:
+    if limit is None:
+        return
+    if limit.people == 1:
+        yield "limit: a cautious constant, because one person has shown this language"
+        return
+    dial = f"dial {100 * limit.most_refused:.3g}%" if limit.measured else "a cautious constant"
+    costs = ["-" if rate is None else str(rate) for rate in (limit.refused, limit.accepted)]
+    yield (
+        f"limit of {limit.people} people, {dial}: refuses {costs[0]} of right takes, "
+        f"accepts {costs[1]} of missing gestures"
+    )
+
+
+def _format_gestures(report: HealthReport) -> Iterator[str]:
+    if not report.gestures:
+        return
+    yield ""
+    head = ("gesture", "read right", "nearest", "counts", "seconds", "depends on (visible)")
+    rows = [_format_gesture(report, gesture) for gesture in report.gestures]
+    yield from _align([head, *rows])
+
+
+def _format_gesture(report: HealthReport, gesture: GestureHealth) -> tuple[str, ...]:
+    right = report.forecast.count("right", gesture.label)
+    near, counts = gesture.nearest, vars(gesture.counts) if gesture.counts else {}
+    return (
+        gesture.label,
+        "-" if right is None else f"{right.happened} of {right.n}",
+        "-" if near is None else f"{near[0]} {near[1]:.2f}",
+        ", ".join(name.replace("_", " ") for name in COUNTING if counts.get(name)) or "-",
+        "-" if gesture.seconds is None else f"{gesture.seconds:.1f}",
+        ", ".join(f"{each.landmark} ({each.visible:.0%})" for each in gesture.landmarks),
+    )
+
+
+def _format_findings(report: HealthReport) -> Iterator[str]:
+    for finding in report.findings:
+        yield ""
+        yield f"{'ERROR' if finding.below_bar else 'note'}: {finding.message}"
+
+
+def _align(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    for row in rows:
+        cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+        yield "  ".join(cells).rstrip()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -15,22 +14,12 @@ from app.bags import bag_and_topic
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import ClipSource, ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
-from app.recognition import (
-    Gesture,
-    Language,
-    Recognition,
-    Recognizer,
-    Recording,
-    Take,
-    takes_in,
-)
+from app.recognition import Language, Recognition, Recognizer, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
 from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.explanation.demonstration_faults import find_demonstration_faults
 from app.recognition.language.requirements import require_landmarks
-from app.recognition.poses.hand_shape import HandShape
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -178,100 +167,6 @@ class ReadClip:
         return [take_by_hand(self.recording, (float(poses.time[0]), float(poses.time[-1])))]
 
 
-@dataclass(frozen=True)
-class Demonstration:
-    """One clip of ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line.
-
-    Attributes
-    ----------
-    label
-        The gesture's label.
-    clip
-        The clip's file.
-    span
-        First and last second of the stroke when the user gives them, else None.
-
-    """
-
-    label: str
-    clip: Path
-    span: tuple[float, float] | None = None
-
-
-def parse_demonstrations(text: str) -> list[Demonstration]:
-    """Parse ``LABEL=CLIP[,CLIP...]``; an existing file whose name has commas is taken as it is.
-
-    Raises
-    ------
-    GestureError
-        When it is not of that form.
-
-    """
-    label, equals, rest = (part.strip() for part in text.partition("="))
-    whole = bag_and_topic(str(clip_and_span(rest)[0]))[0].exists()
-    clips = [rest] if whole else [clip.strip() for clip in rest.split(",")]
-    if not equals or not label or not all(clips):
-        raise GestureError(
-            f"{text!r} is not LABEL=CLIP[,CLIP...]: name the gesture and its clips, as in "
-            "circle=dive.mp4 or circle=ana.mp4,ben.mp4"
-        )
-    return [Demonstration(label, *clip_and_span(clip)) for clip in clips]
-
-
-def define_gesture(
-    demonstrations: Sequence[Demonstration],
-    reading: ClipReading,
-    *,
-    diver: str = "",
-    gesture: Gesture | None = None,
-) -> Gesture:
-    """Create a gesture from clips, or add them to a `gesture`, and print what each one shows.
-
-    Raises
-    ------
-    GestureError
-        When a clip does not hold exactly one closed take, or there are too many.
-
-    """
-    for shown in demonstrations:
-        take, recording = demonstration_take(shown, reading)
-        poses, trigger = take.poses, reading.trigger
-        where = (take.stroke_start, take.stroke_end)
-        faults = find_demonstration_faults(recording, *where, trigger=trigger)
-        if gesture is None:
-            gesture = Gesture.from_demonstration(shown.label, poses, diver=diver)
-        else:
-            gesture = gesture.with_demonstration(poses, diver)
-        shown_last = gesture.single_demonstrations()[-1]
-        people.print(
-            f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
-            f"{describe_shown(shown_last)}",
-            markup=False,
-        )
-        for fault in faults:
-            people.print(fault.describe(gesture.label), f"It {fault.words}.", markup=False)
-    assert gesture is not None  # an argument names one clip at least
-    return gesture
-
-
-def describe_shown(gesture: Gesture) -> str:
-    """Return the landmarks and hand shapes of a gesture with one demonstration, in words."""
-    followed = f"salient: {', '.join(gesture.salient)}"
-    if gesture.trajectory is None:
-        return followed
-    if gesture.is_held:
-        several = len(gesture.held_shapes) > 1
-        shown = f"held hand shape{'s' * several}: {_name_sides(gesture.trajectory.hands)} hand"
-        return f"{shown}, two in sequence" if several else shown
-    if not gesture.trajectory.moving_hands:
-        return followed
-    return f"{followed}; hand shape seen: {_name_sides(gesture.trajectory.moving_hands)} hand"
-
-
-def _name_sides(hands: Sequence[HandShape]) -> str:
-    return " and ".join(hand.side for hand in hands)
-
-
 def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
     """Split ``CLIP@START-END`` (seconds); an existing file of that name is taken as it is."""
     number = r"\d+(?:\.\d+)?"
@@ -279,31 +174,6 @@ def clip_and_span(text: str) -> tuple[Path, tuple[float, float] | None]:
     if match is None or Path(text).exists():
         return Path(text), None
     return Path(match[1]), (float(match[2]), float(match[3]))
-
-
-def demonstration_take(
-    demonstration: Demonstration, reading: ClipReading | None = None
-) -> tuple[Take, Recording]:
-    """Return the only closed take of a clip, or the range given by hand, and the recording.
-
-    Raises
-    ------
-    GestureError
-        When the clip does not hold exactly one closed take and no range is given.
-
-    """
-    clip = demonstration.clip
-    read = read_clip(clip, reading)
-    takes = read.takes(demonstration.span)
-    closed = [take for take in takes if take.closed]
-    if len(closed) != 1:
-        found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
-        trigger = SALUTE if reading is None else reading.trigger
-        raise GestureError(
-            f"{clip} holds {found}, a demonstration needs one closed take {trigger.words}; "
-            f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
-        )
-    return closed[0], read.recording
 
 
 def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
@@ -332,39 +202,6 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
         stroke_end=end,
         untrimmed=poses,
     )
-
-
-def spot_takes(
-    spotter: Spotter, recording: Recording, span: tuple[float, float] | None
-) -> list[tuple[Take, Recognition]]:
-    """Find the gestures in a recording, or in a range of it, without salutes around them."""
-    poses = recording.poses.between(*span) if span else recording.poses
-    return [
-        (take_by_hand(recording, (found.start, found.end)), found.recognition)
-        for found in spotter.for_stream().listen(poses)
-    ]
-
-
-def recognize_clip(
-    clip: Path,
-    span: tuple[float, float] | None,
-    reading: ClipReading,
-    recognizer: Recognizer,
-    spotter: Spotter | None,
-) -> tuple[Recording, list[tuple[Take, Recognition]]]:
-    """Read a clip and recognise its takes; with a spotter, gestures without salutes.
-
-    Raises
-    ------
-    OsgError
-        When the clip cannot be read; see `read_clip`.
-
-    """
-    read = read_clip(clip, reading, recognizer.language)
-    if spotter is not None:
-        return read.recording, spot_takes(spotter, read.recording, span)
-    takes = read.takes(span)
-    return read.recording, [(take, recognizer.recognize(take.poses)) for take in takes]
 
 
 def read_clip(
@@ -433,3 +270,58 @@ def _read_pictures(
         with progress_bar(path.name) as advance:
             recorded = source.record(path, options, estimator=estimator, progress=advance)
         return ReadClip(recorded.recording, recorded.has_hands)
+
+
+WaterOption = Annotated[
+    WaterCorrection,
+    typer.Option(help="Correct colour and contrast: as the models see most, always, or never."),
+]
+
+EstimatorOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the body: onnx, mediapipe, or yolo-pose:FILE.onnx, an Ultralytics export.",
+    ),
+]
+
+HandsOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NAME",
+        help="Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
+    ),
+]
+
+
+def recognize_clip(
+    clip: Path,
+    span: tuple[float, float] | None,
+    reading: ClipReading,
+    recognizer: Recognizer,
+    spotter: Spotter | None,
+) -> tuple[Recording, list[tuple[Take, Recognition]]]:
+    """Read a clip and recognise its takes; with a spotter, gestures without salutes.
+
+    Raises
+    ------
+    OsgError
+        When the clip cannot be read; see `read_clip`.
+
+    """
+    read = read_clip(clip, reading, recognizer.language)
+    if spotter is not None:
+        return read.recording, spot_takes(spotter, read.recording, span)
+    takes = read.takes(span)
+    return read.recording, [(take, recognizer.recognize(take.poses)) for take in takes]
+
+
+def spot_takes(
+    spotter: Spotter, recording: Recording, span: tuple[float, float] | None
+) -> list[tuple[Take, Recognition]]:
+    """Find the gestures in a recording, or in a range of it, without salutes around them."""
+    poses = recording.poses.between(*span) if span else recording.poses
+    return [
+        (take_by_hand(recording, (found.start, found.end)), found.recognition)
+        for found in spotter.for_stream().listen(poses)
+    ]

@@ -1,26 +1,37 @@
-"""Command ``demonstrations``: list, add and remove the demonstrations of a language's gestures."""
+"""Commands ``define`` and ``demonstrations``: gestures of a language from clips."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from app.bags import bag_and_topic
 from app.cli.clip_argument import (
     ClipReading,
     DiverOption,
+    EstimatorOption,
     FrameRateOption,
     FrameSizeOption,
+    HandsOption,
     LandmarkOption,
-    define_gesture,
+    TriggerOption,
+    WaterOption,
+    clip_and_span,
     keypoint_options,
-    parse_demonstrations,
+    read_clip,
 )
-from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.terminal import people
-from app.recognition import Gesture, GestureError, Language
+from app.recognition import Gesture, GestureError, Language, Recording, Take
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
+from app.recognition.explanation.demonstration_faults import find_demonstration_faults
+from app.recognition.language.language import require_distinct_labels
+from app.recognition.poses.hand_shape import HandShape
+from app.recognition.text.look_alikes import compose
+from app.recognition.triggers.trigger import SALUTE
 
 demonstrations_command = typer.Typer(
     help="Demonstrations of a gesture: list, add, remove.", no_args_is_help=True
@@ -31,6 +42,46 @@ LanguageArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Language
 OutputOption = Annotated[
     Path | None, typer.Option(help="Language file to write; by default the same file.")
 ]
+
+
+def define(
+    demonstrations: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="LABEL=CLIP[,CLIP...]...",
+            help="A clip per gesture with a salute, or the trigger of --trigger, at both ends; "
+            "LABEL=CLIP@START-END without. "
+            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file. Up to five clips "
+            "per gesture, best of several divers.",
+        ),
+    ],
+    name: Annotated[str, typer.Option(help="Name of the language.")],
+    output: Annotated[Path, typer.Option(help="Language file to write.")],
+    author: Annotated[str, typer.Option(help="Author of the language.")] = "",
+    trigger_of: TriggerOption = None,
+    diver: DiverOption = "",
+    water: WaterOption = "auto",
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
+) -> None:
+    """Create a language from one demonstration clip per gesture, or several.
+
+    With --trigger it has the trigger of that language file.
+    """
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    held = SALUTE if trigger_of is None else Language.load(trigger_of).trigger
+    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held)
+    given = [parse_demonstrations(text) for text in demonstrations]
+    labels = [shown[0].label for shown in given]
+    for count, _ in enumerate(labels, 1):  # before any clip is read
+        require_distinct_labels(labels[:count])
+    gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
+    language = Language(compose(name), gestures, author=author, trigger=held)
+    language.save(output)
+    people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 
 
 @demonstrations_command.command("list")
@@ -107,3 +158,122 @@ def _save(language: Language, output: Path) -> None:
         f"{output}: revision {language.revision}, {output.stat().st_size / 1000:.0f} kB",
         markup=False,
     )
+
+
+@dataclass(frozen=True)
+class Demonstration:
+    """One clip of ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line.
+
+    Attributes
+    ----------
+    label
+        The gesture's label.
+    clip
+        The clip's file.
+    span
+        First and last second of the stroke when the user gives them, else None.
+
+    """
+
+    label: str
+    clip: Path
+    span: tuple[float, float] | None = None
+
+
+def parse_demonstrations(text: str) -> list[Demonstration]:
+    """Parse ``LABEL=CLIP[,CLIP...]``; an existing file whose name has commas is taken as it is.
+
+    Raises
+    ------
+    GestureError
+        When it is not of that form.
+
+    """
+    label, equals, rest = (part.strip() for part in text.partition("="))
+    whole = bag_and_topic(str(clip_and_span(rest)[0]))[0].exists()
+    clips = [rest] if whole else [clip.strip() for clip in rest.split(",")]
+    if not equals or not label or not all(clips):
+        raise GestureError(
+            f"{text!r} is not LABEL=CLIP[,CLIP...]: name the gesture and its clips, as in "
+            "circle=dive.mp4 or circle=ana.mp4,ben.mp4"
+        )
+    return [Demonstration(label, *clip_and_span(clip)) for clip in clips]
+
+
+def define_gesture(
+    demonstrations: Sequence[Demonstration],
+    reading: ClipReading,
+    *,
+    diver: str = "",
+    gesture: Gesture | None = None,
+) -> Gesture:
+    """Create a gesture from clips, or add them to a `gesture`, and print what each one shows.
+
+    Raises
+    ------
+    GestureError
+        When a clip does not hold exactly one closed take, or there are too many.
+
+    """
+    for shown in demonstrations:
+        take, recording = demonstration_take(shown, reading)
+        poses, trigger = take.poses, reading.trigger
+        where = (take.stroke_start, take.stroke_end)
+        faults = find_demonstration_faults(recording, *where, trigger=trigger)
+        if gesture is None:
+            gesture = Gesture.from_demonstration(shown.label, poses, diver=diver)
+        else:
+            gesture = gesture.with_demonstration(poses, diver)
+        shown_last = gesture.single_demonstrations()[-1]
+        people.print(
+            f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
+            f"{describe_shown(shown_last)}",
+            markup=False,
+        )
+        for fault in faults:
+            people.print(fault.describe(gesture.label), f"It {fault.words}.", markup=False)
+    assert gesture is not None  # an argument names one clip at least
+    return gesture
+
+
+def describe_shown(gesture: Gesture) -> str:
+    """Return the landmarks and hand shapes of a gesture with one demonstration, in words."""
+    followed = f"salient: {', '.join(gesture.salient)}"
+    if gesture.trajectory is None:
+        return followed
+    if gesture.is_held:
+        several = len(gesture.held_shapes) > 1
+        shown = f"held hand shape{'s' * several}: {_name_sides(gesture.trajectory.hands)} hand"
+        return f"{shown}, two in sequence" if several else shown
+    if not gesture.trajectory.moving_hands:
+        return followed
+    return f"{followed}; hand shape seen: {_name_sides(gesture.trajectory.moving_hands)} hand"
+
+
+def _name_sides(hands: Sequence[HandShape]) -> str:
+    return " and ".join(hand.side for hand in hands)
+
+
+def demonstration_take(
+    demonstration: Demonstration, reading: ClipReading | None = None
+) -> tuple[Take, Recording]:
+    """Return the only closed take of a clip, or the range given by hand, and the recording.
+
+    Raises
+    ------
+    GestureError
+        When the clip does not hold exactly one closed take and no range is given.
+
+    """
+    clip = demonstration.clip
+    read = read_clip(clip, reading)
+    takes = read.takes(demonstration.span)
+    closed = [take for take in takes if take.closed]
+    if len(closed) != 1:
+        found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
+        trigger = SALUTE if reading is None else reading.trigger
+        raise GestureError(
+            f"{clip} holds {found}, a demonstration needs one closed take {trigger.words}; "
+            f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
+        )
+    return closed[0], read.recording

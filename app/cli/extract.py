@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.bags.staging import is_bag_archive
-from app.cli.administration.data_folder import settings_of
+from app.cli.administration import settings_of
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import SOURCES
 from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir

@@ -10,14 +10,16 @@ import typer
 
 from app.cli.clip_argument import (
     ClipReading,
+    EstimatorOption,
     FrameRateOption,
     FrameSizeOption,
+    HandsOption,
     LandmarkOption,
+    WaterOption,
     clip_and_span,
     keypoint_options,
     read_clip,
 )
-from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
 from app.cli.terminal import people
 from app.recognition import Language
 from app.recognition.errors import OsgError, TriggerError

@@ -1,73 +1,148 @@
-"""How clips are named on the command line."""
+"""Other pose estimators on the command line: real inference from a clip to a label."""
 
+from __future__ import annotations
+
+import json
 from pathlib import Path
 
 import pytest
 
-from app.cli.clip_argument import (
-    Demonstration,
-    clip_and_span,
-    describe_shown,
-    parse_demonstrations,
-)
-from app.recognition import Gesture, GestureError
-from tests.recognition.held_takes import FIST, FLAT, follow, hold
-from tests.recognition.moving_takes import circle, draw, without_hands
+from app.recognition import Language
+from app.recognition.poses.landmarks import TORSO
+from app.recognition.poses.skeletons import COCO_17
+from tests.command_line import OsgStudio
+from tests.documented import documented
+from tests.marker_clips import RATE, marker_clip
+from tests.recognition.demonstrations import pool
+from tests.recognition.estimation.marker_models import save_yolo_pose
+from tests.recognition.strategies import circle, line, recording
 
 
-def test_a_demonstration_is_a_label_and_a_clip() -> None:
-    (parsed,) = parse_demonstrations("circle=a.mp4")
-    assert parsed == Demonstration("circle", Path("a.mp4"))
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a model that finds markers, as an Ultralytics export with ``imgsz=320`` would."""
+    return save_yolo_pose(tmp_path_factory.mktemp("model") / "markers-pose.onnx", side=320)
 
 
-def test_a_demonstration_may_give_its_range_in_seconds() -> None:
-    (parsed,) = parse_demonstrations("circle=dive 1.mp4@1.5-3")
-    assert parsed == Demonstration("circle", Path("dive 1.mp4"), (1.5, 3.0))
+WITHOUT_HANDS = ("--hands", "none", "--water", "off")
+"""Options: the model finds no hands, and a colour correction would change the markers' colours."""
 
 
-def test_a_file_whose_name_looks_like_a_range_is_taken_as_it_is(tmp_path: Path) -> None:
-    clip = tmp_path / "dive@1-2"
-    clip.touch()
-    assert clip_and_span(str(clip)) == (clip, None)
+def arguments(model: Path) -> tuple[str, ...]:
+    return ("--estimator", f"yolo-pose:{model}", *WITHOUT_HANDS)
 
 
-def test_a_gesture_may_have_several_clips_each_with_its_own_range() -> None:
-    assert parse_demonstrations("come here=ana.mp4@1-2.5, ben.mp4,dive.mcap@/camera") == [
-        Demonstration("come here", Path("ana.mp4"), (1.0, 2.5)),
-        Demonstration("come here", Path("ben.mp4")),
-        Demonstration("come here", Path("dive.mcap@/camera")),
-    ]
+@pytest.mark.slow
+def test_a_language_is_defined_and_recognised_by_yolo_pose_as_documented(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, shape, frames in (("circle", circle, 30), ("line", line, 30), ("dive", circle, 24)):
+        clip = marker_clip(tmp_path / f"{name}.mkv", shape, frames=frames)
+        clip.rename(clip.with_suffix(".mp4"))
+    (tmp_path / "yolo11n-pose.onnx").symlink_to(model)
+    monkeypatch.chdir(tmp_path)
+    (define,), (recognize,) = (
+        documented(word, page="guides/pose-estimators.md") for word in ("define", "recognize")
+    )
+    defined = osg_studio(*define, *WITHOUT_HANDS)
+    assert defined.code == 0, defined.error
+    language = Language.load(tmp_path / "pool.json")
+    for gesture in language.gestures:
+        assert gesture.salient == ("right_wrist",)
+        assert gesture.trajectory is not None
+        assert set(gesture.trajectory.landmarks) <= {*COCO_17, TORSO}
+    ended = osg_studio(*recognize, "--json", *WITHOUT_HANDS)
+    assert ended.code == 0, ended.error
+    (take,) = json.loads(ended.out)["takes"]
+    assert take["label"] == "circle"
+    assert (take["start"], take["end"]) == (0, pytest.approx(23 / RATE, abs=0.01))
 
 
-@pytest.mark.parametrize("ending", ["", "@1-2"])
-def test_a_file_whose_name_has_a_comma_is_taken_as_it_is(tmp_path: Path, ending: str) -> None:
-    clip = tmp_path / "ana,ben.mp4"
-    clip.touch()
-    (parsed,) = parse_demonstrations(f"circle={clip}{ending}")
-    assert parsed.clip == clip
+@pytest.mark.slow
+def test_a_language_of_mediapipe_is_understood_by_yolo_pose(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle, line=line).save(file)
+    clip = marker_clip(tmp_path / "line.mkv", line)
+    ended = osg_studio("recognize", clip, "--language", file, "--json", *arguments(model))
+    assert ended.code == 0, ended.error
+    assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line"]
+    error = " ".join(ended.error.split())
+    assert "this pose model gives no left_pinky, right_pinky, left_index" in error
+    assert "no hand" not in error
 
 
-def test_a_bag_whose_name_has_a_comma_is_taken_as_it_is(tmp_path: Path) -> None:
-    bag = tmp_path / "ana,ben.mcap"
-    bag.touch()
-    (parsed,) = parse_demonstrations(f"circle={bag}@/camera")
-    assert parsed.clip == Path(f"{bag}@/camera")
+def test_a_language_that_follows_a_finger_is_refused_before_the_clip_is_read(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    from app.recognition import Gesture
+
+    file = tmp_path / "pool.json"
+    poses = recording(circle, hand="right_index")
+    pointed = Gesture.from_demonstration("pointed", poses, salient=["right_index"])
+    Language("fingers", [pointed]).save(file)
+    clip = tmp_path / "unread.mkv"
+    clip.write_text("no video at all")
+    ended = osg_studio("recognize", clip, "--language", file, *arguments(model))
+    assert ended.code == 2
+    assert "gives no landmark 'right_index', which 'pointed' of 'fingers' follows" in ended.error
+
+
+@pytest.mark.slow
+def test_the_robot_says_by_yolo_pose_what_recognize_says(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle, line=line).save(file)
+    clip = marker_clip(tmp_path / "line.mkv", line)
+    options: tuple[str | Path, ...] = (
+        "--language",
+        file,
+        "--without-salutes",
+        *arguments(model),
+    )
+    ended = osg_studio("recognize", clip, "--json", *options)
+    takes = json.loads(ended.out)["takes"]
+    assert [take["label"] for take in takes] == ["line"]
+    ended = osg_studio("robot", "--source", clip, *options)
+    assert ended.code == 0, ended.error
+    events = [json.loads(line) for line in ended.out.splitlines()]
+    recognised = [event for event in events if event["event"] == "take_recognized"]
+    for event, take in zip(recognised, takes, strict=True):
+        for key in ("label", "start", "end", "confidence"):
+            assert event[key] == pytest.approx(take[key], abs=1e-6), key
+
+
+def test_a_robot_without_hands_waits_for_no_salute(
+    osg_studio: OsgStudio, tmp_path: Path, model: Path
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle).save(file)
+    clip = marker_clip(tmp_path / "circle.mkv", circle, frames=2)
+    ended = osg_studio("robot", "--language", file, "--source", clip, *arguments(model))
+    assert ended.code == 2
+    assert "finds no hand and so no salute" in ended.error
 
 
 @pytest.mark.parametrize(
-    "text", ["circle", "=clip.mp4", "circle=", " =clip.mp4", "circle=a.mp4,", "circle=,a.mp4"]
+    ("options", "message"),
+    [
+        (("--estimator", "yolo-pose"), "yolo-pose needs its model file"),
+        (("--estimator", "yolo-pose:nowhere.onnx"), "no model file nowhere.onnx"),
+        (("--estimator", "openpose"), "unknown backend 'openpose'"),
+        (("--hands", "two"), "unknown hands 'two'"),
+        (("--estimator", "mediapipe", "--hands", "none"), "finds the hands itself"),
+    ],
 )
-def test_what_is_no_demonstration_is_refused_with_an_example(text: str) -> None:
-    with pytest.raises(GestureError, match="LABEL=CLIP"):
-        parse_demonstrations(text)
-
-
-def test_what_a_gesture_is_made_of_is_told() -> None:
-    drawn = draw(FIST, circle())
-    for poses, words in (
-        (hold(FIST), "held hand shape: right hand"),
-        (follow(hold(FLAT), hold(FIST)), "held hand shapes: right hand, two in sequence"),
-        (drawn, "salient: right_wrist; hand shape seen: right hand"),
-        (without_hands(drawn), "salient: right_wrist"),
-    ):
-        assert describe_shown(Gesture.from_demonstration("fist", poses)) == words
+def test_what_cannot_be_used_is_one_line(
+    osg_studio: OsgStudio, tmp_path: Path, options: tuple[str, ...], message: str
+) -> None:
+    file = tmp_path / "pool.json"
+    pool(circle=circle).save(file)
+    clip = tmp_path / "clip.mkv"
+    clip.touch()
+    ended = osg_studio("recognize", clip, "--language", file, *options)
+    assert (ended.code, ended.out) == (2, "")
+    assert message in ended.error
+    assert ended.error.count("\n") == 1

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.robots.supervision import report_event
+from app.cli.robots.robot import report_event
 from app.robot import Heartbeat, SourceEnded, SourceLost, SourceOpened
 from app.system.service_manager import ServiceManager
 from tests.command_line import OsgStudio

@@ -1,4 +1,4 @@
-"""Channels of the robot's events: stdout and stderr, which may fail, and the publishers."""
+"""Channels of the robot's events: stdout, stderr in words, ROS 2 topics, and the publishers."""
 
 from __future__ import annotations
 
@@ -8,11 +8,30 @@ import select
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from typing import Final, Literal, TextIO
+from contextlib import AbstractContextManager, contextmanager, suppress
+from typing import Final, Literal, Protocol, TextIO
 
-from app.cli.robots.events import describe_event
-from app.robot import Event, OutputFailed, VehicleReported
+from app.recognition.errors import OsgError
+from app.recognition.estimation import FrameLandmarks
+from app.robot import (
+    ActiveLanguage,
+    Event,
+    Frame,
+    FrameRateChanged,
+    FramesDropped,
+    LanguageChanged,
+    LanguageRefused,
+    OutputFailed,
+    PhraseHeard,
+    RecognitionReady,
+    SourceLost,
+    SourceOpened,
+    SourceRestored,
+    SourceWarned,
+    TakeRecognized,
+    TakeRejected,
+    VehicleReported,
+)
 from app.robot.event_messages import format_line
 
 Handler = Callable[[Event], None]
@@ -179,3 +198,94 @@ class Stream:
         with suppress(OSError):  # a stream of another program that runs this one has no descriptor
             os.dup2(null, self._file.fileno())
         os.close(null)
+
+
+def describe_event(event: Event) -> str:
+    """Describe an event in one sentence; empty for events that need none."""
+    if isinstance(event, TakeRecognized | TakeRejected):
+        return _describe_take(event)
+    if isinstance(event, PhraseHeard):
+        return event.phrase.text
+    if isinstance(event, VehicleReported):
+        return f"vehicle: {event.text}"
+    if isinstance(event, OutputFailed):
+        return f"{event.output} is not written any more: {event.reason}; recognition goes on"
+    if isinstance(event, LanguageChanged | LanguageRefused):
+        return _describe_language(event)
+    return _describe_source(event)
+
+
+def _describe_take(event: TakeRecognized | TakeRejected) -> str:
+    span = f"{event.start:.2f} - {event.end:.2f} s"
+    if isinstance(event, TakeRecognized):
+        return f"{span}: {event.label} ({event.confidence:.2f})"
+    if event.pair is not None:
+        return f"{span}: {event.reason}"
+    return f"{span}: rejected, {event.reason}"
+
+
+def _describe_language(event: LanguageChanged | LanguageRefused) -> str:
+    if isinstance(event, LanguageRefused):
+        return (
+            f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
+        )
+    return (
+        f"listening for {event.name!r}, revision {event.revision}, code {event.code}: "
+        f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
+    )
+
+
+def _describe_source(event: Event) -> str:
+    match event:
+        case SourceOpened(source=source, frame_size=(width, height)):
+            return f"watching {source}, {width} x {height} pixels"
+        case SourceWarned(reason=reason):
+            return reason
+        case SourceLost(reason=reason):
+            return f"source lost: {reason}; it is opened again and again"
+        case SourceRestored(missing=missing):
+            return f"source restored after {missing:.1f} s"
+        case RecognitionReady(time=time):
+            return f"ready for gestures, {time:.1f} s after the source was opened"
+        case FrameRateChanged():
+            return event.words
+        case FramesDropped(seconds=seconds, dropped=dropped, frames=frames):
+            return f"{dropped} of {dropped + frames} frames dropped in {seconds:.0f} s"
+        case _:
+            return ""
+
+
+class Topics(Protocol):
+    """Protocol of the node that publishes the robot's landmarks and events."""
+
+    def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
+        """Publish the landmarks of a frame."""
+        ...
+
+    def publish_event(self, event: Event, language: ActiveLanguage) -> None:
+        """Publish an event of the active language."""
+        ...
+
+
+def open_ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
+    """Return a context manager that runs a ROS 2 node and gives its topics.
+
+    Parameters
+    ----------
+    arguments
+        ROS 2's arguments, from ``--ros-args`` on: remapped names, parameters, log level.
+
+    Raises
+    ------
+    OsgError
+        When ROS 2 or this project's ROS packages are not installed.
+
+    """
+    try:
+        from osg_ros.nodes.robot_node import run_robot_node
+    except ModuleNotFoundError as error:
+        raise OsgError(
+            f"--ros2 needs ROS 2 and the packages of the folder ros2/; {error.name} is missing: "
+            "build them with colcon and source the workspace in this shell"
+        ) from error
+    return run_robot_node(arguments)

@@ -5,17 +5,16 @@ Packages that only some options need are imported when the option is given.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from app.cli.estimator_options import EstimatorOption, HandsOption, WaterOption
-from app.cli.robots.channels import Channels
-from app.cli.robots.events import describe_event
-from app.cli.robots.ros_arguments import BEGIN
+from app.cli.clip_argument import EstimatorOption, HandsOption, WaterOption
+from app.cli.robots.channels import Channels, describe_event
 from app.cli.robots.run import (
     Control,
     RobotOptions,
@@ -24,10 +23,10 @@ from app.cli.robots.run import (
     run_robot,
     run_with_uploads,
 )
-from app.cli.robots.supervision import report_event
 from app.recognition.errors import PublishError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.gestures.profile import PROFILES
+from app.robot import Event, SourceEnded, SourceOpened
 from app.robot.publishing.publisher import Network
 from app.robot.sources.cameras import SCHEMES
 from app.system.service_manager import ServiceManager
@@ -187,3 +186,47 @@ def open_page(address: str, files: RobotFiles | None = None) -> StatusPage:
     if not port.isdecimal():
         raise PublishError(f"{address!r} is no place for the page; give PORT or HOST:PORT")
     return StatusPage(host.strip("[]") or "127.0.0.1", int(port), describe_event, files)
+
+
+BEGIN: Final = "--ros-args"
+"""Starts the arguments of ROS 2."""
+
+END: Final = "--"
+"""Ends the arguments of ROS 2."""
+
+
+def split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Split arguments into those of the program and those of ROS 2.
+
+    Returns
+    -------
+    The program's arguments, and ROS 2's including each `BEGIN`; both in order.
+
+    """
+    own: list[str] = []
+    ros: list[str] = []
+    target = own
+    for argument in arguments:
+        if argument == BEGIN:
+            target = ros
+        if argument == END and target is ros:
+            target = own
+        else:
+            target.append(argument)
+    return own, ros
+
+
+def report_event(manager: ServiceManager, event: Event) -> None:
+    """Report that the robot is ready, works or ends, with a description of its activity.
+
+    A live source gives a heartbeat at least every 5 seconds, so a watchdog of 30 seconds restarts a
+    robot that hangs.
+    """
+    match event:
+        case SourceOpened():
+            manager.tell_ready()
+        case SourceEnded():
+            manager.tell_stopping()
+    manager.tell_alive()
+    if sentence := describe_event(event):
+        manager.tell_status(sentence)

@@ -5,6 +5,7 @@ Packages that only some options need are imported when the option is given.
 
 from __future__ import annotations
 
+import json
 import signal
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,10 +15,15 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Final
 
-from app.cli.robots.channels import Channels, Handler
+import typer
+from rich import box
+from rich.table import Table
+
+from app.cli.robots.channels import Channels, Handler, open_ros2_topics
 from app.cli.terminal import describe_error, people
-from app.recognition.errors import EstimatorError, OsgError
+from app.recognition.errors import EstimatorError, OsgError, VehicleError
 from app.recognition.estimation import create_estimator
+from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.robot import (
@@ -25,13 +31,17 @@ from app.robot import (
     Event,
     LandmarkListener,
     Runtime,
+    Source,
     TakeRecognized,
     create_listener,
     open_source,
 )
+from app.robot.energy import open_energy_meter
 from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
+from app.robot.sources.live import LiveSource
+from app.robot.stage_profile import STAGES, StageProfile, StageProfiler
 
 if TYPE_CHECKING:
     from app.robot.mavlink.bridge import MavlinkBridge
@@ -198,8 +208,6 @@ def run_robot(
         handlers: list[Handler] = []
         observer: Observer | None = None
         if options.ros2 is not None:
-            from app.cli.robots.ros2_topics import open_ros2_topics
-
             topics = opened.enter_context(open_ros2_topics(options.ros2))
             handlers.append(lambda event: topics.publish_event(event, listener.language))
             observer = topics.publish_frame
@@ -210,7 +218,7 @@ def run_robot(
         opened.enter_context(channels.joined_by(handlers))
         bridge: MavlinkBridge | None = None
         if options.mavlink and (table := options.find_vehicle_table()):
-            from app.cli.robots.vehicle import open_bridge
+            from app.cli.robots.run import open_bridge
 
             bridge = open_bridge(
                 options.mavlink,
@@ -252,7 +260,7 @@ def emit_all(events: Iterable[Event], channels: Channels) -> int:
 
 def profile_until_stopped(options: RobotOptions) -> None:
     """Print the costs of the stages when the source ends or a signal stops it."""
-    from app.cli.robots.stages import show_stages
+    from app.cli.robots.run import show_stages
 
     with ExitStack() as opened:
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
@@ -289,3 +297,109 @@ def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+if TYPE_CHECKING:
+    from app.robot.mavlink.bridge import MavlinkBridge
+
+
+def open_bridge(
+    address: str,
+    table_file: Path,
+    listener: LandmarkListener,
+    source: Source,
+    tell: Callable[[str], None],
+    *,
+    without_salutes: bool,
+) -> MavlinkBridge:
+    """Open the bridge to a vehicle.
+
+    Parameters
+    ----------
+    address
+        Address of the vehicle.
+    table_file
+        Vehicle table.
+    listener, source
+        What recognises gestures, and where its frames come from.
+    tell
+        Called with every line about the vehicle, from any thread.
+    without_salutes
+        Whether gestures are spotted without triggers, whatever the language's.
+
+    Raises
+    ------
+    VehicleError
+        When its library is missing, the table is invalid or names a label or phrase that the
+        language lacks, a continuous movement could confirm itself, or the vehicle's address cannot
+        be used.
+    OSError
+        When the table or its key cannot be read.
+
+    """
+    try:
+        from app.robot.mavlink.bridge import MavlinkBridge
+        from app.robot.mavlink.links import open_link
+        from app.robot.mavlink.table import read_signing_key, read_vehicle_table
+    except ModuleNotFoundError as error:
+        raise VehicleError(
+            f"--mavlink needs {error.name}, which is not installed; install it with: "
+            'pip install "osg-studio[mavlink]"'
+        ) from error
+    table = read_vehicle_table(table_file)
+    language = listener.language.recognizer.language
+    if unknown := list(table.list_unknown(language)):
+        raise VehicleError(
+            f"{table_file}: {', '.join(unknown)} is not in the language {language.name!r}, which "
+            f"has {', '.join(language.labels)}; correct the table or choose its language"
+        )
+    spots = without_salutes or listener.language.trigger.spots
+    if spots and (reason := table.find_unguarded(language)):
+        raise VehicleError(
+            f"without salutes a movement would confirm itself, and {reason}: command the vehicle "
+            "by phrases alone, or with salutes"
+        )
+    key = read_signing_key(table, table_file)
+    link = open_link(address, table.vehicle.system, table.vehicle.component, key)
+    now = source.now if isinstance(source, LiveSource) else None
+    return MavlinkBridge(
+        table, link, lambda: listener.language, tell, now, without_salutes=without_salutes
+    )
+
+
+def show_stages(
+    source: Source,
+    body: PoseEstimator,
+    whole: PoseEstimator,
+    listener: LandmarkListener,
+    *,
+    water: WaterCorrection,
+    is_over: Callable[[], bool],
+) -> None:
+    """Profile a source and print the result; see `StageProfiler.run`."""
+    with ExitStack() as opened:
+        if meter := open_energy_meter():
+            opened.enter_context(closing(meter))
+        profiler = StageProfiler(body, whole, listener, water=water, meter=meter)
+        profile = profiler.run(source, is_over)
+    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
+    people.print(build_profile_table(profile))
+
+
+def build_profile_table(profile: StageProfile) -> Table:
+    """Build a table with one row per stage: frame rate and energy up to this stage."""
+    takes = "1 take" if profile.takes == 1 else f"{profile.takes} takes"
+    caption = (
+        f"{profile.frames} frames, {takes}; recognition lowers the rate of pose and "
+        f"hands by {profile.share:.1%} and takes {profile.processor_share:.1%} of the processor's "
+        f"time; energy: {profile.energy or 'not measured on this machine'}"
+    )
+    table = Table("with", caption=caption, caption_justify="left", box=box.SIMPLE_HEAD)
+    table.add_column("frames a second", justify="right")
+    table.add_column("joules a frame", justify="right")
+    for stage in STAGES:
+        joules = profile.joules_per_frame(stage)
+        rate = profile.frames_per_second(stage)
+        row = "" if joules is None else f"{joules:.2f}"
+        table.add_row(stage if stage == STAGES[0] else f"+ {stage}", f"{rate:.1f}", row)
+    return table

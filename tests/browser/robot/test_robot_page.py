@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, expect
 
-from app.cli.robots.events import describe_event
+from app.cli.robots.channels import describe_event
 from app.robot.publishing.robot_files import FileKind, RobotFiles
 from app.robot.publishing.status_page import StatusPage
 from tests.robot.languages import language_of

@@ -19,7 +19,7 @@ import pytest
 from typer.main import get_command
 
 from app.cli.application import command_line
-from app.cli.robots.ros_arguments import split_ros_arguments
+from app.cli.robots.robot import split_ros_arguments
 from app.robot.event_messages import read_schema
 from app.robot.publishing.status_page import UPLOAD_TYPE
 from app.robot.stage_profile import STAGES
@@ -403,3 +403,29 @@ def test_bad_input_is_one_line_and_exit_code_two(
     assert what in ended.error
     assert ended.error.count("\n") == 1
     assert "a:b" not in ended.error
+
+
+@pytest.mark.parametrize(
+    ("given", "own", "ros"),
+    [
+        ("robot --ros2", "robot --ros2", ""),
+        ("robot --ros-args -r a:=b", "robot", "--ros-args -r a:=b"),
+        ("robot --ros-args -r a:=b -- --ros2", "robot --ros2", "--ros-args -r a:=b"),
+        ("--ros-args -r a:=b -- -x --ros-args", "-x", "--ros-args -r a:=b --ros-args"),
+        ("robot -- --ros2", "robot -- --ros2", ""),
+    ],
+)
+def test_they_go_from_where_they_begin_to_where_they_end(given: str, own: str, ros: str) -> None:
+    assert split_ros_arguments(given.split()) == (own.split(), ros.split())
+
+
+def test_a_robot_that_is_not_to_publish_refuses_them(osg_studio: OsgStudio) -> None:
+    ended = osg_studio("robot", "--language", "pool.json", "--ros-args", "-r", "__ns:=/auv")
+    assert ended.code == 2
+    assert "--ros-args needs --ros2: add that option" in " ".join(ended.error.split())
+
+
+def test_no_other_command_takes_them(osg_studio: OsgStudio) -> None:
+    ended = osg_studio("recognize", "clip.mp4", "--language", "pool.json", "--ros-args")
+    assert ended.code == 2
+    assert "No such option: --ros-args" in " ".join(ended.error.split())

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from app.cli.robots.events import describe_event
+from app.cli.robots.channels import describe_event
 from app.robot import ActiveLanguage
 from app.robot.publishing.robot_files import MOST_BYTES, FileKind, RobotFiles
 from app.robot.publishing.status_page import UPLOAD_TYPE, StatusPage

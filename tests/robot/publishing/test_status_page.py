@@ -15,7 +15,7 @@ from urllib.request import urlopen
 
 import pytest
 
-from app.cli.robots.events import describe_event
+from app.cli.robots.channels import describe_event
 from app.cli.robots.robot import open_page
 from app.recognition.errors import PublishError
 from app.robot import (

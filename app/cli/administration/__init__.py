@@ -1,1 +1,0 @@
-"""Commands for administrators of a server: tokens, audit log, backup, data folder."""

@@ -1,1 +1,0 @@
-"""Batches: recognises all clips of a folder, resumable, into one table."""

@@ -1,0 +1,116 @@
+"""Commands on language files: code, slate, samples, convert."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.terminal import people
+from app.recognition import Language
+from app.recognition.errors import OsgError
+from app.recognition.language.export_format import FileFormat
+from app.recognition.language.osg_reference import from_reference, is_reference
+from app.recognition.language.short_code import short_code
+from app.recognition.triggers.trigger import SALUTE
+from app.resources import samples_dir
+from app.robot.active_language import ActiveLanguage
+
+
+def code(
+    language: Annotated[Path, typer.Argument(help="Language file (.json)")],
+) -> None:
+    """Print the code of a language file: the studio and the robot that has it show the same."""
+    active = ActiveLanguage.load(language)
+    people.print(f"{active.name}, revision {active.revision}", markup=False)
+    typer.echo(short_code(active.sha256))
+
+
+def slate(
+    language: Annotated[Path, typer.Argument(help="Language file (.json)")],
+    output: Annotated[Path, typer.Option(help="File to write, .pdf or .svg")],
+) -> None:
+    """Write a language as one printable page for divers: strokes, meanings, and the salute."""
+    # Imported here, because a robot's installation has the other commands, but cannot draw pages.
+    from app.ui.slate.layout import lay_out
+    from app.ui.slate.pdf import to_pdf
+    from app.ui.slate.svg import to_svg
+
+    kind = output.suffix.lower()
+    if kind not in (".pdf", ".svg"):
+        raise OsgError(f"a slate is written as .pdf or .svg, not as {output.name!r}")
+    page = lay_out(Language.load(language))
+    content = to_pdf(page) if kind == ".pdf" else to_svg(page).encode("utf-8")
+    try:
+        output.write_bytes(content)
+    except OSError as error:
+        raise OsgError(f"cannot write {output}: {error.strerror}") from error
+    people.print(f"wrote {output}", markup=False)
+
+
+def samples(
+    folder: Annotated[Path, typer.Argument(help="Folder to write; must not exist.")] = Path(
+        "languages"
+    ),
+) -> None:
+    """Copy the sample languages and their clips to a folder, to try the commands with."""
+    if folder.exists():
+        raise OsgError(f"{folder} is there already; give the name of a folder that is not")
+    source = samples_dir()
+    (folder / "clips").mkdir(parents=True)
+    for file in (*sorted(source.glob("*.json")), *sorted((source / "clips").glob("*.mp4"))):
+        shutil.copyfile(file, folder / file.relative_to(source))
+    people.print(f"{folder}: sample languages, and their clips in {folder / 'clips'}", markup=False)
+
+
+def convert(
+    source: Annotated[
+        Path, typer.Argument(metavar="IN", help="Language file of osg-studio or osg-reference.")
+    ],
+    target: Annotated[Path, typer.Argument(metavar="OUT", help="File to write.")],
+    file_format: Annotated[
+        FileFormat | None,
+        typer.Option(
+            "--format",
+            help="Format to write: proteus for OUT.ldf, otherwise osg-studio if left out.",
+        ),
+    ] = None,
+) -> None:
+    """Convert a language file: osg-studio, osg-reference (published implementation), proteus."""
+    language = read_language(source)
+    if file_format is None:
+        proteus = target.suffix == FileFormat.PROTEUS.suffix
+        file_format = FileFormat.PROTEUS if proteus else FileFormat.OSG_STUDIO
+    if any(gesture.trajectory is None for gesture in language.gestures):
+        people.print(f"{source}: no trajectories, only images: osg-reference files have none")
+    several = [gesture.label for gesture in language.gestures if gesture.further]
+    if several and file_format is FileFormat.OSG_REFERENCE:
+        people.print(
+            f"{target}: {file_format.value} keeps only the first demonstration of "
+            f"{', '.join(several)}",
+            markup=False,
+        )
+    if language.trigger != SALUTE and file_format is not FileFormat.OSG_STUDIO:
+        people.print(f"{target}: {file_format.value} knows no trigger; tell it on the slate")
+    if file_format is FileFormat.OSG_STUDIO:
+        language.save(target)
+    else:
+        target.write_text(file_format.write(language), encoding="utf-8")
+    people.print(f"{target}: {len(language.gestures)} gestures as {file_format.value}")
+
+
+def read_language(source: Path) -> Language:
+    """Read a language file of OSG Studio or of the published implementation.
+
+    Raises
+    ------
+    LanguageError
+        When the file is neither; contains the JSON pointer to the fault.
+
+    """
+    content = source.read_bytes()
+    if is_reference(content):
+        return from_reference(content, source.stem)
+    return Language.from_json(content)

@@ -1,0 +1,157 @@
+"""Command ``recognize``: the gestures in a clip or a folder of clips, and why they were read."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from itertools import zip_longest
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.batch import FolderBatch, is_folder_of_clips
+from app.cli.clip_argument import (
+    ClipReading,
+    EstimatorOption,
+    FrameRateOption,
+    FrameSizeOption,
+    HandsOption,
+    LandmarkOption,
+    WaterOption,
+    clip_and_span,
+    keypoint_options,
+    recognize_clip,
+)
+from app.cli.mcap_file import name_recognitions, save_bag
+from app.cli.recognition_report import build_report
+from app.cli.terminal import people, show_explanation, show_recognition
+from app.recognition import Language, Recognition, Recognizer, Recording, Take
+from app.recognition.errors import OsgError
+from app.recognition.estimation.factory import MEDIAPIPE_HANDS
+from app.recognition.explanation.context import RecognitionContext
+from app.recognition.explanation.explanation import explain
+from app.recognition.gestures.profile import PROFILES
+from app.recognition.spotting import Spotter
+from app.recognition.triggers.arm_pose import HOLD_SECONDS
+from app.recognition.triggers.trigger import SALUTE
+
+NOTHING_RECOGNISED = 1
+"""Exit code when no gesture was recognised."""
+
+
+def recognize(
+    clip: Annotated[
+        str,
+        typer.Argument(
+            help="Clip or rosbag2 with gestures between salutes, or CLIP@START-END. Or a keypoint "
+            "file: OpenPose's folder, MediaPipe's CSV or JSON, DeepLabCut's CSV, SLEAP's .slp, "
+            ".h5. Or a folder of clips, for one table; run it again to go on after an interruption."
+        ),
+    ],
+    language: Annotated[Path, typer.Option(help="Language file.")],
+    profile: Annotated[
+        str | None,
+        typer.Option(help=f"Set of voters, {' or '.join(PROFILES)}; by default the language's."),
+    ] = None,
+    expected: Annotated[
+        str | None,
+        typer.Option(metavar="LABEL", help="Gesture that was meant; prints an explanation."),
+    ] = None,
+    without_salutes: Annotated[
+        bool, typer.Option("--without-salutes", help="Find gestures anywhere in the clip.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    topic: Annotated[
+        str | None,
+        typer.Option(help="Topic of a bag that has several."),
+    ] = None,
+    mcap: Annotated[
+        Path | None,
+        typer.Option(help="Write clip and recognitions to this MCAP file, for Foxglove."),
+    ] = None,
+    table: Annotated[
+        Path, typer.Option(help="Table of a folder's takes to write, .csv or .parquet.")
+    ] = Path("recognitions.csv"),
+    water: WaterOption = "auto",
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
+) -> None:
+    """Recognise the gestures in a clip, with every voter's distance to every gesture."""
+    path, span = clip_and_span(clip)
+    loaded = Language.load(language)
+    if expected is not None:
+        loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
+    recognizer = Recognizer(loaded, profile)
+    spots = without_salutes or loaded.trigger.spots
+    spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    reading = ClipReading(water, estimator, hands, topic, keypoints)
+    if is_folder_of_clips(path):
+        if as_json or mcap is not None or expected is not None:
+            raise OsgError(
+                f"{path} is a folder of clips: --json, --mcap and --expected are for one clip; "
+                "give --table for the folder's results"
+            )
+        batch = FolderBatch(path, table, recognizer, reading, spotter, excluded=(language,))
+        recognised = batch.run()
+    else:
+        recording, results = recognize_clip(path, span, reading, recognizer, spotter)
+        if mcap is not None:
+            named = name_recognitions(loaded, expected, results)
+            save_bag(mcap, path, topic, recording, named, loaded.trigger)
+        show_results(path, recognizer, results, expected, as_json=as_json)
+        if not results:
+            explain_absence(path, recording, recognizer, without_salutes=spots)
+        recognised = sum(result.label is not None for _, result in results)
+    if not recognised:
+        raise typer.Exit(NOTHING_RECOGNISED)
+
+
+def show_results(
+    path: Path,
+    recognizer: Recognizer,
+    results: Sequence[tuple[Take, Recognition]],
+    expected: str | None,
+    *,
+    as_json: bool,
+) -> None:
+    """Print the recognitions of one clip, with explanations where a gesture was expected."""
+    takes = [take for take, _ in results]
+    explanations = [
+        explain(RecognitionContext.of_take(recognizer, take), expected)
+        for take in takes
+        if expected is not None
+    ]
+    if as_json:
+        name = recognizer.language.name
+        report = build_report(str(path), name, recognizer.profile, results, explanations)
+        typer.echo(json.dumps(report, allow_nan=False))
+        return
+    for (take, result), explanation in zip_longest(results, explanations):
+        show_recognition(take, result, recognizer.language.trigger)
+        if explanation is not None:
+            show_explanation(explanation)
+
+
+def explain_absence(
+    path: Path, recording: Recording, recognizer: Recognizer, *, without_salutes: bool
+) -> None:
+    """Print why a clip has no take, and what to do."""
+    seconds = f"{recording.poses.duration:.1f} s"
+    if without_salutes:
+        people.print(
+            f"{path}: no gesture of {recognizer.language.name!r} found in {seconds}; "
+            f"pause before and after a gesture, or give the range: {path}@START-END"
+        )
+    else:
+        people.print(
+            f"{path}: no salute found in {seconds}, so no take; hold the "
+            f"salute for at least 0.3 s, or give the range: {path}@START-END"
+            if recognizer.language.trigger == SALUTE
+            else f"{path}: no take {recognizer.language.trigger.words} found in {seconds}; hold "
+            f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
+        )
