@@ -12,8 +12,8 @@ from app.cli.terminal import people
 from app.recognition import Language
 from app.recognition.errors import OsgError
 from app.recognition.language.export_format import FileFormat
+from app.recognition.language.file import short_code
 from app.recognition.language.osg_reference import from_reference, is_reference
-from app.recognition.language.short_code import short_code
 from app.recognition.triggers.trigger import SALUTE
 from app.resources import samples_dir
 from app.robot.active_language import ActiveLanguage

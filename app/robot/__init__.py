@@ -26,13 +26,16 @@ from app.robot.events import (
     TakeRejected,
     VehicleReported,
 )
-from app.robot.listeners.factory import create_listener
+from app.robot.listeners.language_listener import create_listener
 from app.robot.listeners.phrase_listener import PhraseListener
-from app.robot.listeners.salute_listener import LandmarkListener, Listener
 from app.robot.listeners.spotting_listener import SpottingListener
+from app.robot.listeners.trigger_listener import LandmarkListener, TriggerListener
 from app.robot.runtime import Runtime
 from app.robot.sources.registry import open_source
 from app.robot.sources.source import Frame, NoFrame, Notice, Source
+
+Listener = TriggerListener
+"""The name in version 0.2, kept for one version."""
 
 __all__ = [
     "ActiveLanguage",
@@ -62,6 +65,7 @@ __all__ = [
     "StateChanged",
     "TakeRecognized",
     "TakeRejected",
+    "TriggerListener",
     "VehicleReported",
     "create_listener",
     "open_source",

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Final, Literal
 from pydantic import BeforeValidator, Field
 
 from app.recognition import Recognition
-from app.recognition.language.short_code import short_code
+from app.recognition.language.file import short_code
 from app.recognition.phrases.parser import PhraseEvent
 from app.recognition.recording.segmentation import TakeState
 

@@ -30,7 +30,7 @@ from app.robot.events import (
     SourceRestored,
     SourceWarned,
 )
-from app.robot.listeners.salute_listener import LandmarkListener
+from app.robot.listeners.trigger_listener import LandmarkListener
 from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
 REPORT_SECONDS: Final = 10.0
@@ -65,7 +65,7 @@ class Runtime:
     Iterate over it once, in the thread that should do the work::
 
         with closing(open_source("dive.mp4")) as source, closing(create_estimator()) as estimator:
-            for event in Runtime(source, estimator, Listener(ActiveLanguage.load("pool.json"))):
+            for event in Runtime(source, estimator, create_listener(language)):
                 ...
 
     It prints nothing and keeps no frames; the listener keeps the landmarks it needs. When a source

@@ -34,12 +34,12 @@ from app.resources import samples_dir
 from app.robot import (
     ActiveLanguage,
     Frame,
-    Listener,
     Notice,
     Runtime,
     Source,
     TakeRecognized,
     TakeRejected,
+    TriggerListener,
 )
 
 SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
@@ -215,7 +215,10 @@ class Lap:
 
 
 def endure(
-    source: Looped, estimator: PoseEstimator, listener: Listener, water: WaterCorrection = "auto"
+    source: Looped,
+    estimator: PoseEstimator,
+    listener: TriggerListener,
+    water: WaterCorrection = "auto",
 ) -> list[Lap]:
     """Run a looped stream to its end and measure every loop."""
     laps: defaultdict[int, Lap] = defaultdict(Lap)
@@ -326,7 +329,7 @@ def main() -> None:
     with closing(create_estimator()) as models:
         once = chosen.models_once
         estimator = FirstLoopEstimator(models, source.frames) if once else models
-        laps = endure(source, estimator, Listener(ActiveLanguage.load(chosen.language)))
+        laps = endure(source, estimator, TriggerListener(ActiveLanguage.load(chosen.language)))
     report(laps, source.period)
 
 

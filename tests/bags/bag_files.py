@@ -13,7 +13,7 @@ import numpy as np
 from rosbags.rosbag2 import StoragePlugin, Writer
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from app.bags.message_definitions import DEFINITIONS
+from app.bags.bag import DEFINITIONS
 from app.recognition import Recording
 from app.recognition.poses.frame import Image
 from app.recognition.poses.sequence import FloatArray

@@ -10,10 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.typesys import get_types_from_msg
 
-from app.bags.bag import open_bag
+from app.bags.bag import DEFINITIONS, USES, open_bag
 from app.bags.extraction import record_bag
 from app.bags.image_topic import BagFrames
+from app.bags.keypoint_topic import _READERS
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (
@@ -30,6 +32,7 @@ from tests.bags.bag_files import (
     zip_of,
     zipped,
 )
+from tests.conftest import ROOT
 from tests.recognition.damaged_clips import picture
 
 STORAGES: tuple[Storage, ...] = ("mcap", "sqlite3")
@@ -219,3 +222,24 @@ def test_a_database_that_is_no_recording_is_refused(tmp_path: Path) -> None:
     database.close()
     with pytest.raises(BagError, match="missing tables"):
         record_bag(tmp_path / "contacts.db3")
+
+
+PACKAGES = ROOT / "ros2"
+OURS = [name for name in DEFINITIONS if (PACKAGES / name.split("/")[0]).is_dir()]
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_a_definition_is_that_of_the_package_beside(name: str) -> None:
+    package, _, message = name.split("/")
+    text = Path(PACKAGES, package, "msg", f"{message}.msg").read_text()
+    (_, theirs) = get_types_from_msg(text, name)[name]
+    (_, known) = get_types_from_msg(DEFINITIONS[name], name)[name]
+    assert known == theirs
+
+
+def test_the_packages_beside_are_found() -> None:
+    assert {name.split("/")[0] for name in OURS} == {"keypoints_interfaces", "osg_interfaces"}
+
+
+def test_every_type_of_keypoints_can_be_read() -> None:
+    assert {kind for kind, use in USES.items() if use == "keypoints"} == set(_READERS)

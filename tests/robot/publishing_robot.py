@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
-from app.robot import ActiveLanguage, Event, Listener, PhraseListener, TakeRejected
+from app.robot import ActiveLanguage, Event, PhraseListener, TakeRejected, TriggerListener
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
@@ -31,10 +31,10 @@ def list_round_events() -> list[Event]:
     made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line")
-    between = run_listener(Listener(ambiguous()), recording_of("circle"))
+    between = run_listener(TriggerListener(ambiguous()), recording_of("circle"))
     return [
         build_language_changed(0.0, language),
-        *run_listener(PhraseListener(Listener(language)), shown),
+        *run_listener(PhraseListener(TriggerListener(language)), shown),
         *(
             replace(event, start=event.start + LATER, end=event.end + LATER)
             for event in between

@@ -19,7 +19,6 @@ from app.robot import (
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
-    Listener,
     OutputFailed,
     PhraseHeard,
     RecognitionReady,
@@ -31,6 +30,7 @@ from app.robot import (
     StateChanged,
     TakeRecognized,
     TakeRejected,
+    TriggerListener,
     VehicleReported,
 )
 from app.robot.event_messages import (
@@ -50,13 +50,13 @@ SEAL = "0123456789abcdef" * 4
 
 
 def recognized(command: str | dict[str, Any] | None = None) -> TakeRecognized:
-    emitted = run_listener(Listener(spoken("circle", "line")), recording_of("line"))
+    emitted = run_listener(TriggerListener(spoken("circle", "line")), recording_of("line"))
     (event,) = [event for event in emitted if isinstance(event, TakeRecognized)]
     return replace(event, command=command)
 
 
 def rejected() -> TakeRejected:
-    emitted = run_listener(Listener(spoken("circle")), recording_of("line"))
+    emitted = run_listener(TriggerListener(spoken("circle")), recording_of("line"))
     (event,) = [event for event in emitted if isinstance(event, TakeRejected)]
     return event
 

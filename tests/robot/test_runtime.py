@@ -22,7 +22,6 @@ from app.robot import (
     Heartbeat,
     LanguageChanged,
     LanguageRefused,
-    Listener,
     RecognitionReady,
     Runtime,
     SourceEnded,
@@ -31,6 +30,7 @@ from app.robot import (
     SourceRestored,
     SourceWarned,
     StateChanged,
+    TriggerListener,
     open_source,
 )
 from app.robot import runtime as runtime_module
@@ -56,7 +56,7 @@ def test_every_frame_of_a_clip_is_looked_at(estimator: PoseEstimator, tmp_path: 
         runtime = Runtime(
             source,
             estimator,
-            Listener(spoken("circle")),
+            TriggerListener(spoken("circle")),
             observer=lambda frame, found: looked_at.append(frame.time),
         )
         emitted = list(runtime)
@@ -79,7 +79,7 @@ def test_a_damaged_clip_is_looked_at_as_far_as_it_goes_and_told(
     whole = write_clip(tmp_path / "whole.mkv", frames=50)
     clip = cut_off(whole, 0.6)
     with closing(open_source(str(clip))) as source:
-        *_, warned, ended = Runtime(source, estimator, Listener(spoken("circle")))
+        *_, warned, ended = Runtime(source, estimator, TriggerListener(spoken("circle")))
     assert isinstance(warned, SourceWarned)
     assert "the clip is" in warned.reason
     assert isinstance(ended, SourceEnded)
@@ -89,7 +89,7 @@ def test_a_damaged_clip_is_looked_at_as_far_as_it_goes_and_told(
 def test_a_camera_that_breaks_is_told_and_watched_again(estimator: PoseEstimator) -> None:
     with MjpegServer() as first:
         source = LiveSource("reef", partial(NetworkStream, first.address), first_wait=0.05)
-        runtime = Runtime(source, estimator, Listener(spoken("circle")))
+        runtime = Runtime(source, estimator, TriggerListener(spoken("circle")))
         events = iter(runtime)
         emitted = [next(events) for _ in range(4)]
     with closing(source):
@@ -121,7 +121,7 @@ def test_a_source_with_too_few_frames_a_second_is_told(
         tmp_path / "dive.mp4", frames=6 * rate, times=[each / rate for each in range(6 * rate)]
     )
     with closing(open_source(str(clip))) as source:
-        emitted = list(Runtime(source, estimator, Listener(spoken("circle"))))
+        emitted = list(Runtime(source, estimator, TriggerListener(spoken("circle"))))
     changes = [event for event in emitted if isinstance(event, FrameRateChanged)]
     assert [(each.frames_per_second, each.sufficient) for each in changes] == told
 
@@ -161,7 +161,7 @@ def test_a_live_source_gives_heartbeats_also_while_it_is_lost(
     beats: list[Heartbeat] = []
     with MjpegServer() as server:
         source = LiveSource("reef", partial(NetworkStream, server.address), first_wait=0.05)
-        runtime = Runtime(source, estimator, Listener(spoken("circle")))
+        runtime = Runtime(source, estimator, TriggerListener(spoken("circle")))
         events = iter(runtime)
         while not beats:
             beats += [event for event in [next(events)] if isinstance(event, Heartbeat)]
@@ -183,7 +183,7 @@ def test_a_clip_gives_no_heartbeats(
     monkeypatch.setattr(runtime_module, "HEARTBEAT_SECONDS", 0.0)
     clip = write_clip(tmp_path / "dive.mp4", frames=3)
     with closing(open_source(str(clip))) as source:
-        emitted = list(Runtime(source, estimator, Listener(spoken("circle"))))
+        emitted = list(Runtime(source, estimator, TriggerListener(spoken("circle"))))
     assert not any(isinstance(event, Heartbeat) for event in emitted)
 
 
@@ -200,7 +200,7 @@ def test_another_language_is_spoken_from_the_next_frame_on_and_a_broken_one_is_r
         runtime = Runtime(
             source,
             estimator,
-            Listener(spoken("circle")),
+            TriggerListener(spoken("circle")),
             changes=lambda: changes.pop(0) if changes else None,
         )
         for event in runtime:
@@ -227,12 +227,12 @@ def test_a_language_that_the_estimator_cannot_follow_is_refused(
     wagging = ActiveLanguage.from_json(fish.to_json())
     with closing(open_source(str(clip))) as source:
         with pytest.raises(LandmarkError, match="tail_fin"):
-            Runtime(source, estimator, Listener(wagging))
+            Runtime(source, estimator, TriggerListener(wagging))
         changes = [wagging]
         runtime = Runtime(
             source,
             estimator,
-            Listener(spoken("circle")),
+            TriggerListener(spoken("circle")),
             changes=lambda: changes.pop() if changes else None,
         )
         (refused,) = [event for event in runtime if isinstance(event, LanguageRefused)]

@@ -15,9 +15,8 @@ from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.running_studio import DocumentCache, Studio
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.language.file import seal
+from app.recognition.language.file import seal, short_code
 from app.recognition.language.grammar_entry import grammar_to_entry
-from app.recognition.language.short_code import short_code
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
 from app.store import Draft, LanguageRevision, LanguageState, Quota

@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from app.bags.export_writer import NamedRecognition
 from app.recognition import Recognition
-from app.recognition.language.trigger_schema import TriggerEntry
+from app.recognition.language.trigger_entry import TriggerEntry
 
 
 class ExportedRecognition(BaseModel):

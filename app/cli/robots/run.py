@@ -36,12 +36,11 @@ from app.robot import (
     create_listener,
     open_source,
 )
-from app.robot.energy import open_energy_meter
 from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.live import LiveSource
-from app.robot.stage_profile import STAGES, StageProfile, StageProfiler
+from app.robot.stage_profile import STAGES, StageProfile, StageProfiler, open_energy_meter
 
 if TYPE_CHECKING:
     from app.robot.mavlink.bridge import MavlinkBridge

@@ -17,8 +17,8 @@ from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
-from app.recognition.language.grammar_schema import GrammarEntry
-from app.recognition.language.trigger_schema import TriggerEntry
+from app.recognition.language.grammar_entry import GrammarEntry
+from app.recognition.language.trigger_entry import TriggerEntry
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 
 FORMAT: Final = "osg-studio/gesture-language"

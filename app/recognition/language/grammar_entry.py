@@ -1,21 +1,179 @@
-"""Grammar entry: conversion of grammars to and from their entry in the language file."""
+"""Grammar entry of a language file, and its schema."""
 
 from __future__ import annotations
 
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+
 from app.recognition.errors import LanguageError
-from app.recognition.language.grammar_schema import (
-    GesturesEntry,
-    GrammarEntry,
-    GroupEntry,
-    PartEntry,
-    PhraseEntry,
-    SlotEntry,
-    SlotTypeEntry,
-    SlotValueEntry,
-)
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType, Value
+from app.recognition.phrases.phrase import (
+    MAX_REPEAT,
+    Group,
+    OneOf,
+    Part,
+    Phrase,
+    Slot,
+    SlotType,
+    Value,
+)
 from app.recognition.text.strict_json import build_pointer
+
+MAX_ENTRIES = 100
+"""Longest list; longer ones are refused before their entries are validated."""
+
+Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
+Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
+Number = Annotated[float, Field(allow_inf_nan=False)]
+SlotValue = Annotated[
+    Name | int | Number, Field(description="Text or a number, as the slot type says.")
+]
+Times = Annotated[int, Field(ge=0, le=MAX_REPEAT)]
+Gestures = Annotated[
+    list[Name],
+    Field(min_length=1, max_length=MAX_ENTRIES, description="Labels, any of which will do."),
+]
+
+
+class _Model(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+Least = Annotated[
+    Times, Field(description="How often at least; 0: may be left out. Left out when 1.")
+]
+Most = Annotated[Times, Field(ge=1, description="How often at most. Left out when 1.")]
+
+
+class GesturesEntry(_Model):
+    """One gesture out of some, which carries no value."""
+
+    gestures: Gestures
+    least: Least = 1
+    most: Most = 1
+
+
+class SlotEntry(_Model):
+    """A gesture that carries a value for the command."""
+
+    slot: Annotated[
+        str,
+        Field(
+            pattern="^[a-z][a-z0-9_]{0,39}$",
+            description="Name by which command and spoken text refer to the value.",
+        ),
+    ]
+    type: Annotated[Name, Field(description="Name of the slot type that may stand here.")]
+    least: Least = 1
+    most: Most = 1
+    default: Annotated[
+        SlotValue | None,
+        Field(description="The command's value where the slot was left out. Left out when none."),
+    ] = None
+
+
+def _kind_of_member(entry: Any) -> str | None:
+    """Return the kind of a part by the key that only this kind has."""
+    for key in ("gestures", "slot"):
+        if (key in entry) if isinstance(entry, dict) else hasattr(entry, key):
+            return f"{key}-part"
+    return None
+
+
+def _kind_of_part(entry: Any) -> str | None:
+    if ("parts" in entry) if isinstance(entry, dict) else hasattr(entry, "parts"):
+        return "group-part"
+    return _kind_of_member(entry)
+
+
+_WANTED = {
+    "custom_error_type": "part_kind",
+    "custom_error_message": 'a part has the key "gestures", "slot" or "parts"; a group no groups',
+}
+
+MemberEntry = Annotated[
+    Annotated[GesturesEntry, Tag("gestures-part")] | Annotated[SlotEntry, Tag("slot-part")],
+    Discriminator(_kind_of_member, **_WANTED),
+]
+
+
+class GroupEntry(_Model):
+    """Parts that are left out or repeated together."""
+
+    parts: Annotated[list[MemberEntry], Field(min_length=1, max_length=MAX_ENTRIES)]
+    least: Least = 1
+    most: Most = 1
+
+
+PartEntry = Annotated[
+    Annotated[GesturesEntry, Tag("gestures-part")]
+    | Annotated[SlotEntry, Tag("slot-part")]
+    | Annotated[GroupEntry, Tag("group-part")],
+    Discriminator(_kind_of_part, **_WANTED),
+]
+
+
+class SlotValueEntry(_Model):
+    """What a gesture stands for in a slot."""
+
+    gesture: Name
+    value: SlotValue
+
+
+class SlotTypeEntry(_Model):
+    """The gestures that may fill a slot."""
+
+    name: Name
+    reads_as: Annotated[
+        Literal["number", "text", "digits"],
+        Field(description="A number or a text each, or digits that make one number together."),
+    ]
+    values: Annotated[list[SlotValueEntry], Field(min_length=1, max_length=MAX_ENTRIES)]
+
+
+class PhraseEntry(_Model):
+    """Sequences of gestures with one meaning."""
+
+    name: Name
+    parts: Annotated[list[PartEntry], Field(min_length=1, max_length=MAX_ENTRIES)]
+    command: Annotated[
+        Text | dict[str, Any] | None,
+        Field(
+            description="What the robot should do: text or an object, in which {slot} stands for a "
+            "value, or null. Left out when null."
+        ),
+    ] = None
+    says: Annotated[
+        Text,
+        Field(
+            description="How it is spoken back: {slot} stands for a value, what is in [ ] is left "
+            "out with its slots. Left out: the name and the values."
+        ),
+    ] = ""
+
+
+Label = Annotated[Name | None, Field(description="A gesture's label. Left out when none.")]
+
+
+class GrammarEntry(_Model):
+    """Which sequences of gestures are phrases, and what each tells the robot."""
+
+    start: Label = None
+    end: Label = None
+    cancel: Label = None
+    timeout: Annotated[
+        Number,
+        Field(
+            gt=0, description="Most seconds between the end of a gesture and the start of the next."
+        ),
+    ]
+    most_phrases: Annotated[
+        int, Field(ge=1, description="Phrases in one message. Left out when 1.")
+    ] = 1
+    slot_types: Annotated[list[SlotTypeEntry], Field(max_length=MAX_ENTRIES)] = []
+    phrases: Annotated[list[PhraseEntry], Field(max_length=MAX_ENTRIES)]
 
 
 def grammar_to_entry(grammar: Grammar) -> GrammarEntry:

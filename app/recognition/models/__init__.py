@@ -5,9 +5,10 @@ the remedy. In a checkout, ``make models`` obtains them (`release.models`).
 """
 
 from app.recognition.models.catalogue import ModelName, TaskBundleName
-from app.recognition.models.installation import export_models, install_models
 from app.recognition.models.storage import (
     InstalledModel,
+    export_models,
+    install_models,
     installed_models,
     model_path,
     models_dir,

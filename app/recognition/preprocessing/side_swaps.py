@@ -16,12 +16,22 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.features.median import median
 from app.recognition.features.motion import parse_body_part
 from app.recognition.poses.landmarks import SHOULDERS, other_side
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.outliers import measure_body_unit
+
+
+def median(values: FloatArray) -> float:
+    """Return the median of ``(N,)`` finite numbers, N > 0.
+
+    The same value as `numpy.median`, which takes ten times as long for a hundred numbers because
+    it handles axes, masks and NaN.
+    """
+    ordered, half = np.sort(values), len(values) // 2
+    return float((ordered[half] + ordered[-half - 1]) / 2)
+
 
 TOLL = 0.5
 """Cost of each change between normal and exchanged frames, in distances between the sides.

@@ -25,7 +25,6 @@ from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.jpeg_size import read_jpeg_size
 from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -423,3 +422,27 @@ def _info(container: InputContainer, stream: VideoStream, frame: DecodedFrame) -
         rotation=rotation,
         codec=_codec(stream),
     )
+
+
+_START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+"""Markers that are followed by the size (ITU-T T.81, table B.1)."""
+
+_WITHOUT_LENGTH = frozenset((*range(0xD0, 0xDA), 0x01))
+"""Markers without a segment: restarts, start and end of the picture."""
+
+
+def read_jpeg_size(picture: bytes) -> tuple[int, int] | None:
+    """Return width and height in pixels; None where no header states them."""
+    at = 2
+    while picture[:2] == b"\xff\xd8" and at + 9 <= len(picture) and picture[at] == 0xFF:
+        marker = picture[at + 1]
+        if marker in _START_OF_FRAME:
+            height = int.from_bytes(picture[at + 5 : at + 7], "big")
+            return int.from_bytes(picture[at + 7 : at + 9], "big"), height
+        if marker == 0xFF:  # padding
+            at += 1
+        elif marker in _WITHOUT_LENGTH:
+            at += 2
+        else:
+            at += 2 + max(2, int.from_bytes(picture[at + 2 : at + 4], "big"))
+    return None

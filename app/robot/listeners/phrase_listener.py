@@ -9,8 +9,7 @@ from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
-from app.robot.listeners.salute_listener import LandmarkListener
-from app.robot.listeners.wrapping_listener import WrappingListener
+from app.robot.listeners.trigger_listener import LandmarkListener, WrappingListener
 
 
 class PhraseListener(WrappingListener):

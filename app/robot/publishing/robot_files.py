@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
 from app.recognition.errors import LanguageError, OsgError, VehicleError
-from app.recognition.language.short_code import short_code
+from app.recognition.language.file import short_code
 from app.robot.active_language import ActiveLanguage
 from app.robot.mavlink.table import VehicleTable, parse_vehicle_table, read_vehicle_table
 

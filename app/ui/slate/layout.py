@@ -13,8 +13,7 @@ import numpy as np
 from app.recognition import Gesture, Language
 from app.recognition.features.hand_image import PlacedHands, place_hands
 from app.recognition.features.trajectory_image import SIZE
-from app.recognition.language.file import seal
-from app.recognition.language.short_code import short_code
+from app.recognition.language.file import seal, short_code
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words

@@ -17,7 +17,7 @@ from typing import Final
 import cv2
 import numpy as np
 
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from app.recognition import OsgError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.video import VideoFrame, VideoInfo

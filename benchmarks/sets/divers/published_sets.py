@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from app.recognition import OsgError
 from benchmarks.sets.divers import caddy, scubanet, sdg11
 from benchmarks.sets.divers.diver_take import DiverTake

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, NonNegativeInt, ValidationError
 
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from app.recognition import OsgError
 from benchmarks.sets.divers.diver_take import DiverTake, find_runs
 

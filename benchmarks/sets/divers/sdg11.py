@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from app.clip_sources import is_take
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from app.recognition import takes_in
 from benchmarks.sets.divers.diver_take import DiverTake
 

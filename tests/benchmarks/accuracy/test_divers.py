@@ -3,7 +3,7 @@
 from contextlib import closing
 from pathlib import Path
 
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from benchmarks.accuracy.divers import report
 from benchmarks.sets.divers.published_sets import find_set
 from tests.benchmarks.sets.divers.folders import write_scubanet, write_sdg11

@@ -11,7 +11,7 @@ import pytest
 from app.recognition.estimation import FrameLandmarks, Image
 from app.recognition.recording.live_segmentation import LONGEST_SALUTE
 from app.recognition.recording.segmentation import LONGEST_TAKE
-from app.robot import Frame, Listener, Notice
+from app.robot import Frame, Notice, TriggerListener
 from benchmarks.cost.endurance import LoopedClip, allocated_bytes, endure, slope_of
 from tests.api.recordings import FRAME_SIZE, RATE, recording_of
 from tests.recognition.damaged_clips import write_clip
@@ -58,7 +58,7 @@ class LoopedLandmarks:
 @pytest.mark.slow
 def test_every_loop_says_the_same_in_the_same_memory() -> None:
     stream = LoopedLandmarks("circle", "line", seconds=60 * MINUTES)
-    listener = Listener(spoken("circle", "line"))
+    listener = TriggerListener(spoken("circle", "line"))
     laps = endure(stream, stream, listener, water="off")
     assert len(laps) == round(60 * MINUTES / stream.period)
     for lap in laps:

@@ -10,7 +10,7 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from app.recognition.language.short_code import short_code
+from app.recognition.language.file import short_code
 from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage

@@ -2,14 +2,16 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, LanguageError
-from app.recognition.language.file import seal
+from app.recognition.language.file import seal, short_code
 from app.recognition.language.file_schema import MAX_FILE_BYTES, MAX_GESTURES
+from tests.conftest import ROOT
 from tests.recognition.held_takes import TWO, hold
 from tests.recognition.strategies import circle, in_space, line, recording
 
@@ -372,3 +374,20 @@ def test_two_hands_of_one_side_and_a_moving_held_shape_are_refused() -> None:
     content["gestures"][0]["salient"] = ["right_wrist"]
     with pytest.raises(LanguageError, match="a held hand shape has no salient landmarks"):
         Language.from_json(json.dumps(content))
+
+
+FILE = ROOT / "languages" / "osg-table-1.json"
+
+
+def test_the_code_is_the_beginning_of_the_files_checksum() -> None:
+    sha256 = json.loads(FILE.read_text("utf-8"))["sha256"]
+    code = short_code(sha256)
+    assert len(code) == 9
+    assert code.replace("-", "").lower() == sha256[:8]
+
+
+def test_another_revision_has_another_code() -> None:
+    language = Language.load(FILE)
+    texts = (language.to_json(), replace(language, revision=language.revision + 1).to_json())
+    codes = {short_code(json.loads(text)["sha256"]) for text in texts}
+    assert len(codes) == 2

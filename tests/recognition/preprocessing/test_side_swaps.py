@@ -2,12 +2,20 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app.recognition.poses.landmarks import POSE_LANDMARKS, other_side
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.side_swaps import find_side_swaps, pair_sides
+from app.recognition.preprocessing.side_swaps import find_side_swaps, median, pair_sides
 from tests.recognition.strategies import circle, recording
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=40))
+def test_it_is_numpys(numbers: list[float]) -> None:
+    assert median(np.array(numbers)) == np.median(numbers)
+
 
 HANDS = ("left_wrist", "right_wrist")
 

@@ -13,16 +13,16 @@ from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     ActiveLanguage,
     Event,
-    Listener,
     PhraseHeard,
     PhraseListener,
     TakeRecognized,
     TakeRejected,
+    TriggerListener,
 )
 from tests.api.recordings import recording_of
 from tests.recognition.held_takes import FIST, FLAT, between_salutes, follow, hold
 from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
-from tests.robot.listeners.test_salute_listener import cut, moved
+from tests.robot.listeners.test_trigger_listener import cut, moved
 
 PHOTO = Phrase(
     "photo",
@@ -57,7 +57,7 @@ def quiet(listener: PhraseListener, since: float, until: float) -> list[Event]:
 
 def test_a_message_is_emitted_right_after_the_gesture_that_closes_it() -> None:
     emitted = run_listener(
-        PhraseListener(Listener(language(CLOSED))), recording_of("circle", "line")
+        PhraseListener(TriggerListener(language(CLOSED))), recording_of("circle", "line")
     )
     assert phrases(emitted) == [("continues", None), ("complete", "mission: photo")]
     takes = [event for event in emitted if isinstance(event, TakeRecognized)]
@@ -70,9 +70,9 @@ def test_a_message_is_emitted_right_after_the_gesture_that_closes_it() -> None:
 
 def test_a_language_without_phrases_gives_the_same_events() -> None:
     recording = recording_of("circle")
-    emitted = run_listener(PhraseListener(Listener(spoken("circle", "line"))), recording)
+    emitted = run_listener(PhraseListener(TriggerListener(spoken("circle", "line"))), recording)
     assert [type(event) for event in emitted] == [
-        type(event) for event in run_listener(Listener(spoken("circle", "line")), recording)
+        type(event) for event in run_listener(TriggerListener(spoken("circle", "line")), recording)
     ]
     assert phrases(emitted) == []
 
@@ -80,14 +80,14 @@ def test_a_language_without_phrases_gives_the_same_events() -> None:
 def test_a_rejected_take_is_asked_for_again_and_gives_no_command() -> None:
     grammar = replace(CLOSED, end="circle")
     made = ActiveLanguage.from_json(replace(language_of("circle"), grammar=grammar).to_json())
-    emitted = run_listener(PhraseListener(Listener(made)), recording_of("circle", "line"))
+    emitted = run_listener(PhraseListener(TriggerListener(made)), recording_of("circle", "line"))
     assert any(isinstance(event, TakeRejected) for event in emitted)
     assert phrases(emitted) == [("continues", None), ("repeat", None)]
 
 
 def test_a_pair_is_asked_for_its_place_and_executes_nothing() -> None:
     active = ambiguous(replace(CLOSED, end="line"))
-    emitted = run_listener(PhraseListener(Listener(active)), recording_of("circle", "line"))
+    emitted = run_listener(PhraseListener(TriggerListener(active)), recording_of("circle", "line"))
     (take, _) = [event for event in emitted if isinstance(event, TakeRejected | TakeRecognized)]
     assert isinstance(take, TakeRejected)
     assert set(take.pair or ()) == {"circle", "ring"}
@@ -97,7 +97,7 @@ def test_a_pair_is_asked_for_its_place_and_executes_nothing() -> None:
 
 
 def test_a_pause_ends_a_message_that_needs_no_end() -> None:
-    listener = PhraseListener(Listener(language(OPEN)))
+    listener = PhraseListener(TriggerListener(language(OPEN)))
     recording = recording_of("circle")
     assert phrases(run_listener(listener, recording)) == [("continues", None)]
     emitted = quiet(listener, recording.poses.duration + 1, recording.poses.duration + 12)
@@ -105,7 +105,7 @@ def test_a_pause_ends_a_message_that_needs_no_end() -> None:
 
 
 def test_a_pause_is_not_too_long_while_a_take_goes_on() -> None:
-    listener = PhraseListener(Listener(language(replace(CLOSED, timeout=3))))
+    listener = PhraseListener(TriggerListener(language(replace(CLOSED, timeout=3))))
     recording = recording_of("circle", "line")
     assert phrases(run_listener(listener, recording)) == [
         ("continues", None),
@@ -114,7 +114,7 @@ def test_a_pause_is_not_too_long_while_a_take_goes_on() -> None:
 
 
 def test_a_gesture_emitted_late_still_belongs_to_the_message() -> None:
-    prompt, late = (PhraseListener(Listener(language(OPEN)), lag) for lag in (0.0, 20.0))
+    prompt, late = (PhraseListener(TriggerListener(language(OPEN)), lag) for lag in (0.0, 20.0))
     recording = recording_of("circle")
     for listener, kinds in ((prompt, ["complete"]), (late, [])):
         run_listener(listener, recording)
@@ -124,7 +124,7 @@ def test_a_gesture_emitted_late_still_belongs_to_the_message() -> None:
 
 @pytest.mark.parametrize("how", ["abandon", "finish", "speak"])
 def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> None:
-    listener = PhraseListener(Listener(language(OPEN)))
+    listener = PhraseListener(TriggerListener(language(OPEN)))
     recording = recording_of("circle")
     run_listener(listener, recording)
     now = recording.poses.duration + 0.5
@@ -140,14 +140,14 @@ def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> N
 
 
 def test_a_stream_that_begins_anew_cancels_a_message() -> None:
-    listener = PhraseListener(Listener(language(CLOSED)))
+    listener = PhraseListener(TriggerListener(language(CLOSED)))
     run_listener(listener, recording_of("circle"))
     emitted = run_listener(listener, recording_of("line"))
     assert phrases(emitted) == [("cancelled", None), ("outside", None)]
 
 
 def test_the_state_and_the_language_are_those_of_the_listener_inside() -> None:
-    listener = PhraseListener(Listener(language(OPEN)))
+    listener = PhraseListener(TriggerListener(language(OPEN)))
     run_listener(listener, cut(recording_of("circle"), 1.5))
     assert listener.state is TakeState.recording
     assert listener.language.name == "pool"
@@ -162,6 +162,8 @@ def test_a_sequence_of_two_hand_shapes_is_one_gesture_of_a_message() -> None:
     gestures = [Gesture.from_demonstration(label, take) for label, take in shown.items()]
     grammar = Grammar((Phrase("dive", (OneOf(("flat",)),)),), start="start", end="end", timeout=9)
     speaking = ActiveLanguage.from_json(Language("pool", gestures, grammar=grammar).to_json())
-    heard = run_listener(PhraseListener(Listener(speaking)), between_salutes(*shown.values()))
+    heard = run_listener(
+        PhraseListener(TriggerListener(speaking)), between_salutes(*shown.values())
+    )
     assert [each.label for each in heard if isinstance(each, TakeRecognized)] == [*shown]
     assert phrases(heard)[-1] == ("complete", "mission: dive")

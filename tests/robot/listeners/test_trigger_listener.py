@@ -1,90 +1,266 @@
-"""A robot listens between the triggers of its language, or without them."""
+"""Salute listener: frame by frame it recognises what the whole recording gives."""
+
+from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
-from app.recognition.errors import EstimatorError
-from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
+from app.recognition import PoseSequence, Recording, takes_in
+from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot import (
     ActiveLanguage,
     Event,
+    StateChanged,
     TakeRecognized,
     TakeRejected,
-    create_listener,
+    TriggerListener,
 )
-from tests.posed import BY_BELLY, BY_BELLY_AND_HEAD, posed_language, posed_recording
-from tests.robot.languages import moments_of, run_listener
+from app.robot.listeners.stream_order import MOST_LATE
+from tests.api.recordings import RATE, recording_of
+from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
+
+SHAPES = ("circle", "line", "circle backwards")
 
 
-def active(trigger: Trigger) -> ActiveLanguage:
-    return ActiveLanguage.from_json(replace(posed_language(), trigger=trigger).to_json())
+def cut(recording: Recording, end: float) -> Recording:
+    """Return a recording that stops at `end` seconds."""
+    poses = recording.poses.between(0, end)
+    return Recording(poses, recording.hands[: len(poses)], recording.salute[: len(poses)])
 
 
-def verdicts(events: list[Event]) -> list[str]:
-    told = [event for event in events if isinstance(event, TakeRecognized | TakeRejected)]
-    return [each.label if isinstance(each, TakeRecognized) else each.reason for each in told]
+def moved(poses: PoseSequence, seconds: float) -> PoseSequence:
+    return PoseSequence(
+        landmarks=poses.landmarks,
+        xy=poses.xy,
+        confidence=poses.confidence,
+        time=poses.time + seconds,
+        frame_size=poses.frame_size,
+    )
 
 
-@pytest.mark.parametrize("name", ["circle-by-belly", "circle-by-belly-2", "wedge-by-belly"])
-def test_a_gesture_between_arm_poses_is_heard_where_no_hand_is_seen(name: str) -> None:
-    listener = create_listener(active(BY_BELLY))
-    assert verdicts(run_listener(listener, posed_recording(name))) == [name.split("-")[0]]
+@settings(max_examples=5, deadline=None)
+@given(st.lists(st.sampled_from(SHAPES), min_size=1, max_size=2))
+def test_the_events_of_a_stream_equal_the_recognitions_of_its_recording(shapes: list[str]) -> None:
+    language = spoken("circle", "line")
+    recording = recording_of(*shapes)
+    emitted = run_listener(TriggerListener(language), recording)
+    verdicts = [event for event in emitted if isinstance(event, TakeRecognized | TakeRejected)]
+    takes = takes_in(recording)
+    assert len(takes) == len(verdicts) == len(shapes)
+    for take, verdict in zip(takes, verdicts, strict=True):
+        recognition = language.recognizer.recognize(take.poses)
+        assert (verdict.start, verdict.end, verdict.closed) == (take.start, take.end, True)
+        assert verdict.recognition is not None
+        assert verdict.recognition.to_dict() == recognition.to_dict()
+        assert isinstance(verdict, TakeRecognized) is (recognition.label is not None)
 
 
-def test_another_pose_may_end_it() -> None:
-    listener = create_listener(active(BY_BELLY_AND_HEAD))
-    assert verdicts(run_listener(listener, posed_recording("wedge-by-belly-and-head"))) == ["wedge"]
+def test_states_and_recognitions_are_emitted_in_order() -> None:
+    emitted = run_listener(TriggerListener(spoken("circle", "line")), recording_of("line"))
+    states = [event.state for event in emitted if isinstance(event, StateChanged)]
+    assert states == [TakeState.idle, TakeState.recording, TakeState.done]
+    (recognition,) = [event for event in emitted if isinstance(event, TakeRecognized)]
+    assert (recognition.label, recognition.nearest, recognition.revision) == ("line", "line", 1)
+    assert recognition.margin > 0
+    assert recognition.sha256 == spoken("circle", "line").sha256
+    assert recognition.start < recognition.end < recognition.time
 
 
-def test_a_take_without_its_stop_pose_is_rejected_with_the_reason() -> None:
-    listener = create_listener(active(BY_BELLY_AND_HEAD))
-    (reason,) = verdicts(run_listener(listener, posed_recording("wedge-by-belly")))
-    assert reason.startswith("no pose of the arms ended it")
-    assert reason.endswith("or what begins a take came again")
+def test_a_gesture_is_heard_the_same_after_any_other() -> None:
+    listener = TriggerListener(spoken("circle", "line"))
+    run_listener(listener, recording_of("circle"))
+    later = [
+        event
+        for moment, salute in moments_of(recording_of("line"))
+        for event in listener.feed(moved(moment, 100), salute)
+    ]
+    (recognition,) = [event for event in later if isinstance(event, TakeRecognized)]
+    alone = run_listener(TriggerListener(spoken("circle", "line")), recording_of("line"))
+    (expected,) = [event for event in alone if isinstance(event, TakeRecognized)]
+    assert recognition.label == expected.label
+    assert recognition.confidence == pytest.approx(expected.confidence, abs=1e-6)
 
 
-def test_a_language_without_trigger_is_heard_anywhere() -> None:
-    listener = create_listener(active(NO_TRIGGER))
-    events = [*run_listener(listener, posed_recording("circle-by-belly")), *listener.finish()]
-    assert "circle" in verdicts(events)
+def test_what_is_no_gesture_is_rejected_with_the_nearest_one() -> None:
+    emitted = run_listener(TriggerListener(spoken("circle")), recording_of("line"))
+    (rejected,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert "no gesture of 'pool'" in rejected.reason
+    assert (rejected.nearest, rejected.margin) == ("circle", np.inf)
+    assert rejected.confidence is not None
 
 
-def test_a_stream_without_hands_refuses_salutes_at_once_and_later() -> None:
-    with pytest.raises(EstimatorError, match="without hands no salute is seen"):
-        create_listener(active(SALUTE), hands=False)
-    listener = create_listener(active(BY_BELLY), hands=False)
-    with pytest.raises(EstimatorError, match="waits for salutes"):
-        listener.set_language(active(SALUTE))
-    assert listener.language.trigger == BY_BELLY
-    spotting = create_listener(active(SALUTE), without_salutes=True, hands=False)
-    assert spotting.language.trigger == SALUTE
+def test_a_take_between_two_gestures_is_asked_about_and_one_between_three_is_not() -> None:
+    emitted = run_listener(TriggerListener(ambiguous()), recording_of("circle"))
+    (asked,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert asked.recognition is not None
+    assert asked.pair == asked.recognition.pair
+    assert asked.pair is not None
+    assert asked.reason == f"{asked.pair[0]} or {asked.pair[1]}? show it again"
+    three = [replace(language_of("circle").gestures[0], label=label) for label in "abc"]
+    language = replace(language_of("circle"), gestures=three)
+    active = ActiveLanguage.from_json(language.to_json())
+    emitted = run_listener(TriggerListener(active), recording_of("circle"))
+    (rejected,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert rejected.pair is None
+    assert rejected.reason == "it lies between a, b and c"
 
 
-def test_between_trigger_gestures_alone_gestures_are_heard() -> None:
-    frames = moments_of(posed_recording("circle-by-belly"))
-    unopened = active(Trigger("gesture", start_label="wedge", stop_label="circle"))
-    for spots, heard in ((False, False), (True, True)):
-        listener = create_listener(unopened, without_salutes=spots)
-        events = [event for frame in frames for event in listener.feed(*frame)]
-        assert ("circle" in verdicts([*events, *listener.finish()])) == heard
+def test_an_open_take_is_not_asked_about() -> None:
+    listener = TriggerListener(ambiguous())
+    run_listener(listener, cut(recording_of("circle"), 2.8))
+    (rejected,) = listener.finish()
+    assert isinstance(rejected, TakeRejected)
+    assert rejected.recognition is not None
+    assert (rejected.recognition.outcome, rejected.pair) == ("pair", None)
 
 
-def test_a_language_with_another_trigger_is_heard_from_the_next_frame_on() -> None:
-    frames = moments_of(posed_recording("circle-by-belly"))
-    listener = create_listener(active(SALUTE))
-    for trigger in (NO_TRIGGER, SALUTE, BY_BELLY):
-        listener.set_language(active(trigger))
-        assert listener.language.trigger == trigger
+def test_a_take_that_nobody_ends_is_rejected_when_the_stream_does() -> None:
+    listener = TriggerListener(spoken("circle"))
+    unfinished = cut(recording_of("circle"), 2.5)
+    assert not [e for e in run_listener(listener, unfinished) if not isinstance(e, StateChanged)]
+    (rejected,) = listener.finish()
+    assert isinstance(rejected, TakeRejected)
+    (take,) = takes_in(unfinished)
+    assert (rejected.start, rejected.end, rejected.closed) == (take.start, take.end, False)
+    assert rejected.reason == "the stream ended before a second salute"
+    assert rejected.nearest == "circle"
+    assert len(listener) == 0
+
+
+def test_a_take_that_nobody_ends_is_rejected_after_a_minute_and_memory_stays_bounded() -> None:
+    listener = TriggerListener(spoken("circle"))
+    *_, (last, _) = moments_of(cut(recording_of("circle"), 2.5))
+    run_listener(listener, cut(recording_of("circle"), 2.5))
+    emitted: list[Event] = []
+    for frame in range(1, round(100 * RATE)):
+        emitted += listener.feed(moved(last, frame / RATE), 0.0)
+        assert len(listener) <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE + 2
+    (rejected,) = [event for event in emitted if isinstance(event, TakeRejected)]
+    assert "no salute ended it within 60 s" in rejected.reason
+    assert rejected.end - rejected.start == pytest.approx(LONGEST_TAKE)
+    assert listener.state is TakeState.idle
+
+
+def test_another_picture_or_time_going_back_ends_a_take() -> None:
+    begun = cut(recording_of("circle"), 2.5)
+    *_, (last, _) = moments_of(begun)
+    larger = [
+        PoseSequence(
+            landmarks=last.landmarks, xy=last.xy, time=last.time + 0.05, frame_size=(1280, 960)
+        )
+    ]
+    earlier = [moved(last, number / RATE - 2) for number in range(MOST_LATE)]
+    for following, reason in [(earlier, "time went back"), (larger, "640 x 480 to 1280")]:
+        listener = TriggerListener(spoken("circle"))
+        run_listener(listener, begun)
+        rejected, idle = [event for each in following for event in listener.feed(each, 0.0)]
+        assert isinstance(rejected, TakeRejected)
+        assert reason in rejected.reason
+        assert isinstance(idle, StateChanged)
+        assert idle.state is TakeState.idle
+
+
+@pytest.mark.withstands(row="H27")
+def test_late_and_repeated_frames_are_dropped_and_counted_and_the_take_stays() -> None:
+    frames = moments_of(recording_of("circle"))
+    middle = len(frames) // 2
+    disordered = [*frames[:middle], frames[middle - 1], frames[middle - 9], *frames[middle:]]
+    disordered[8], disordered[9] = disordered[9], disordered[8]
+    listener, alone = TriggerListener(spoken("circle")), TriggerListener(spoken("circle"))
+    events = [event for frame in disordered for event in listener.feed(*frame)]
+    expected = [event for frame in frames for event in alone.feed(*frame)]
+    assert listener.order.late == 3
+    (said,) = [event for event in events if isinstance(event, TakeRecognized)]
+    (same,) = [event for event in expected if isinstance(event, TakeRecognized)]
+    assert (said.label, said.start, said.end) == (same.label, same.start, same.end)
+
+
+@pytest.mark.parametrize("seconds", [59.0, 61.0, 62.0, 70.0, 3600.0, 1e6])
+@pytest.mark.withstands(row="H27")
+def test_a_pause_or_a_step_of_the_clock_in_a_take_rejects_it(seconds: float) -> None:
+    listener = TriggerListener(spoken("circle"))
+    begun = cut(recording_of("circle"), 2.0)
+    run_listener(listener, begun)
+    *_, (last, _) = moments_of(begun)
+    events = [
+        event
+        for number in range(1, 4 * RATE)
+        for event in listener.feed(moved(last, seconds + number / RATE), 0.0)
+    ]
+    (rejected,) = [event for event in events if isinstance(event, TakeRejected)]
+    assert "no salute ended it within 60 s" in rejected.reason
+    assert listener.state is TakeState.idle
+    # And it goes on.
+    later = [
+        event
+        for moment, salute in moments_of(recording_of("circle"))
+        for event in listener.feed(moved(moment, seconds + 100), salute)
+    ]
+    assert [event.label for event in later if isinstance(event, TakeRecognized)] == ["circle"]
+
+
+def dive(*shapes: str, rest: float = 3.0) -> list[tuple[PoseSequence, float]]:
+    """Return gestures between their salutes, with a rest of still hands after each."""
+    frames: list[tuple[PoseSequence, float]] = []
+    for shape in shapes:
+        began = float(frames[-1][0].time[0]) + 1 / RATE if frames else 0.0
+        frames += [(moved(each, began), salute) for each, salute in moments_of(recording_of(shape))]
+        last, _ = frames[-1]
+        frames += [(moved(last, number / RATE), 0.0) for number in range(1, round(rest * RATE) + 1)]
+    return frames
+
+
+def labels_in(listener: TriggerListener, frames: list[tuple[PoseSequence, float]]) -> list[str]:
     events = [event for frame in frames for event in listener.feed(*frame)]
-    assert verdicts(events) == ["circle"]
+    return [event.label for event in events if isinstance(event, TakeRecognized)]
 
 
-def test_a_change_of_the_trigger_ends_an_open_take() -> None:
-    frames = moments_of(posed_recording("circle-by-belly"))
-    for following in (BY_BELLY_AND_HEAD, NO_TRIGGER):
-        listener = create_listener(active(BY_BELLY))
-        events = [event for frame in frames[:100] for event in listener.feed(*frame)]
-        listener.set_language(active(following))
-        events += listener.feed(*frames[100])
-        assert verdicts(events) == ["the language's trigger changed"]
+@pytest.mark.parametrize("rest", [1.2, 3.0, 12.0])
+def test_after_a_missed_salute_the_next_gestures_are_recognised(rest: float) -> None:
+    language = spoken("circle", "line")
+    frames = dive("circle", "line", "circle", "line", rest=rest)
+    assert labels_in(TriggerListener(language), frames) == ["circle", "line", "circle", "line"]
+    # Begun after the first salute, as after a restart.
+    began = next(index for index, (_, salute) in enumerate(frames) if salute == 0)
+    listener = TriggerListener(language)
+    assert labels_in(listener, frames[began:]) == ["line", "circle", "line"]
+    assert listener.state is TakeState.idle
+
+
+def test_a_salute_that_was_not_seen_costs_one_gesture() -> None:
+    language = spoken("circle", "line")
+    frames = dive("circle", "line", "circle", "line")
+    for missed in range(8):
+        listener, kept, number, before = TriggerListener(language), [], -1, 0.0
+        for moment, salute in frames:
+            number += salute > before
+            before = salute
+            kept.append((moment, 0.0 if number == missed else salute))
+        recognised = labels_in(listener, kept)
+        # Without the salute that ends it, a gesture is recognised at the next one's first salute.
+        expected = ["circle", "line", "circle", "line"]
+        del expected[min((missed + 1) // 2, 3)]
+        assert recognised == expected, missed
+
+
+def test_a_rejected_gesture_does_not_turn_the_pairs_around() -> None:
+    listener = TriggerListener(spoken("circle"))
+    frames = dive("circle", "line", "circle", "line", "circle")
+    assert labels_in(listener, frames) == ["circle"] * 3
+
+
+def test_a_take_is_recognised_by_the_language_at_its_end() -> None:
+    listener = TriggerListener(spoken("circle"))
+    begun = moments_of(recording_of("line"))
+    emitted: list[Event] = []
+    for number, frame in enumerate(begun):
+        if number == len(begun) // 2:
+            listener.set_language(spoken("circle", "line", revision=2))
+        emitted += listener.feed(*frame)
+    (recognition,) = [event for event in emitted if isinstance(event, TakeRecognized)]
+    assert (recognition.label, recognition.revision) == ("line", 2)

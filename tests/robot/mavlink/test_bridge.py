@@ -23,7 +23,6 @@ from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
 from app.robot import (
     ActiveLanguage,
     FrameRateChanged,
-    Listener,
     OutputFailed,
     PhraseHeard,
     PhraseListener,
@@ -31,6 +30,7 @@ from app.robot import (
     SourceEnded,
     TakeRecognized,
     TakeRejected,
+    TriggerListener,
 )
 from app.robot.mavlink import peer
 from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
@@ -86,13 +86,13 @@ def crew() -> ActiveLanguage:
 
 @cache
 def a_take() -> TakeRecognized:
-    events = run_listener(Listener(spoken("circle")), recording_of("circle"))
+    events = run_listener(TriggerListener(spoken("circle")), recording_of("circle"))
     return next(event for event in events if isinstance(event, TakeRecognized))
 
 
 @cache
 def a_rejected_take() -> TakeRejected:
-    events = run_listener(Listener(spoken("circle")), recording_of("line"))
+    events = run_listener(TriggerListener(spoken("circle")), recording_of("line"))
     return next(event for event in events if isinstance(event, TakeRejected))
 
 
@@ -425,7 +425,7 @@ def test_a_message_is_obeyed_with_its_values_within_the_limits(metres: int) -> N
     made = replace(language_of("circle", "line"), grammar=grammar)
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line", "circle", "line")
-    events = run_listener(PhraseListener(Listener(language)), shown)
+    events = run_listener(PhraseListener(TriggerListener(language)), shown)
     assert [each.phrase.kind for each in events if isinstance(each, PhraseHeard)].count(
         "complete"
     ) == 2
@@ -451,7 +451,7 @@ def test_the_cancel_of_the_phrases_drops_an_order_unless_it_is_an_emergency(
     made = replace(language_of("circle", "line"), grammar=Grammar((go,), cancel="line"))
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "circle", "line")
-    events = run_listener(PhraseListener(Listener(language)), shown)
+    events = run_listener(PhraseListener(TriggerListener(language)), shown)
     table = {key: TABLE[key] for key in ("format", "version", "vehicle")}
     table |= {"phrases": {"go": {"do": "hold"}}}
     table |= {"emergency": {"line": "surface"}} if is_emergency else {}

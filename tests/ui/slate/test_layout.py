@@ -13,9 +13,8 @@ import pytest
 from app.recognition import Gesture, Language
 from app.recognition.errors import OsgError
 from app.recognition.triggers.trigger import NO_TRIGGER
-from app.ui.slate.fonts import find_font
 from app.ui.slate.layout import ARROWS, HEAD, MARGIN, lay_out
-from app.ui.slate.pdf import to_pdf
+from app.ui.slate.pdf import find_font, to_pdf
 from app.ui.slate.primitives import Disc, Page, Path, Shape, Words, estimate_width, wrap
 from app.ui.slate.svg import to_svg
 from tests.conftest import ROOT

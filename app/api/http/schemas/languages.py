@@ -12,8 +12,8 @@ from app.api.http.schemas.values import Author, Body, NewName
 from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.file_schema import TuningEntry
-from app.recognition.language.grammar_schema import GrammarEntry
-from app.recognition.language.trigger_schema import TriggerEntry
+from app.recognition.language.grammar_entry import GrammarEntry
+from app.recognition.language.trigger_entry import TriggerEntry
 
 
 class LanguageDraft(Body):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.evaluation.clip_recorder import ClipRecorder
+from app.evaluation.labelled_takes import ClipRecorder
 from app.recognition import OsgError
 from benchmarks.sets.divers.published_sets import find_set
 from tests.benchmarks.sets.divers.folders import write_caddy, write_scubanet, write_sdg11
