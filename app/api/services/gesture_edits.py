@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from app.api.http.problems import Fault, ProblemError
 from app.api.http.schemas.gestures import (
@@ -14,11 +14,16 @@ from app.api.http.schemas.gestures import (
 )
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.running_studio import Studio
-from app.recognition import Gesture, GestureError, Language
+from app.recognition import Gesture, GestureError, Language, PoseError
 from app.recognition.gestures.switches import Switches
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.clip_range import Demonstration
 from app.recognition.text.look_alikes import find_confusable
 from app.recognition.triggers.trigger import SALUTE, Trigger
+
+UNNAMED = "this gesture"
+"""Name in messages for a gesture that has no label yet."""
 
 WORDS = frozenset({"label", "description", "command", "diver"})
 """Fields of a gesture that are for people and the robot, and do not affect recognition."""
@@ -302,3 +307,60 @@ def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:
     except GestureError as error:
         fault = Fault(pointer="/salient", detail=str(error))
         raise ProblemError(422, "gesture_unusable", str(error), errors=[fault]) from error
+
+
+@dataclass(frozen=True)
+class EditedGesture:
+    """A gesture that is being edited, in its language.
+
+    Attributes
+    ----------
+    of
+        The language.
+    known
+        Label of the gesture in it; None: a new gesture.
+    change
+        What is changed of it, or a new gesture's demonstration.
+    demonstration
+        The demonstration that the change names; None if it names none.
+
+    """
+
+    of: Language
+    known: str | None
+    change: GestureChange
+    demonstration: Demonstration | None
+
+    @property
+    def label(self) -> str:
+        """Label of the gesture, or `UNNAMED`."""
+        label = self.known or UNNAMED
+        while self.known is None and label in self.of.labels:
+            label += "'"
+        return label
+
+    def language(self) -> Language:
+        """Return the language with it."""
+        change = self.change
+        if self.known is not None:
+            words = change.model_copy(update={"label": None})
+            return change_gesture_of(self.of, self.label, words, self.demonstration)
+        assert self.demonstration is not None  # a new gesture needs one
+        made = Gesture.from_demonstration(
+            self.label, self.demonstration.poses, salient=change.salient or None
+        )
+        switches = set_switches(Switches(), change)
+        return self.of.with_gesture(replace(made, switches=switches))
+
+    def gesture(self) -> Gesture:
+        """Return the gesture itself."""
+        return self.language().gesture(self.label)
+
+    def trajectory(self) -> Trajectory | None:
+        """Return the trajectory with all known landmarks; None if none is known."""
+        if self.demonstration is None:
+            return gesture_in(self.of, self.label).trajectory
+        try:
+            return Trajectory.from_poses(repair_poses(self.demonstration.poses).poses)
+        except PoseError:
+            return None

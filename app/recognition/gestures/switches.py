@@ -73,3 +73,79 @@ class Sensitivity:
     tempo: bool
     sides: bool
     hand_shape: bool
+
+
+def describe_effects(
+    switches: Switches, counting: Sensitivity | None, *, hands: int, held: bool
+) -> dict[str, str]:
+    """Describe what each switch comes to in a language, in words.
+
+    Parameters
+    ----------
+    switches
+        The gesture's.
+    counting
+        What counts in the language; None: only a drawing is known.
+    hands
+        How many parts of the body move independently (`find_hands`).
+    held
+        Whether the gesture is a held hand shape.
+
+    """
+    names = [*vars(switches)]
+    if held:
+        words = dict.fromkeys(names, "a held hand shape does not move")
+        words["hand_shape"] = "a held hand shape always counts"
+        words["mirror"] = _describe_held_mirror(switches)
+        return words
+    if counting is None:
+        return dict.fromkeys(names, "only the drawing is known, which looks the same either way")
+    return {
+        "direction": _describe_direction(switches, counting, hands),
+        "tempo": _describe_tempo(switches, counting),
+        "mirror": _describe_mirror(switches, counting),
+        "hand_shape": _describe_hand_shape(switches, counting),
+    }
+
+
+def _describe_direction(switches: Switches, counting: Sensitivity, hands: int) -> str:
+    if hands != 1:
+        return "the direction counts: of two hands, opening is the reverse of closing"
+    if not counting.direction:
+        return "the reverse direction counts as the same gesture"
+    if switches.direction == "on":
+        return "the reverse direction is not the gesture"
+    return "the direction counts: another gesture is the same figure in reverse"
+
+
+def _describe_tempo(switches: Switches, counting: Sensitivity) -> str:
+    if not counting.tempo:
+        return "the gesture may take any time"
+    if switches.tempo == "on":
+        return "the duration counts"
+    return "the duration counts: another gesture is the same movement, clearly slower or quicker"
+
+
+def _describe_mirror(switches: Switches, counting: Sensitivity) -> str:
+    if switches.mirror == "on":
+        return "the mirror image, with the other hand, counts as the same gesture"
+    if not counting.sides:
+        return "the mirror image is not the gesture, but left and right may be exchanged"
+    return "the mirror image, with the other hand, is not the gesture"
+
+
+def _describe_held_mirror(switches: Switches) -> str:
+    if switches.mirror == "off":
+        return "the mirror image, with the other hand, is not the gesture"
+    also = "the mirror image, with the other hand, counts as the same gesture"
+    return also if switches.mirror == "on" else f"{also}, unless it is another one"
+
+
+def _describe_hand_shape(switches: Switches, counting: Sensitivity) -> str:
+    if counting.hand_shape:
+        if switches.hand_shape == "on":
+            return "the hand must be seen and have this shape while it moves"
+        return "the hand shape counts: another gesture is the same movement with another hand shape"
+    if switches.hand_shape == "on":
+        return "no hand is seen in the demonstration that keeps a shape: it cannot count"
+    return "the hand may have any shape"

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
 from app.api.ingest.quotas import SenderQuota
@@ -28,11 +30,19 @@ from app.api.services.gesture_edits import (
 )
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision
-from app.api.services.running_studio import CurrentStudio, edited
+from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
+from app.recognition.poses.trajectory import Trajectory
 
 router = APIRouter(prefix="/languages/{language_id}/gestures", tags=["gestures"])
+
+TORSO_PIXELS = 160
+"""Height in pixels of the torso in a demonstration drawn without its clip: the picture of a diver
+from the head to the knees is then about 640 pixels high, as a clip's picture."""
+
+BORDER = 40
+"""Pixels around the drawing: room for the half of the head beyond its middle, which is followed."""
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
@@ -145,3 +155,37 @@ def get_gesture_image(
     language = studio.language(studio.languages.get(language_id, revision))
     gesture = gesture_in(language, label)
     return send_trajectory_image(gesture, revision, marks)
+
+
+@router.get("/demonstration", responses=problem_responses(404))
+@router.get("/{label:path}/demonstration", responses=problem_responses(404))
+@computed_briefly
+def get_demonstration(
+    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
+) -> PosesView:
+    """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
+    language = studio.language(studio.languages.get(language_id, revision))
+    trajectory = gesture_in(language, label).trajectory
+    if trajectory is None:
+        detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
+        raise ProblemError(404, "no_demonstration", detail)
+    return _lay_out(trajectory)
+
+
+def _lay_out(trajectory: Trajectory) -> PosesView:
+    """Scale a trajectory to fill a picture, x right, y down."""
+    known = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
+    low, high = known.min(axis=0), known.max(axis=0)
+    # Without a torso the unit is the largest extent, which is drawn as high as two torsos.
+    scale = TORSO_PIXELS * (1 if trajectory.unit == "torso_length" else 2)
+    xy = (trajectory.xy - low) * scale + BORDER
+    size = np.ceil((high - low) * scale) + 2 * BORDER
+    return PosesView(
+        landmarks=list(trajectory.landmarks),
+        time=trajectory.time.tolist(),
+        xy=[
+            [[*point] if np.isfinite(point).all() else [None, None] for point in row] for row in xy
+        ],
+        confidence=None,
+        frame_size=[int(size[0]), int(size[1])],
+    )

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
 from typing import Annotated
 
-import numpy as np
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
-from app.api.http.revisions import Revision
-from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import (
     HELD_SHAPES,
     DemonstrationFaultView,
@@ -24,53 +20,36 @@ from app.api.http.schemas.gestures import (
 from app.api.http.schemas.values import Body, Label
 from app.api.services.demonstration_sources import view_faults
 from app.api.services.gesture_edits import (
-    change_gesture_of,
+    EditedGesture,
     demonstration_at,
     gesture_in,
-    set_switches,
 )
-from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
-from app.recognition import Gesture, GestureError, Language, PoseError, Recognizer
+from app.api.services.running_studio import CurrentStudio, Studio
+from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
 from app.recognition.gestures.demonstration import condense
-from app.recognition.gestures.switches import Sensitivity, Switches
+from app.recognition.gestures.switches import Sensitivity, describe_effects
 from app.recognition.health.check import rank_others
 from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import (
     choose_representatives,
     find_least_displacement,
     find_salient_landmarks,
     measure_displacements,
 )
-from app.recognition.recording.clip_range import Demonstration
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture
 
 SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
 
-UNNAMED = "this gesture"
-"""Name in messages for a gesture that has no label yet."""
-
 DISPLACEMENT_DIGITS = 3
 """Decimals of a displacement in torso lengths: about a millimetre on a diver."""
 
-TORSO_PIXELS = 160
-"""Height in pixels of the torso in a demonstration drawn without its clip: the picture of a diver
-from the head to the knees is then about 640 pixels high, as a clip's picture."""
-
-BORDER = 40
-"""Pixels around the drawing: room for the half of the head beyond its middle, which is followed."""
-
 MOST_NEAR = 3
 """Gestures that are listed beside the edited one."""
-
-HELD_WORDS = "it is a held hand shape, in which nothing moves"
-
-HELD_SHAPE_WORDS = "it is a held hand shape, which always counts"
 
 router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
 
@@ -218,65 +197,7 @@ def _nearest(gesture: Gesture, recognizer: Recognizer) -> list[NearGestureView] 
     ]
 
 
-@router.get("/gestures/demonstration", responses=problem_responses(404))
-@router.get("/gestures/{label:path}/demonstration", responses=problem_responses(404))
-@computed_briefly
-def get_demonstration(
-    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
-) -> PosesView:
-    """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
-    language = studio.language(studio.languages.get(language_id, revision))
-    trajectory = gesture_in(language, label).trajectory
-    if trajectory is None:
-        detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
-        raise ProblemError(404, "no_demonstration", detail)
-    return _lay_out(trajectory)
-
-
-@dataclass(frozen=True)
-class _Draft:
-    """A gesture that is being edited, in its language."""
-
-    of: Language
-    request: PreviewRequest
-    demonstration: Demonstration | None
-
-    @property
-    def label(self) -> str:
-        """Label of the gesture, or `UNNAMED`."""
-        label = self.request.label or UNNAMED
-        while self.request.label is None and label in self.of.labels:
-            label += "'"
-        return label
-
-    def language(self) -> Language:
-        """Return the language with it."""
-        change = self.request.change
-        if self.request.label is not None:
-            words = change.model_copy(update={"label": None})
-            return change_gesture_of(self.of, self.label, words, self.demonstration)
-        assert self.demonstration is not None  # `_draft` refuses it otherwise
-        made = Gesture.from_demonstration(
-            self.label, self.demonstration.poses, salient=change.salient or None
-        )
-        switches = set_switches(Switches(), change)
-        return self.of.with_gesture(replace(made, switches=switches))
-
-    def gesture(self) -> Gesture:
-        """Return the gesture itself."""
-        return self.language().gesture(self.label)
-
-    def trajectory(self) -> Trajectory | None:
-        """Return the trajectory with all known landmarks; None if none is known."""
-        if self.demonstration is None:
-            return gesture_in(self.of, self.label).trajectory
-        try:
-            return Trajectory.from_poses(repair_poses(self.demonstration.poses).poses)
-        except PoseError:
-            return None
-
-
-def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draft:
+def _draft(language: Language, request: PreviewRequest, studio: Studio) -> EditedGesture:
     where = request.change.demonstration
     if request.label is not None:
         gesture_in(language, request.label)
@@ -285,12 +206,12 @@ def _draft(language: Language, request: PreviewRequest, studio: Studio) -> _Draf
         fault = Fault(pointer="/change/demonstration", detail=detail)
         raise ProblemError(422, "request_invalid", detail, errors=[fault])
     shown = None if where is None else demonstration_at(studio, where, language.trigger)
-    return _Draft(language, request, shown)
+    return EditedGesture(language, request.label, request.change, shown)
 
 
 def _view(
     gesture: Gesture | None,
-    draft: _Draft,
+    draft: EditedGesture,
     problem: str | None,
     *,
     marks: bool,
@@ -347,7 +268,9 @@ def _descriptors(gesture: Gesture) -> list[DescriptorView]:
 
 
 def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, SwitchView]:
-    words = _switch_words(gesture, counting)
+    words = describe_effects(
+        gesture.switches, counting, hands=find_hands(gesture.salient), held=gesture.is_held
+    )
     counts: dict[str, bool | None] = dict.fromkeys(SWITCHES)
     if counting is not None:
         sides_free = gesture.switches.mirror == "on" or not counting.sides
@@ -363,81 +286,3 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
         )
         for name in SWITCHES
     }
-
-
-def _switch_words(gesture: Gesture, counting: Sensitivity | None) -> dict[str, str]:
-    """Describe the effect of each switch in this language."""
-    if gesture.is_held:
-        words = {"mirror": _held_mirror_words(gesture), "hand_shape": HELD_SHAPE_WORDS}
-        return {**dict.fromkeys(SWITCHES, HELD_WORDS), **words}
-    if counting is None:
-        only = "only its drawing is known, which looks the same either way"
-        return dict.fromkeys(SWITCHES, only)
-    return {
-        "direction": _direction_words(gesture, counting),
-        "tempo": _tempo_words(gesture, counting),
-        "mirror": _mirror_words(gesture, counting),
-        "hand_shape": _hand_shape_words(gesture, counting),
-    }
-
-
-def _direction_words(gesture: Gesture, counting: Sensitivity) -> str:
-    if find_hands(gesture.salient) != 1:
-        return "it is read as shown: of two hands, opening is the reverse of closing"
-    if not counting.direction:
-        return "it is read either way round"
-    if gesture.switches.direction == "on":
-        return "it is read only the way round it is shown"
-    return "it counts, for another gesture is the same figure the other way round"
-
-
-def _tempo_words(gesture: Gesture, counting: Sensitivity) -> str:
-    if not counting.tempo:
-        return "it is read however fast it is shown"
-    if gesture.switches.tempo == "on":
-        return "how long it takes counts"
-    return "it counts, for another gesture is the same movement, clearly slower or quicker"
-
-
-def _mirror_words(gesture: Gesture, counting: Sensitivity) -> str:
-    if gesture.switches.mirror == "on":
-        return "its mirror image, with the other hand, is read as it too"
-    if not counting.sides:
-        return "its mirror image is not read as it, but left and right may have been exchanged"
-    return "its mirror image, with the other hand, is not read as it"
-
-
-def _hand_shape_words(gesture: Gesture, counting: Sensitivity) -> str:
-    if counting.hand_shape:
-        if gesture.switches.hand_shape == "on":
-            return "the hand must be seen and have this shape while it moves"
-        return "it counts, for another gesture is the same movement with another hand shape"
-    if gesture.switches.hand_shape == "on":
-        return "no hand is seen in the demonstration that keeps a shape: it cannot count"
-    return "it is read whatever shape the hand has"
-
-
-def _held_mirror_words(gesture: Gesture) -> str:
-    if gesture.switches.mirror == "off":
-        return "its mirror image, with the other hand, is not read as it"
-    also = "its mirror image, with the other hand, is read as it too"
-    return also if gesture.switches.mirror == "on" else f"{also}, unless it is another gesture"
-
-
-def _lay_out(trajectory: Trajectory) -> PosesView:
-    """Scale a trajectory to fill a picture, x right, y down."""
-    known = trajectory.xy[np.isfinite(trajectory.xy).all(axis=2)]
-    low, high = known.min(axis=0), known.max(axis=0)
-    # Without a torso the unit is the largest extent, which is drawn as high as two torsos.
-    scale = TORSO_PIXELS * (1 if trajectory.unit == "torso_length" else 2)
-    xy = (trajectory.xy - low) * scale + BORDER
-    size = np.ceil((high - low) * scale) + 2 * BORDER
-    return PosesView(
-        landmarks=list(trajectory.landmarks),
-        time=trajectory.time.tolist(),
-        xy=[
-            [[*point] if np.isfinite(point).all() else [None, None] for point in row] for row in xy
-        ],
-        confidence=None,
-        frame_size=[int(size[0]), int(size[1])],
-    )

@@ -37,7 +37,7 @@ def test_a_held_shape_is_previewed_and_saved_as_a_hand(
     assert (preview["problem"], preview["salient"]) == (None, [])
     outlook = client.post(f"{LANGUAGES}/{signs}/preview/health", json=body).json()
     assert outlook["nearest"] is not None
-    assert "nothing moves" in outlook["switches"]["tempo"]["words"]
+    assert "does not move" in outlook["switches"]["tempo"]["words"]
     (_, gesture, _) = client.get(f"{LANGUAGES}/{signs}").json()["gestures"]
     assert (gesture["label"], gesture["salient"], gesture["has_trajectory"]) == ("ok", [], True)
     assert decode_png(client.get(gesture["thumbnail"]).content, (224, 224)).any()

@@ -128,7 +128,7 @@ def test_the_outlook_says_what_automatic_switches_come_to(
     seen = outlook(client, language_id, demonstration={"clip_id": back}).json()
     direction = seen["switches"]["direction"]
     assert (direction["position"], direction["counts"]) == ("auto", True)
-    assert "other way round" in direction["words"]
+    assert "in reverse" in direction["words"]
     alone = outlook(client, language_id, "circle").json()["switches"]["direction"]
     assert alone["counts"] is False
     never = outlook(client, language_id, demonstration={"clip_id": back}, direction="off")
