@@ -26,16 +26,14 @@ from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.audit import Audit
-from app.api.middleware.body_limit import BodyLimit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
 from app.api.middleware.identities import check_tokens
-from app.api.middleware.pace import BodyPace
+from app.api.middleware.request_bodies import BodyLimit, BodyPace, StrictBodies
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
 from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
-from app.api.middleware.strict_bodies import StrictBodies
 from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics

@@ -15,7 +15,7 @@ from starlette.requests import ClientDisconnect, Request
 
 from app.api.http.problems import ProblemError
 from app.api.ingest.fields import LONGEST, UploadFields
-from app.api.middleware.body_limit import too_large
+from app.api.middleware.request_bodies import too_large
 from app.settings import Settings
 
 FRAME_BYTES = 64 * 1024

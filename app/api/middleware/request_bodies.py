@@ -1,0 +1,179 @@
+"""ASGI middleware for request bodies: limits their size and pace, and refuses ambiguous JSON."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Collection, Mapping
+
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.http.problems import Fault, ProblemError
+from app.recognition.text.strict_json import StrictJSONError, read_json
+
+
+class BodyLimit:
+    """Limits request bodies by path.
+
+    Parameters
+    ----------
+    app
+        App that reads the bodies.
+    default
+        Bytes allowed.
+    exceptions
+        Bytes allowed for individual paths; ``/*`` at the end matches any one name.
+
+    """
+
+    def __init__(self, app: ASGIApp, default: int, exceptions: Mapping[str, int]) -> None:
+        self._app = app
+        self._default = default
+        self._exceptions = dict(exceptions)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on the request, and count its bytes."""
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        path = scope["path"]
+        place = path.rpartition("/")[0] + "/*"
+        limit = self._exceptions.get(path, self._exceptions.get(place, self._default))
+        stated = Headers(scope=scope).get("content-length", "")
+        if stated.isdecimal() and int(stated) > limit:
+            return await too_large(limit).response()(scope, receive, send)
+        received = 0
+
+        async def receive_with_limit() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > limit:
+                raise too_large(limit)
+            return message
+
+        return await self._app(scope, receive_with_limit, send)
+
+
+def too_large(limit: int) -> ProblemError:
+    """Return the problem that refuses a body of more than `limit` bytes."""
+    detail = (
+        f"the request is larger than the limit of {limit / 1e6:g} MB; "
+        "send a shorter or smaller file"
+    )
+    # The rest of the body stays unread, so the connection cannot be reused.
+    return ProblemError(413, "too_large", detail, headers={"Connection": "close"}, limit=limit)
+
+
+class BodyPace:
+    """Limits the time between two pieces of a request's body, and its average rate.
+
+    Parameters
+    ----------
+    app
+        App that reads the bodies.
+    grace_seconds
+        Longest pause, and the time before the rate is checked.
+    bytes_per_second
+        Slowest rate; 0 tolerates any.
+
+    """
+
+    def __init__(self, app: ASGIApp, grace_seconds: float, bytes_per_second: int) -> None:
+        self._app = app
+        self._grace_seconds = grace_seconds
+        self._bytes_per_second = bytes_per_second
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on the request, and check the time between pieces of its body."""
+        if scope["type"] != "http":
+            return await self._app(scope, receive, send)
+        began, received, complete = time.monotonic(), 0, False
+
+        async def receive_in_time() -> Message:
+            nonlocal received, complete
+            if complete:
+                return await receive()  # the end of the connection, whenever that is
+            try:
+                async with asyncio.timeout(self._grace_seconds):
+                    message = await receive()
+            except TimeoutError as error:
+                raise too_slow() from error
+            received += len(message.get("body", b""))
+            complete = not message.get("more_body", False)
+            excess = time.monotonic() - began - self._grace_seconds
+            if not complete and excess > 0 and received < excess * self._bytes_per_second:
+                raise too_slow()
+            return message
+
+        return await self._app(scope, receive_in_time, send)
+
+
+def too_slow() -> ProblemError:
+    """Return the problem that refuses a body that comes too slowly."""
+    detail = "the upload came too slowly and was ended; try again on a better connection"
+    return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})
+
+
+SMALL_BYTES = 16 * 1024
+"""Bodies up to this size are parsed on the event loop, in a millisecond."""
+
+
+class StrictBodies:
+    """Checks JSON bodies while they are received.
+
+    Parameters
+    ----------
+    app
+        App that reads the bodies; the problem is raised in its call of `receive`.
+    most_bytes
+        Size of the largest body, which an outer middleware must enforce.
+    exceptions
+        Paths whose routes check the bodies themselves.
+
+    """
+
+    def __init__(self, app: ASGIApp, most_bytes: int, exceptions: Collection[str]) -> None:
+        self._app = app
+        self._most_bytes = most_bytes
+        self._exceptions = frozenset(exceptions)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on the request, and check a copy of a JSON body."""
+        if scope["type"] != "http" or scope["path"] in self._exceptions or not _is_json(scope):
+            return await self._app(scope, receive, send)
+        pieces: list[bytes] = []
+        complete = False
+
+        async def receive_and_check() -> Message:
+            nonlocal complete
+            message = await receive()
+            if not complete and message["type"] == "http.request":
+                pieces.append(message.get("body", b""))
+                complete = not message.get("more_body", False)
+                if complete and (body := b"".join(pieces)):
+                    await self._check(body)
+            return message
+
+        return await self._app(scope, receive_and_check, send)
+
+    async def _check(self, body: bytes) -> None:
+        try:
+            if len(body) <= SMALL_BYTES:
+                read_json(body, self._most_bytes)
+            else:
+                await run_in_threadpool(read_json, body, self._most_bytes)
+        except StrictJSONError as error:
+            faults = [Fault(pointer=each.pointer, detail=each.message) for each in error.faults]
+            words = "; ".join(f"{each.pointer or 'body'}: {each.detail}" for each in faults[:3])
+            detail = f"the request is not valid: {words}"
+            raise ProblemError(422, "request_invalid", detail, errors=faults) from error
+
+
+def _is_json(scope: Scope) -> bool:
+    kind, _, _ = Headers(scope=scope).get("content-type", "").partition(";")
+    kind = kind.strip().lower()
+    return kind == "application/json" or (
+        kind.startswith("application/") and kind.endswith("+json")
+    )
