@@ -116,7 +116,8 @@ def create_app(settings: Settings | None = None) -> FastAPI:
         redoc_url=None,
     )
     app.state.requests = OpenRequests()
-    app.state.connections = ConnectionGuard(settings.idle_seconds, settings.max_connections)
+    limits = settings.limits
+    app.state.connections = ConnectionGuard(limits.idle_seconds, limits.max_connections)
     app.state.workspaces = registry
     app.state.live_places = asyncio.Semaphore(live.MOST_VIEWS)
     app.router.routes.extend(_build_routes())
@@ -294,17 +295,17 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     limits = {
         f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
         f"{API}/uploads/*": settings.max_clip_bytes,
-        f"{API}/languages/import": settings.max_language_bytes,
+        f"{API}/languages/import": settings.limits.max_language_bytes,
     }
-    app.add_middleware(StrictBodies, most_bytes=settings.max_body_bytes, exceptions=limits)
+    app.add_middleware(StrictBodies, most_bytes=settings.limits.max_body_bytes, exceptions=limits)
     app.add_middleware(Audit)
     app.add_middleware(SafePaths)
     app.add_middleware(
         BodyPace,
-        grace_seconds=settings.upload_grace_seconds,
-        bytes_per_second=settings.upload_bytes_per_second,
+        grace_seconds=settings.limits.upload_grace_seconds,
+        bytes_per_second=settings.limits.upload_bytes_per_second,
     )
-    app.add_middleware(BodyLimit, default=settings.max_body_bytes, exceptions=limits)
+    app.add_middleware(BodyLimit, default=settings.limits.max_body_bytes, exceptions=limits)
     app.add_middleware(RoleRequired)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from importlib.util import find_spec
 from ipaddress import ip_address
@@ -9,7 +10,15 @@ from pathlib import Path
 from typing import Annotated, Literal, Self
 
 from platformdirs import user_data_path
-from pydantic import AfterValidator, Field, SecretStr, field_validator, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    SecretStr,
+    field_validator,
+    model_validator,
+)
 from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 
 from app import resources
@@ -57,6 +66,54 @@ Place = Annotated[Path, AfterValidator(_absolute)]
 """A folder as an absolute path, because worker processes have another working directory."""
 
 
+class Limits(BaseModel):
+    """Limits of one server that few need to change, in the setting `Settings.limits`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    storage_copy_bytes: Annotated[int, Field(ge=0)] = 0
+    """Largest total size in bytes of a server's copies of clips in an ``s3://`` storage; the
+    least recently used are removed first, and fetched again when needed. 0 is no limit."""
+
+    max_body_bytes: Annotated[int, Field(gt=0)] = MEBIBYTE
+    """Largest JSON body accepted; the largest one the page sends is below 10 kB."""
+
+    max_language_bytes: Annotated[int, Field(gt=0)] = 64 * MEBIBYTE
+    """Largest language file accepted. The published format takes 0.85 MB a gesture."""
+
+    free_disk_bytes: Annotated[int, Field(ge=0)] = 256 * MEBIBYTE
+    """Space that an upload must leave free, so that the database can still write."""
+
+    upload_bytes_per_second: Annotated[int, Field(ge=0)] = 8 * 1024
+    """Slowest request body tolerated after `upload_grace_seconds`; 0 tolerates any."""
+
+    upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
+    """Seconds before the rate of a request body is checked, and the longest pause within one."""
+
+    idle_seconds: Annotated[float, Field(gt=0)] = 15.0
+    """Seconds for the header of a request; a connection without one is then closed."""
+
+    max_connections: Annotated[int, Field(ge=0)] = 0
+    """Most open connections, half of them from one address; 0 sets no limit beside the system's."""
+
+    max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
+    """Waiting jobs allowed for one address: enough for the clips of a language."""
+
+    worker_memory_bytes: Annotated[int, Field(ge=0)] = 6 * 1024 * MEBIBYTE
+    """Address space of one worker in bytes; 0 for no limit, which GPU providers need."""
+
+    worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
+    """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, so that the
+    longest clip (`app.recognition.recording.video.VideoLimits`) takes 72 minutes."""
+
+    worker_file_bytes: Annotated[int, Field(ge=0)] = 4 * 512 * MEBIBYTE
+    """Largest file in bytes that a job may write while it unpacks a dive recording or copies a
+    video: the largest unpacked archive (`app.bags.staging.MOST_BYTES`). 0 is no limit."""
+
+    worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
+    """Seconds without progress after which a worker counts as hanging and is stopped."""
+
+
 class Settings(BaseSettings):
     """Settings of one server; every field can be given as ``OSG_<FIELD>`` in the environment."""
 
@@ -75,10 +132,6 @@ class Settings(BaseSettings):
     """Place of the clips' files, for several servers on one database: a shared folder, or
     ``s3://BUCKET/PREFIX``, of which each server keeps copies in its `data_dir`. ``None`` is the
     folder ``clips`` in `data_dir`."""
-
-    storage_copy_bytes: Annotated[int, Field(ge=0)] = 0
-    """Largest total size in bytes of a server's copies of clips in an ``s3://`` `storage`; the
-    least recently used are removed first, and fetched again when needed. 0 is no limit."""
 
     samples_dir: Place = Field(default_factory=resources.samples_dir)
     """Folder of ``*.json`` sample languages and ``clips/``; may be absent."""
@@ -119,27 +172,6 @@ class Settings(BaseSettings):
     max_clip_bytes: Annotated[int, Field(gt=0)] = 512 * MEBIBYTE
     """Largest clip accepted. Ten minutes of a dive camera's 1080p at 6 Mbit/s are 450 MB."""
 
-    max_body_bytes: Annotated[int, Field(gt=0)] = MEBIBYTE
-    """Largest JSON body accepted; the largest one the page sends is below 10 kB."""
-
-    max_language_bytes: Annotated[int, Field(gt=0)] = 64 * MEBIBYTE
-    """Largest language file accepted. The published format takes 0.85 MB a gesture."""
-
-    free_disk_bytes: Annotated[int, Field(ge=0)] = 256 * MEBIBYTE
-    """Space that an upload must leave free, so that the database can still write."""
-
-    upload_bytes_per_second: Annotated[int, Field(ge=0)] = 8 * 1024
-    """Slowest request body tolerated after `upload_grace_seconds`; 0 tolerates any."""
-
-    upload_grace_seconds: Annotated[float, Field(gt=0)] = 30.0
-    """Seconds before the rate of a request body is checked, and the longest pause within one."""
-
-    idle_seconds: Annotated[float, Field(gt=0)] = 15.0
-    """Seconds for the header of a request; a connection without one is then closed."""
-
-    max_connections: Annotated[int, Field(ge=0)] = 0
-    """Most open connections, half of them from one address; 0 sets no limit beside the system's."""
-
     water: WaterCorrection = "auto"
     """Correction of colour and contrast: ``auto`` if the models then find more, ``on`` always,
     ``off`` never."""
@@ -153,25 +185,12 @@ class Settings(BaseSettings):
     ``dask://HOST:PORT`` is the Dask cluster of that scheduler, whose machines see the clips' folder
     under the same path."""
 
-    max_jobs_per_client: Annotated[int, Field(gt=0)] = 64
-    """Waiting jobs allowed for one address: enough for the clips of a language."""
-
-    worker_memory_bytes: Annotated[int, Field(ge=0)] = 6 * 1024 * MEBIBYTE
-    """Address space of one worker in bytes; 0 for no limit, which GPU providers need."""
-
-    worker_cpu_seconds: Annotated[int, Field(ge=0)] = 2 * 60 * 60
-    """Processor time of one job; 0 is no limit. A slow machine takes 80 ms a frame, so that the
-    longest clip (`app.recognition.recording.video.VideoLimits`) takes 72 minutes."""
-
-    worker_file_bytes: Annotated[int, Field(ge=0)] = 4 * 512 * MEBIBYTE
-    """Largest file in bytes that a job may write while it unpacks a dive recording or copies a
-    video: the largest unpacked archive (`app.bags.staging.MOST_BYTES`). 0 is no limit."""
-
-    worker_silence_seconds: Annotated[float, Field(gt=0)] = 120.0
-    """Seconds without progress after which a worker counts as hanging and is stopped."""
-
     undo_hours: Annotated[float, Field(ge=0)] = 24.0
     """Hours for which deleted items can be restored; the next start then removes them."""
+
+    limits: Limits = Limits()
+    """Limits that few need to change, as a JSON object; those that are left out keep their default:
+    ``OSG_LIMITS='{"max_connections": 500}'``."""
 
     @property
     def public(self) -> bool:
@@ -202,6 +221,18 @@ class Settings(BaseSettings):
     def database(self) -> str:
         """SQLAlchemy URL of the database in use."""
         return self.database_url or f"sqlite:///{self.data_dir / 'studio.db'}"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _take_single_limits(cls, values: object) -> object:
+        """Read limits as version 0.2 had them, one variable each, for one more version."""
+        if not isinstance(values, dict):
+            return values
+        names = {name: f"OSG_{name.upper()}" for name in Limits.model_fields}
+        single = {name: os.environ[of] for name, of in names.items() if of in os.environ}
+        given = values.get("limits", {})
+        given = given.model_dump() if isinstance(given, Limits) else given
+        return {**values, "limits": {**single, **given}} if isinstance(given, dict) else values
 
     @model_validator(mode="before")
     @classmethod

@@ -15,7 +15,7 @@ import app.recognition
 from app.cli.application import command_line
 from app.recognition import OsgError
 from app.server import create_app
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.browser.conftest import started
 from tests.conftest import ROOT
 
@@ -144,6 +144,8 @@ def test_the_reference_holds_every_command_call_name_setting_and_event(site: Pat
     settings = text_of(site, "reference/settings.html")
     for name in Settings.model_fields:
         assert f"OSG_{name.upper()}" in settings
+    for name in Limits.model_fields:
+        assert name in settings
     schema = json.loads((site / "reference" / "robot-event-1.schema.json").read_text("utf-8"))
     events = text_of(site, "reference/robot-events.html")
     for event in schema["discriminator"]["mapping"]:

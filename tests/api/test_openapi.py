@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given
 from hypothesis import settings as hypothesis_settings
 
 from app.server import create_app
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, client_of, running
 
@@ -39,7 +39,9 @@ def lasting_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Running
     """Return one server for all generated requests."""
     folder = tmp_path_factory.mktemp("openapi")
     settings = Settings(
-        data_dir=folder / "data", samples_dir=folder / "samples", max_jobs_per_client=3
+        data_dir=folder / "data",
+        samples_dir=folder / "samples",
+        limits=Limits(max_jobs_per_client=3),
     )
     with running(settings) as server:
         yield server

@@ -39,7 +39,7 @@ async def require_place_in_queue(request: Request, studio: Studio) -> int:
     Number of bytes that the resumable uploads of all senders have announced and not yet sent.
 
     """
-    most, client = studio.settings.max_jobs_per_client, client_of(request)
+    most, client = studio.settings.limits.max_jobs_per_client, client_of(request)
     uploads = await run_in_threadpool(studio.uploads.active)
     begun = sum(upload.client == client for upload in uploads)
     if begun + await run_in_threadpool(studio.jobs.count_open, client) >= most:

@@ -232,7 +232,7 @@ def require_space(folder: Path, size: int, settings: Settings, *, reserved: int 
 
     `reserved` is the number of bytes that other uploads have announced and not yet sent.
     """
-    needed = size + reserved + settings.free_disk_bytes
+    needed = size + reserved + settings.limits.free_disk_bytes
     free = shutil.disk_usage(folder).free
     if free < needed:
         announced = f", {reserved / 1e6:.0f} MB of it for uploads under way" if reserved else ""

@@ -316,7 +316,7 @@ async def _studio(
         database,
         settings.clips,
         open_object_store(settings.objects),
-        settings.storage_copy_bytes if settings.objects else 0,
+        settings.limits.storage_copy_bytes if settings.objects else 0,
     )
     jobs = JobStore(database, identity_of(settings.data_dir))
     languages = LanguageStore(database)

@@ -134,7 +134,7 @@ class Workers:
         """Record a clip; the last message is the outcome. See `ClipSource.record`."""
         options = options.model_copy(update={"water": self._settings.water})
         command = ["record", source.name, str(file), *files.arguments]
-        silence = self._settings.worker_silence_seconds
+        silence = self._settings.limits.worker_silence_seconds
         made = (files.video,) if source.makes_video else ()
         used = TaskFiles((file,), (*made, files.recording, files.poster, files.filmstrip))
         messages = self._run(command, file.parent, silence, used, options)
@@ -150,7 +150,7 @@ class Workers:
         `threads` limits the threads of the models if several processes share a machine.
         """
         command = ["landmarks", source.name, str(file), str(recording), f"--threads={threads}"]
-        silence = self._settings.worker_silence_seconds
+        silence = self._settings.limits.worker_silence_seconds
         used = TaskFiles((file,), (recording,))
         messages = self._run(command, recording.parent, silence, used, options)
         async with aclosing(_steps(messages)) as steps:
@@ -167,7 +167,9 @@ class Workers:
             await asyncio.to_thread(wanted.write_bytes, request)
             command = ["session", str(wanted), str(written), *files.arguments]
             used = TaskFiles((wanted, *parts), (written,))
-            messages = self._run(command, folder, self._settings.worker_silence_seconds, used)
+            messages = self._run(
+                command, folder, self._settings.limits.worker_silence_seconds, used
+            )
             async with self._short, aclosing(_steps(messages)) as steps:
                 async for step in steps:
                     if isinstance(step, Finished):
@@ -266,9 +268,9 @@ class Workers:
         """
         given = (options or ReadOptions()).model_dump_json(exclude_defaults=True)
         limits = {
-            "memory-bytes": self._settings.worker_memory_bytes,
-            "cpu-seconds": cpu_seconds or self._settings.worker_cpu_seconds,
-            "file-bytes": self._settings.worker_file_bytes,
+            "memory-bytes": self._settings.limits.worker_memory_bytes,
+            "cpu-seconds": cpu_seconds or self._settings.limits.worker_cpu_seconds,
+            "file-bytes": self._settings.limits.worker_file_bytes,
         }
         arguments = [f"--{name}={value}" for name, value in limits.items()]
         executor = executor or self._executor

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from app.recognition.recording.video import probe
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.recordings import recording_of
 from tests.api.running import assert_problem, client_of, running, until
 from tests.bags.bag_files import (
@@ -182,7 +182,9 @@ def test_a_recording_that_cannot_be_used_is_refused_and_nothing_is_kept(
 
 def test_what_packs_to_nothing_does_not_fill_the_disk(tmp_path: Path) -> None:
     settings = Settings(
-        data_dir=tmp_path / "data", samples_dir=tmp_path / "samples", worker_file_bytes=1_000_000
+        data_dir=tmp_path / "data",
+        samples_dir=tmp_path / "samples",
+        limits=Limits(worker_file_bytes=1_000_000),
     )
     bomb = zip_of(tmp_path / "dive.zip", {"dive.mcap": bytes(50_000_000)})
     with running(settings) as server, client_of(server.address) as client:

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.api.ingest.multipart import LONGEST_NAME, MOST_PARTS, display_name
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept, upload
 from tests.api.running import Running, assert_problem, client_of, running, until
 
@@ -131,7 +131,7 @@ def test_a_sender_that_vanishes_leaves_nothing(
 
 
 def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
-    impatient = settings.model_copy(update={"upload_grace_seconds": 0.2})
+    impatient = settings.model_copy(update={"limits": Limits(upload_grace_seconds=0.2)})
     with running(impatient) as server, begin_upload(server, 100_000) as connection:
         connection.settimeout(60)
         answer = connection.recv(10_000)
@@ -144,7 +144,7 @@ def test_a_sender_that_stalls_is_dismissed(settings: Settings) -> None:
 @pytest.mark.withstands(row="H03")
 def test_a_sender_that_trickles_is_dismissed(settings: Settings) -> None:
     impatient = settings.model_copy(
-        update={"upload_grace_seconds": 0.5, "upload_bytes_per_second": 1_000_000}
+        update={"limits": Limits(upload_grace_seconds=0.5, upload_bytes_per_second=1_000_000)}
     )
     with running(impatient) as server, begin_upload(server, 100_000) as connection:
         connection.settimeout(0.1)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.running import Running, client_of, running, until
 
 HEAD = "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000\r\n"
@@ -19,7 +19,7 @@ HEAD = "POST {path} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: 1000\r
 
 @pytest.fixture
 def impatient(settings: Settings) -> Iterator[Running]:
-    quick = {"idle_seconds": 0.5, "upload_grace_seconds": 0.5}
+    quick = {"limits": Limits(idle_seconds=0.5, upload_grace_seconds=0.5)}
     with running(settings.model_copy(update=quick)) as server:
         yield server
 
@@ -118,7 +118,7 @@ def test_a_request_that_takes_long_and_a_stream_are_not_idle(impatient: Running)
 
 
 def test_at_the_limit_idle_connections_give_way(settings: Settings) -> None:
-    narrow = settings.model_copy(update={"max_connections": 40})
+    narrow = settings.model_copy(update={"limits": Limits(max_connections=40)})
     with running(narrow) as server, ExitStack() as idle:
         for _ in range(60):
             idle.enter_context(connected(server, ""))
@@ -134,7 +134,7 @@ def test_few_files_are_enough_for_many_idle_connections(tmp_path: Path) -> None:
         "import resource, sys; resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256))\n"
         "from pathlib import Path\n"
         "from app.server import run\n"
-        "from app.settings import Settings\n"
+        "from app.settings import Limits, Settings\n"
         "folder = Path(sys.argv[1])\n"
         "settings = Settings(data_dir=folder, samples_dir=folder / 'none', port=0)\n"
         "run(settings, open_browser=False)\n"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import httpx
 import pytest
 
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.running import assert_problem, client_of, running
 
 BODY = b'{"name": "' + b"x" * 5000 + b'"}'
@@ -14,7 +14,7 @@ BODY = b'{"name": "' + b"x" * 5000 + b'"}'
 @pytest.fixture
 def narrow(settings: Settings) -> Iterator[httpx.Client]:
     """Return a client of a server that takes bodies of 1000 bytes."""
-    limits = {"max_body_bytes": 1000, "max_language_bytes": 3000}
+    limits = {"limits": Limits(max_body_bytes=1000, max_language_bytes=3000)}
     with (
         running(settings.model_copy(update=limits)) as server,
         client_of(server.address) as client,

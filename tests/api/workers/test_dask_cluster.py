@@ -14,7 +14,7 @@ from distributed import Client
 
 from app.api.services.running_studio import Studio
 from app.recognition import Recording
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, until
@@ -45,7 +45,7 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
         samples_dir=tmp_path / "none",
         executor=f"dask://{cluster.address}",
         workers=2,
-        worker_silence_seconds=SILENCE,
+        limits=Limits(worker_silence_seconds=SILENCE),
     )
 
 

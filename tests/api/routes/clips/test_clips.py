@@ -6,7 +6,7 @@ import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
-from app.settings import Settings
+from app.settings import Limits, Settings
 from app.store import Clip
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, client_of, running, until
@@ -155,7 +155,7 @@ def test_a_clip_beyond_the_limit_is_413(settings: Settings, tmp_path: Path, form
 def test_a_full_disk_is_507_and_says_when_to_come_back(
     settings: Settings, small_clip: Path
 ) -> None:
-    full = settings.model_copy(update={"free_disk_bytes": 2**62})
+    full = settings.model_copy(update={"limits": Limits(free_disk_bytes=2**62)})
     with running(full) as server, client_of(server.address) as client:
         answer = upload(client, small_clip)
         assert_problem(answer, 507, "disk_full")
@@ -193,7 +193,7 @@ def test_a_path_with_a_nul_names_nothing(client: httpx.Client, path: str) -> Non
 
 @pytest.mark.withstands(row="H23")
 def test_too_many_waiting_clips_are_429(settings: Settings, small_clip: Path) -> None:
-    narrow = settings.model_copy(update={"max_jobs_per_client": 1})
+    narrow = settings.model_copy(update={"limits": Limits(max_jobs_per_client=1)})
     with running(narrow) as server, client_of(server.address) as client:
         # Stored without the runner's knowledge, so that the job waits as long as the test needs.
         partial = server.studio.clips.new_partial()

@@ -11,7 +11,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.settings import Settings
+from app.settings import Limits, Settings
 from tests.api.routes.clips.test_clips import CLIPS, upload
 from tests.api.running import assert_problem, client_of, running, until
 from tests.api.running_workers import alive, hold_worker, linux, workers_of
@@ -130,7 +130,7 @@ def test_a_worker_that_crashes_fails_its_job_and_nothing_else(
 @linux
 def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> None:
     # Long enough for the worker to begin; else it has ended before it is suspended.
-    impatient = settings.model_copy(update={"worker_silence_seconds": 5.0})
+    impatient = settings.model_copy(update={"limits": Limits(worker_silence_seconds=5.0)})
     with running(impatient) as server, client_of(server.address) as client:
         job_id, worker = frozen_worker(client, long_clip)
         until(lambda: client.get(f"{JOBS}/{job_id}").json()["status"] == "failed")
@@ -144,7 +144,7 @@ def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> No
 @pytest.mark.withstands(row="H10")
 def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "large.mp4", frames=2, size=(3840, 2160))
-    narrow = settings.model_copy(update={"worker_memory_bytes": 100 * 1024 * 1024})
+    narrow = settings.model_copy(update={"limits": Limits(worker_memory_bytes=100 * 1024 * 1024)})
     with running(narrow) as server, client_of(server.address) as client:
         refused = upload(client, clip)
         assert refused.status_code == 422

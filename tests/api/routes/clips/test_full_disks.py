@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Connection
 
-from app.settings import Settings
+from app.settings import Limits, Settings
 from app.store import database
 from tests.api.routes.clips.test_resumable_uploads import UPLOADS, begun, offset_of, sent
 from tests.api.running import assert_problem, client_of, running
@@ -51,7 +51,9 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
     small_disk: Path, small_clip: Path, left: int
 ) -> None:
     settings = Settings(
-        data_dir=small_disk / "data", samples_dir=small_disk / "none", free_disk_bytes=0
+        data_dir=small_disk / "data",
+        samples_dir=small_disk / "none",
+        limits=Limits(free_disk_bytes=0),
     )
     content = small_clip.read_bytes()
     with running(settings) as server, client_of(server.address) as client:

@@ -16,7 +16,7 @@ from pathlib import Path
 import httpx
 import pytest
 
-from app.settings import Settings
+from app.settings import Limits, Settings
 from app.store import Role, TokenFile, UploadStore
 from app.store.models import now
 from tests.api.ingest.test_bag_clips import two_divers
@@ -234,7 +234,10 @@ def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> N
     free = shutil.disk_usage(settings.data_dir.parent).free
     # Half of what is free may be used, so that other programs do not disturb.
     tight = settings.model_copy(
-        update={"free_disk_bytes": free // 2, "max_clip_bytes": free, "max_jobs_per_client": 3}
+        update={
+            "max_clip_bytes": free,
+            "limits": Limits(free_disk_bytes=free // 2, max_jobs_per_client=3),
+        }
     )
     with running(tight) as server, client_of(server.address) as client:
         place = begun(client, free // 3)
@@ -247,7 +250,7 @@ def test_announced_bytes_are_reserved(settings: Settings, small_clip: Path) -> N
 
 
 def test_an_upload_counts_as_a_waiting_job_from_its_beginning(settings: Settings) -> None:
-    narrow = settings.model_copy(update={"max_jobs_per_client": 2})
+    narrow = settings.model_copy(update={"limits": Limits(max_jobs_per_client=2)})
     with running(narrow) as server, client_of(server.address) as client:
         for _ in range(2):
             place = begun(client, 100)
