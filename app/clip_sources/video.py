@@ -4,8 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.clip_sources.source import ClipFacts, OpenFrames, ReadOptions, RecordedClip, Refusal
-from app.clip_sources.video_types import HEAD_BYTES, video_type
+from app.clip_sources.source import (
+    HEAD_BYTES,
+    ClipFacts,
+    OpenFrames,
+    ReadOptions,
+    RecordedClip,
+    Refusal,
+    video_type,
+)
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator

@@ -1,9 +1,8 @@
 """Readers of keypoint files: OpenPose, MediaPipe, DeepLabCut, SLEAP."""
 
-from app.keypoint_files.file_kind import Ending, keypoint_ending
 from app.keypoint_files.keypoint_table import KeypointOptions
 from app.keypoint_files.reader import ReadKeypoints, read_keypoints
-from app.keypoint_files.registry import is_keypoint_file
+from app.keypoint_files.registry import Ending, is_keypoint_file, keypoint_ending
 from app.keypoint_files.staging import is_openpose_archive, stage
 
 __all__ = [

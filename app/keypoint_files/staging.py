@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 from zipfile import ZipFile, ZipInfo
 
-from app.keypoint_files.file_kind import Ending
 from app.keypoint_files.openpose import LARGEST_FILE
+from app.keypoint_files.registry import Ending
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.video_limits import VideoLimits
 from app.system.stand_in import stand_in

@@ -18,7 +18,7 @@ from app.api.ingest.quotas import quota_of
 from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
-from app.clip_sources.video_types import HEAD_BYTES
+from app.clip_sources.source import HEAD_BYTES
 from app.store import Clip, Upload
 
 UNSUPPORTED = "unsupported_media_type"

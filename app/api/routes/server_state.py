@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 from fastapi import APIRouter
+from pydantic import BaseModel, Field
 
 from app import __version__
 from app.api.http.problems import problem_responses
-from app.api.http.schemas.server_state import Health
 from app.recognition.models import installed_models
+
+
+class Health(BaseModel):
+    """Whether the server works."""
+
+    status: str = Field(description="ok, or models_missing: then clips cannot be extracted")
+    version: str
+    models: dict[str, str] = Field(description="ok, missing or damaged, per model file")
+
 
 router = APIRouter(tags=["health"])
 

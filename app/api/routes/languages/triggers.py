@@ -3,21 +3,52 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Annotated
 
 from fastapi import APIRouter, Response
+from pydantic import Field
 
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import LanguageView
-from app.api.http.schemas.triggers import HeldPose, TriggerDraft
+from app.api.http.schemas.values import Body, Identifier, Seconds
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError
+from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.triggers.arm_pose import ArmPose
-from app.recognition.triggers.trigger import Trigger
+from app.recognition.triggers.trigger import Trigger, TriggerKind
+
+
+class HeldPose(Body):
+    """Where a pose of the arms is held."""
+
+    clip_id: Identifier
+    start: Seconds | None = Field(default=None, description="Null: of the clip")
+    end: Seconds | None = Field(default=None, description="Null: of the clip")
+
+
+class TriggerDraft(Body):
+    """What shall begin and end the takes of a language."""
+
+    kind: TriggerKind
+    start: HeldPose | None = Field(
+        default=None,
+        description="Of kind pose, the one that begins a take; null: the one that does already",
+    )
+    stop: HeldPose | None = Field(
+        default=None, description="The pose that ends a take; null: the one that begins it"
+    )
+    start_label: Annotated[
+        str, Field(max_length=MAX_LABEL_LENGTH, description="Of kind gesture, which one begins")
+    ] = ""
+    stop_label: Annotated[
+        str, Field(max_length=MAX_LABEL_LENGTH, description="Which one ends; empty: the same")
+    ] = ""
+
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 

@@ -1,10 +1,10 @@
-"""Files are known by their first bytes."""
+"""Clip sources: the type of a video is told by its first bytes."""
 
 from pathlib import Path
 
 import pytest
 
-from app.clip_sources.video_types import HEAD_BYTES, video_type
+from app.clip_sources.source import HEAD_BYTES, video_type
 from tests.recognition.damaged_clips import write_clip
 
 
