@@ -1,7 +1,7 @@
 // The table of all takes of clips: recognised at once, sorted, filtered, and saved as CSV.
 
 import { olderClipsButton } from "../clips/older-clips.js";
-import { saveFile } from "../clips/session-export.js";
+import { saveFile } from "../clips/mcap-export.js";
 import { select } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";

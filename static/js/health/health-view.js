@@ -6,7 +6,7 @@ import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
-import { batchSection } from "./clip-test-section.js";
+import { batchSection } from "./test-set-section.js";
 import { dialSection } from "./dial.js";
 import { expectation } from "./expectation.js";
 import { compare } from "./finding-links.js";

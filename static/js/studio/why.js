@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
-import { sessionExport } from "../clips/session-export.js";
+import { mcapExport } from "../clips/mcap-export.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
@@ -204,7 +204,7 @@ const shares = (result, why) =>
           ),
           h("small", { className: "dim" }, " recognised again after every change"),
         ),
-    sessionExport(result.clip_id),
+    mcapExport(result.clip_id),
   );
 
 /**

@@ -39,7 +39,7 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     # Any text during the writing will do, since that may be short.
     page.evaluate(
         "window.said = []; new MutationObserver(() => { const now = document.querySelector("
-        "'.session-export [role=status]'); if (now) window.said.push(now.textContent); })"
+        "'.mcap-export [role=status]'); if (now) window.said.push(now.textContent); })"
         ".observe(document.body, {subtree: true, childList: true, characterData: true})"
     )
     with page.expect_download() as download:

@@ -112,10 +112,10 @@ async function run(box, clip) {
  *
  * @param {string} clip
  */
-export function sessionExport(clip) {
+export function mcapExport(clip) {
   const known = elements.get(clip);
   if (known) return known;
-  const box = h("span", { className: "session-export" });
+  const box = h("span", { className: "mcap-export" });
   elements.set(clip, box);
   drawStart(box, clip, null);
   return box;

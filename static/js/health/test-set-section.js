@@ -7,7 +7,7 @@ import { currentLanguage, follow, state, update } from "../core/state.js";
 import { go } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";
 import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js";
-import { csvOf, testedOf } from "./clip-test-results.js";
+import { csvOf, testedOf } from "./test-set-results.js";
 import {
   advance,
   ASKED,
@@ -20,15 +20,21 @@ import {
   uploadRow,
   uploadsHere,
   waitingRow,
-} from "./clip-test-rows.js";
-import { addLibraryClips, addTestClips, candidates, waitingClips, workOff } from "./clip-test.js";
+} from "./test-set-rows.js";
+import {
+  addLibraryClips,
+  addTestClips,
+  candidates,
+  waitingClips,
+  workOff,
+} from "./test-set-clips.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
 import { rateText } from "./rates.js";
 
 /** @import { TestSet, Upload } from "../core/types.d.ts" */
 
-/** @import { TestedTake } from "./clip-test-results.js" */
+/** @import { TestedTake } from "./test-set-results.js" */
 
 const SAVED_BY = 60000; // ms. A busy browser may read the file long after the click.
 

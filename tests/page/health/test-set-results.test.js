@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { csvOf, testedOf } from "../../../static/js/health/clip-test-results.js";
+import { csvOf, testedOf } from "../../../static/js/health/test-set-results.js";
 
 const take = (id, clip, result, values = {}) => ({
   id,

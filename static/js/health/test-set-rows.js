@@ -6,11 +6,11 @@ import { askWhich } from "../core/format.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake } from "../languages/test-set.js";
-import { leaveOut, leaveWaiting, means, waitingClips } from "./clip-test.js";
+import { leaveOut, leaveWaiting, means, waitingClips } from "./test-set-clips.js";
 
 /** @import { Upload } from "../core/types.d.ts" */
 
-/** @import { TestedTake } from "./clip-test-results.js" */
+/** @import { TestedTake } from "./test-set-results.js" */
 
 /** @typedef {ReturnType<typeof waitingClips>[number]} WaitingClip */
 
