@@ -141,7 +141,13 @@ class JobStore:
                 job.attempts -= 1
                 session.add(job)
 
-    def complete(self, job_id: str, frames: int, warnings: Sequence[str]) -> bool:
+    def complete(
+        self,
+        job_id: str,
+        frames: int,
+        warnings: Sequence[str],
+        salute_warnings: Sequence[str] = (),
+    ) -> bool:
         """End a successful job; return whether this server still owned it.
 
         Parameters
@@ -150,8 +156,8 @@ class JobStore:
             Which one.
         frames
             Number of decoded frames; stored with the clip.
-        warnings
-            Sentences for the user about the clip.
+        warnings, salute_warnings
+            Sentences for the user about the clip: for every language, and for those with salutes.
 
         """
         with self._database.writing() as session:
@@ -160,6 +166,7 @@ class JobStore:
                 return False
             job.status, job.finished, job.frames = JobStatus.DONE.value, now(), frames
             job.warnings = json.dumps(list(warnings), ensure_ascii=False)
+            job.salute_warnings = json.dumps(list(salute_warnings), ensure_ascii=False)
             session.add(job)
             if clip := session.get(Clip, job.clip_id):
                 clip.frames = frames

@@ -137,6 +137,10 @@ class Job(SQLModel, table=True):
     error: str | None = Field(default=None, sa_column=Column(Text))
     warnings: str = Field(default="[]", sa_column=Column(Text, nullable=False))
     """Warnings about the clip for the user, as a JSON array of sentences."""
+    salute_warnings: str = Field(
+        default="[]", sa_column=Column(Text, nullable=False, server_default="[]")
+    )
+    """Those that concern only languages with the salute as trigger, which `warnings` lacks."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     started: datetime | None = Field(default=None, sa_type=UtcDateTime)
     server: str | None = Field(default=None, max_length=32)

@@ -90,7 +90,7 @@ function drawEverything() {
   follow(["gestures"], drawTuning);
   follow(["gestures"], drawTrigger);
   follow(["gestures", "languages", "loaded", "result", "clip", "clips"], drawGestures);
-  follow(["clips", "clip", "takes", "take", "start", "end"], drawStage);
+  follow(["clips", "clip", "takes", "take", "start", "end", "gestures"], drawStage);
   follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);

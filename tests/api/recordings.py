@@ -67,7 +67,9 @@ def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp
     studio.jobs.start(added.job.id)
     recording.save(studio.clips.place(clip.id, RECORDING))
     studio.clips.keep_found(clip)
-    studio.jobs.complete(added.job.id, len(recording.poses), recording.list_warnings())
+    studio.jobs.complete(
+        added.job.id, len(recording.poses), recording.warnings, recording.salute_warnings
+    )
     return clip.id
 
 

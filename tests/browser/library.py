@@ -88,7 +88,9 @@ def add_clip(
     added = clips.add(clip, partial, "test")
     server.studio.jobs.start(added.job.id)
     recording.save(clips.recording(clip.id))
-    server.studio.jobs.complete(added.job.id, len(recording.poses), recording.list_warnings())
+    server.studio.jobs.complete(
+        added.job.id, len(recording.poses), recording.warnings, recording.salute_warnings
+    )
     return clip.id
 
 

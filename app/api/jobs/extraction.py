@@ -77,9 +77,9 @@ class ExtractionJob:
                     end = message
         # After the end of the worker, because storing may have to wait for the database.
         match end:
-            case Finished(frames=frames, warnings=warnings):
+            case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
                 await persist(self._clips.keep_found, clip)
-                await persist(self._jobs.complete, self._job.id, frames, warnings)
+                await persist(self._jobs.complete, self._job.id, frames, warnings, of_salutes)
             case Failed(code=code, detail=detail):
                 await persist(
                     self._jobs.finish, self._job.id, JobStatus.FAILED, code=code, error=detail

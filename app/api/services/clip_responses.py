@@ -27,5 +27,6 @@ def view_clip(found: ClipWithJob) -> ClipView:
         error=job.error,
         error_code=job.error_code,
         warnings=json.loads(job.warnings),
+        salute_warnings=json.loads(job.salute_warnings),
         job_id=job.id,
     )

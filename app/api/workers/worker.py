@@ -167,7 +167,13 @@ class _Steps:
         frames = len(recorded.poses)
         self._report(Progressed(stage="saving", done=frames, total=frames))
         recorded.save(target)
-        self._report(Finished(frames=frames, warnings=recorded.list_warnings()))
+        self._report(
+            Finished(
+                frames=frames,
+                warnings=recorded.warnings,
+                salute_warnings=recorded.salute_warnings,
+            )
+        )
 
 
 class _Pictures:

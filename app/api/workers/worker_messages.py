@@ -91,6 +91,7 @@ class Finished(_Said):
     kind: Literal["finished"] = "finished"
     frames: Count
     warnings: tuple[Line, ...]
+    salute_warnings: tuple[Line, ...] = ()
 
 
 class Failed(_Said):

@@ -184,6 +184,7 @@ _TEXTS: Final[dict[str, Callable[[str], bool]]] = {
     "clip.topics": _is_json_as(_TOPICS),
     "clip.options": _is_options,
     "job.warnings": _is_json_as(_STRINGS),
+    "job.salute_warnings": _is_json_as(_STRINGS),
     "language_revision.labels": _is_json_as(_STRINGS),
     "language_revision.document": _is_json_of(dict),
     "recognition.result": _is_json_of(dict),

@@ -3,7 +3,7 @@
 import { plural } from "../core/format.js";
 import { SALUTE } from "./salute-threshold.js";
 
-/** @import { Language } from "../core/types.d.ts" */
+/** @import { Clip, Language } from "../core/types.d.ts" */
 
 const HOLD = 0.3; // s: the shortest salute, `HOLD_SECONDS` in recording/salute.py.
 const OVERLAP = 0.1; // s; a shorter part of a salute in a range is the take's edge.
@@ -30,6 +30,17 @@ export const heldName = (language) => HELD[language?.trigger?.kind ?? "salute"];
  * @param {Language | null} language
  */
 export const endName = (language) => heldName(language).replace("Vulcan ", "");
+
+/**
+ * What was found wanting in a clip, as far as it concerns a language with this trigger.
+ *
+ * @param {Clip} clip
+ * @param {Language | null} language
+ */
+export const listWarnings = (clip, language) => [
+  ...(clip.warnings ?? []),
+  ...(endName(language) === "salute" ? (clip.salute_warnings ?? []) : []),
+];
 
 /**
  * The salutes that overlap a range: `[start, end]` in seconds of the clip.

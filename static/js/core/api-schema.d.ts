@@ -134,6 +134,11 @@ export interface components {
              */
             warnings: string[];
             /**
+             * Salute Warnings
+             * @description The same of its salutes, for languages with the salute as trigger
+             */
+            salute_warnings: string[];
+            /**
              * Width
              * @description Pixels of the upright picture
              */

@@ -1,6 +1,6 @@
 // The studio view: the clip on display, its takes, and the outcome of its recognition.
 
-import { takesLanguage } from "../clips/salutes.js";
+import { listWarnings, takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { askWhich, percent } from "../core/format.js";
@@ -237,7 +237,7 @@ export function drawStage() {
   for (const id of ["save-gesture", "recognise", "expected"])
     byId(id).disabled = !ready || !state.takes;
   byId("clip-warnings").replaceChildren(
-    ...(clip.warnings ?? []).map((warning) => h("li", {}, warning)),
+    ...listWarnings(clip, state.gestures).map((warning) => h("li", {}, warning)),
   );
   byId("range-text").replaceChildren();
   drawTimeline();

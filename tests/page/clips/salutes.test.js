@@ -3,6 +3,7 @@ import { test } from "node:test";
 
 import {
   heldName,
+  listWarnings,
   salutesIn,
   saluteWarning,
   takesLanguage,
@@ -31,6 +32,15 @@ test("only a range with salutes is warned of", () => {
   const bare = /** @type {any} */ ({ id: "c", trigger: { kind: "none" } });
   assert.equal(heldName(bare), "gesture");
   assert.match(saluteWarning([[0, 1]]), /contains 1 Vulcan salute,/);
+});
+
+test("a language with an arm trigger gets no warning about salutes", () => {
+  const clip = /** @type {any} */ ({ warnings: ["dark"], salute_warnings: ["no salute"] });
+  const posed = /** @type {any} */ ({ id: "a", trigger: { kind: "pose" } });
+  const saluting = /** @type {any} */ ({ id: "b", trigger: null });
+  assert.deepEqual(listWarnings(clip, posed), ["dark"]);
+  assert.deepEqual(listWarnings(clip, saluting), ["dark", "no salute"]);
+  assert.deepEqual(listWarnings(clip, null), ["dark", "no salute"]);
 });
 
 test("a language with an arm trigger is asked for takes by its own name of what is held", () => {

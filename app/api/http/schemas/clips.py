@@ -27,6 +27,9 @@ class ClipView(BaseModel):
     error: str | None = Field(description="Why there are no poses, when the job failed")
     error_code: str | None
     warnings: list[str] = Field(description="What was found wanting in the clip")
+    salute_warnings: list[str] = Field(
+        description="The same of its salutes, for languages with the salute as trigger"
+    )
     width: int = Field(description="Pixels of the upright picture")
     height: int
     duration: float | None = Field(description="Seconds, where the container says")
