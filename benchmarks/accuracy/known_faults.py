@@ -6,9 +6,7 @@ longer read right, the first cause named is counted. Where a fault is the same a
 gesture (a circle drawn backwards is its mirror image), which is measured on the demonstration
 itself, either name is right.
 
-A demonstration is spoilt by a way from and to a salute, keypoints that jump, or another gesture's
-movement in its place; then the demonstration that `find_blame` names first for five known takes of
-every gesture is counted. Languages of which no demonstration is spoilt should not be blamed.
+Spoilt demonstrations are the subject of `benchmarks.accuracy.blame`.
 
     python -m benchmarks.accuracy.known_faults ../shared/data [--draws 6] [--queries 30]
 """
@@ -24,10 +22,9 @@ import numpy as np
 import numpy.typing as npt
 
 from app.evaluation.proportion import Share
-from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence, Recognizer
-from app.recognition.explanation.blame import find_blame, read_all
+from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
 from app.recognition.explanation.causes import find_causes
-from app.recognition.explanation.context import KnownTake, RecognitionContext
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.undoing import Comparison
 from app.recognition.features.motion import find_hands, parse_body_part
 from app.recognition.gestures.demonstration import condense
@@ -47,14 +44,8 @@ SETS = ("utd_signals", "utkinect", "utd_other", "carried_figures", "carried_lett
 CUT = 0.35
 """Share of a take's path that is missing."""
 
-HOOK = 0.12
-"""Share of a demonstration's frames that each way from and to the salute lasts."""
-
 TURN = 65.0
 """Degrees by which a diver is turned away."""
-
-KNOWN = 5
-"""Known takes of each gesture."""
 
 ARMS = ("elbow", "wrist", "hand", "index", "pinky", "thumb")
 
@@ -146,14 +137,14 @@ def add_part(poses: PoseSequence, random: np.random.Generator) -> PoseSequence:
     side = random.choice((-1.0, 1.0))
     swing = size * np.stack([side * np.sin(phase), 0.4 * (np.cos(phase) - 1)], axis=1)
     added = np.repeat(poses.xy[place][None], count, axis=0)
-    moving = _find_moving_arm(poses)
+    moving = find_moving_arm(poses)
     added[:, moving] += swing[:, None]
     xy = np.concatenate([poses.xy[:place], added, poses.xy[place:]])
     time = at_rate_of(poses, len(xy))
     return replace(poses, xy=xy, time=time, confidence=None, world=None)
 
 
-def _find_moving_arm(poses: PoseSequence) -> npt.NDArray[np.bool_]:
+def find_moving_arm(poses: PoseSequence) -> npt.NDArray[np.bool_]:
     """Return a mask of the landmarks of the arm whose wrist moves more."""
     moved = {
         name: float(np.nanmax(np.ptp(poses.column(name), axis=0)))
@@ -176,7 +167,7 @@ def shrink(poses: PoseSequence, _random: np.random.Generator) -> PoseSequence:
 def jump(poses: PoseSequence, _random: np.random.Generator) -> PoseSequence:
     """Let the moving wrist jump to the other arm's elbow, or hip if farther, twice for 0.35 s."""
     xy, way = poses.xy.copy(), find_way(poses)
-    arm = _find_moving_arm(poses)
+    arm = find_moving_arm(poses)
     outer = arm & np.array(["elbow" not in name for name in poses.landmarks])
     moving = poses.landmarks[int(np.flatnonzero(arm)[0])]
     other = "left" if moving.startswith("right") else "right"
@@ -217,38 +208,6 @@ TAKE_FAULTS: dict[str, Fault] = {
     "other_person": change_body,
 }
 """Faults of takes, by the kind of cause that they are."""
-
-
-def add_ways(poses: PoseSequence, _random: np.random.Generator) -> PoseSequence:
-    """Put a straight way from and to a salute beside the head around the movement."""
-    way = find_way(poses)
-    inside = (way >= 0.02) & (way <= 0.98)
-    first, last = np.flatnonzero(inside)[[0, -1]]
-    arm = _find_moving_arm(poses)
-    torso = poses.torso_length() or 100.0
-    count = max(6, int(HOOK * (last - first)))
-    salute = poses.xy[first].copy()
-    shoulders = [name for name in poses.landmarks if name.endswith("shoulder")]
-    side = "left" if poses.landmarks[int(np.flatnonzero(arm)[0])].startswith("left") else "right"
-    corner = poses.column(next(name for name in shoulders if name.startswith(side)))[first]
-    outer = arm & np.array(["elbow" not in name for name in poses.landmarks])
-    salute[outer] = corner + np.array([0.1, -0.35]) * torso
-    share = (1 - np.cos(np.linspace(0, np.pi, count)))[:, None, None] / 2
-    come = salute * (1 - share) + poses.xy[first] * share
-    go = poses.xy[last] * (1 - share) + salute * share
-    xy = np.concatenate([come, poses.xy[first : last + 1], go])
-    time = at_rate_of(poses, len(xy))
-    return replace(poses, xy=xy, time=time, confidence=None, world=None)
-
-
-DEMONSTRATION_FAULTS: dict[str, Fault | None] = {
-    "ways from and to the salute": add_ways,
-    "keypoints that jump": jump,
-    "begun late": begin_late,
-    "another gesture": None,
-    "none": None,
-}
-"""Faults of demonstrations; another gesture is another class's recording by the same person."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -370,54 +329,6 @@ PER_LANGUAGE = 4
 """Takes of a language that are spoilt in each way."""
 
 
-def count_blame(
-    recorded: RecordedSet, drawn: Drawn, random: np.random.Generator
-) -> Iterator[tuple[str, str]]:
-    """Yield the fault of a demonstration, and whether it, another or none is blamed first."""
-    language = drawn.recognizer.language
-    for fault, spoil in DEMONSTRATION_FAULTS.items():
-        at = int(random.integers(len(language.gestures)))
-        changed, label = language, language.labels[at]
-        template = drawn.templates[at]
-        if fault != "none":
-            poses = recorded.recordings[template]
-            if spoil is None:
-                other = drawn.templates[(at + 1) % len(drawn.templates)]
-                poses = recorded.recordings[other]
-            else:
-                poses = spoil(poses, random)
-            try:
-                changed = language.with_changed(gesture_of(label, poses))
-            except GestureError:
-                yield fault, "unread"
-                continue
-        recognizer = Recognizer(changed, "full")
-        known = []
-        for name in language.labels:
-            pool = drawn.others[recorded.labels[drawn.others] == name]
-            for index in random.permutation(pool)[:KNOWN].tolist():
-                known.append(KnownTake(name, recognizer.query(recorded.recordings[index])))
-        if fault != "none" and _count_harm(drawn.recognizer, recognizer, known, label) < LEAST_HARM:
-            yield fault, "right"
-            continue
-        blamed = find_blame(recognizer, known)
-        if not blamed:
-            yield fault, "nothing"
-        else:
-            yield fault, "it" if blamed[0].label == label else "another"
-
-
-LEAST_HARM = 3
-"""Known takes of a gesture, of five, that its spoilt demonstration must cost to be at fault."""
-
-
-def _count_harm(good: Recognizer, bad: Recognizer, known: list[KnownTake], label: str) -> int:
-    """Return how many takes of a gesture are read by a good demonstration and not by a bad one."""
-    takes = [take for take in known if take.label == label]
-    pairs = zip(read_all(good, takes), read_all(bad, takes), strict=True)
-    return sum(before == label != after for before, after in pairs)
-
-
 def name_turned(recorded: RecordedSet, folder: Any, drawn: Drawn) -> Iterator[tuple[str, str]]:
     """Yield person and first cause of takes by divers who are turned away, with known depth."""
     near, far = (
@@ -436,7 +347,6 @@ def name_turned(recorded: RecordedSet, folder: Any, drawn: Drawn) -> Iterator[tu
 def main() -> None:
     """Print a line per fault: the share named first, people, takes, and what was named."""
     parser = set_arguments(__doc__, draws=6, queries=120)
-    parser.add_argument("--only", choices=("takes", "demonstrations"), help="one half of it")
     given = parser.parse_args()
     folder = given.data / "trajectories"
     totals: dict[str, Counter[str]] = defaultdict(Counter)
@@ -445,17 +355,13 @@ def main() -> None:
         found: dict[str, Counter[str]] = defaultdict(Counter)
         random = np.random.default_rng(given.seed)
         for drawn in draw_languages(recorded, given.draws, given.queries, given.seed):
-            if given.only != "demonstrations":
-                for fault, person, answer in count_causes(recorded, drawn, random):
-                    found[fault][answer] += 1
-                    people[fault] |= {f"{recorded.name} {person}"} if person else set()
-                if recorded.name in ARM_CLASSES:
-                    for person, answer in name_turned(recorded, folder, drawn):
-                        found["turned_away"][answer] += 1
-                        people["turned_away"].add(f"{recorded.name} {person}")
-            if given.only != "takes":
-                for fault, answer in count_blame(recorded, drawn, random):
-                    found[f"demonstration: {fault}"][answer] += 1
+            for fault, person, answer in count_causes(recorded, drawn, random):
+                found[fault][answer] += 1
+                people[fault] |= {f"{recorded.name} {person}"} if person else set()
+            if recorded.name in ARM_CLASSES:
+                for person, answer in name_turned(recorded, folder, drawn):
+                    found["turned_away"][answer] += 1
+                    people["turned_away"].add(f"{recorded.name} {person}")
         for fault, answers in found.items():
             totals[fault].update(answers)
         print_answers(recorded.name, found, people)
@@ -466,9 +372,7 @@ def print_answers(name: str, found: dict[str, Counter[str]], people: dict[str, s
     """Print how often each fault was named first."""
     for fault, answers in found.items():
         told = Counter({key: n for key, n in answers.items() if key not in ("right", "unread")})
-        wanted = {True: "nothing"}.get(fault == "demonstration: none", "it")
-        right = told[wanted if fault.startswith("demonstration") else fault]
-        share = Share(right, told.total())
+        share = Share(told[fault], told.total())
         print(
             f"{name:16} {fault:42} first {share!s:20} n {told.total():4} "
             f"people {len(people[fault]):3} {dict(answers.most_common(6))}",

@@ -7,6 +7,7 @@ repairs and breaks is counted.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -20,7 +21,7 @@ from app.recognition.errors import OsgError
 from app.recognition.explanation.causes import compare_with, full_recognizer
 from app.recognition.explanation.context import KnownTake
 from app.recognition.explanation.demonstration_faults import SENTENCES, FaultKind
-from app.recognition.explanation.undoing import Comparison
+from app.recognition.explanation.undoing import Comparison, find_better_range
 from app.recognition.gestures.demonstration import MIN_FRAMES
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
@@ -29,13 +30,10 @@ from app.recognition.recognizer import Recognizer
 BlamedChange = Literal["cut", "leave_out", "show_again"]
 """What is done to a demonstration: it is cut anew, left out, or replaced by a known take."""
 
-SHARES: Final = (0.0, 0.0625, 0.125, 0.1875, 0.25, 0.3125)
-"""Shares of a demonstration's path that are cut off either end."""
+FEWEST_FAILING: Final = 2
+"""Least known takes of a gesture that must fail: one may fail for reasons of its own."""
 
-FEWEST_REPAIRED: Final = 2
-"""Least known takes that must fail, and be repaired: one may fail for reasons of its own."""
-
-LEAST_FAILING: Final = 0.6
+LEAST_FAILING: Final = 0.5
 """Least share of a gesture's known takes that fail, from which its demonstrations are judged."""
 
 FEWEST_TAKES: Final = 3
@@ -44,19 +42,43 @@ FEWEST_TAKES: Final = 3
 MOST_TAKES: Final = 8
 """Most known takes of a gesture that are compared with each other."""
 
-FAR: Final = 0.8
-"""Least median novelty of a gesture's takes for a demonstration at fault; chosen, as the next two,
-by `benchmarks.accuracy.known_faults` on sets other than those that are reported."""
+WEIGHT_OF_FAILING: Final = 0.5
+"""Weight of `Evidence.failing`; chosen, as the next two, by `benchmarks.accuracy.blame`, which
+leaves sets out."""
 
-UNLIKE: Final = 1.8
-"""How many times as far as from each other the takes are from it, where the change repairs
-`FEWEST_REPAIRED` takes more than it breaks."""
+WEIGHT_OF_GAIN: Final = 0.2
+"""Weight of `Evidence.gain`."""
 
-CLEARLY_UNLIKE: Final = 2.4
-"""The same whatever the change repairs: another take in its place may have faults of its own."""
+LEAST_EVIDENCE: Final = 1.0
+"""Least evidence against a demonstration at fault."""
 
-FAR_IN_ANY_CASE: Final = 3.5
-"""The same where the median novelty is below `FAR`."""
+MOST_GAIN: Final = 2.0
+"""Largest `Evidence.gain`: a change may also repair takes of other gestures."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Evidence:
+    """Evidence against a demonstration, by the known takes of its gesture.
+
+    Attributes
+    ----------
+    unlike
+        How many times as far as from each other they are from it.
+    failing
+        Share of them that fail.
+    gain
+        Known takes that a change repairs more than it breaks, over those of the gesture.
+
+    """
+
+    unlike: float
+    failing: float
+    gain: float
+
+    def weigh(self, failing: float = WEIGHT_OF_FAILING, gain: float = WEIGHT_OF_GAIN) -> float:
+        """Return the sum of all three, with the weights of the latter two."""
+        of_gain = gain * min(self.gain, MOST_GAIN)
+        return math.log(max(self.unlike, 1e-9)) + failing * self.failing + of_gain
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,8 +99,8 @@ class Blame:
         How many takes of the gesture are not read as it.
     repaired, broken
         How many known takes are read right with the change only, and without it only.
-    unlike
-        How many times as far as from each other the takes of the gesture are from it.
+    evidence
+        Against the demonstration.
 
     """
 
@@ -91,7 +113,7 @@ class Blame:
     failing: int
     repaired: int
     broken: int
-    unlike: float
+    evidence: Evidence
 
     @property
     def sentence(self) -> str:
@@ -107,17 +129,20 @@ class Blame:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        return {**vars(self), "sentence": self.sentence}
+        return {**vars(self), "evidence": vars(self.evidence), "sentence": self.sentence}
 
 
 def find_blame(
-    recognizer: Recognizer, takes: Sequence[KnownTake], labels: Sequence[str] | None = None
+    recognizer: Recognizer,
+    takes: Sequence[KnownTake],
+    labels: Sequence[str] | None = None,
+    least: float = LEAST_EVIDENCE,
 ) -> tuple[Blame, ...]:
-    """Find the demonstrations that are at fault for known takes, the one most unlike them first.
+    """Find the demonstrations that are at fault for known takes, the surest one first.
 
-    A demonstration is at fault if most takes of its gesture fail and are clearly farther from it
-    than from each other. Cutting it anew is preferred where that repairs most of them and breaks
-    none; otherwise it is left out, or should be shown again.
+    A demonstration is at fault if takes of its gesture fail, are farther from it than from each
+    other, and are repaired by a take in its place. Cutting it anew is preferred where that repairs
+    most of them and breaks none; otherwise it is left out, or should be shown again.
 
     Parameters
     ----------
@@ -127,6 +152,8 @@ def find_blame(
         The known takes; those whose label the language lacks are ignored.
     labels
         The gestures whose demonstrations are judged; all when not given.
+    least
+        Least evidence against a demonstration, see `Evidence.weigh`.
 
     Returns
     -------
@@ -144,13 +171,14 @@ def find_blame(
             continue
         own = [index for index, take in enumerate(known) if take.label == gesture.label]
         failing = sum(before[index] != gesture.label for index in own)
-        if len(own) < FEWEST_TAKES or failing < max(FEWEST_REPAIRED, LEAST_FAILING * len(own)):
+        if len(own) < FEWEST_TAKES or failing < max(FEWEST_FAILING, LEAST_FAILING * len(own)):
             continue
-        tested = _Tested(recognizer, known, before, own[:MOST_TAKES], failing)
+        tested = _Tested(recognizer, known, before, own[:MOST_TAKES], len(own), failing, least)
         for number, shown in enumerate(gesture.single_demonstrations()):
             if shown.trajectory is not None and not shown.is_held:
                 found += tested.judge(gesture, number)
-    return tuple(sorted(found, key=lambda each: -each.unlike))
+    sure = [each for each in found if each.evidence.weigh() >= least]
+    return tuple(sorted(sure, key=lambda each: -each.evidence.weigh()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,9 +192,11 @@ class _Tested:
     known, before
         All takes, and what each is read as.
     takes
-        Indices of the takes of the gesture.
-    failing
-        How many takes of the gesture are not read as it.
+        Indices of the takes of the gesture that are compared with each other.
+    count, failing
+        How many takes of the gesture there are, and how many of them are not read as it.
+    least
+        Least evidence.
 
     """
 
@@ -174,25 +204,28 @@ class _Tested:
     known: Sequence[KnownTake]
     before: Sequence[str | None]
     takes: Sequence[int]
+    count: int
     failing: int
+    least: float
 
     def judge(self, gesture: Gesture, number: int) -> Iterator[Blame]:
-        """Yield the blame of one demonstration of the gesture, if it is at fault."""
+        """Yield the blame of one demonstration of the gesture, if there may be evidence enough."""
         takes = [self.known[index] for index in self.takes]
         shown = gesture.single_demonstrations()[number]
         medoid, own, among = _compare_takes(self.recognizer, shown, takes)
-        unlike = own / max(among, 1e-9)
-        if unlike < UNLIKE:
+        evidence = Evidence(
+            unlike=own / max(among, 1e-9), failing=self.failing / self.count, gain=MOST_GAIN
+        )
+        if evidence.weigh() < self.least:
             return
-        changes = _list_changes(self.recognizer, gesture, number, takes, medoid)
-        for change, changed, span in changes:
+        tried: list[Blame] = []
+        gains: list[float] = []
+        for change, changed, span in _list_changes(self.recognizer, gesture, number, takes, medoid):
             left_out = self.takes[medoid] if change == "show_again" else None
             repaired, broken = _judge(self.recognizer, changed, self.known, self.before, left_out)
-            blamed = _is_far(own, unlike, repaired - broken)
-            if change == "cut":
-                blamed = not broken and repaired >= max(FEWEST_REPAIRED, self.failing / 2)
-            if blamed:
-                yield Blame(
+            gains.append((repaired - broken) / (self.count - (left_out is not None)))
+            tried.append(
+                Blame(
                     label=gesture.label,
                     demonstration=number,
                     change=change,
@@ -202,16 +235,14 @@ class _Tested:
                     failing=self.failing,
                     repaired=repaired,
                     broken=broken,
-                    unlike=unlike,
+                    evidence=evidence,
                 )
-                return
-
-
-def _is_far(own: float, unlike: float, gained: int) -> bool:
-    """Return whether a demonstration is far enough from the takes to be at fault."""
-    if own < FAR:
-        return unlike >= FAR_IN_ANY_CASE
-    return unlike >= CLEARLY_UNLIKE or gained >= FEWEST_REPAIRED
+            )
+        if tried:
+            first = tried[0]
+            half = max(FEWEST_FAILING, self.failing / 2)
+            chosen = first if not first.broken and first.repaired >= half else tried[-1]
+            yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
 
 
 def read_all(recognizer: Recognizer, takes: Sequence[KnownTake]) -> list[str | None]:
@@ -237,7 +268,10 @@ def _list_changes(
     takes: Sequence[KnownTake],
     medoid: int,
 ) -> Iterator[tuple[BlamedChange, Gesture, tuple[float, float] | None]]:
-    """Yield the changes of one demonstration, the gesture after each, and the seconds it keeps."""
+    """Yield the changes of one demonstration, the gesture after each, and the seconds it keeps.
+
+    A cut comes first, if any helps.
+    """
     shown = gesture.single_demonstrations()[number]
     at = recognizer.language.labels.index(gesture.label)
     comparisons = [
@@ -245,28 +279,13 @@ def _list_changes(
         for take in takes
         if (each := compare_with(recognizer, take.query, recognizer.compare(take.query), at))
     ]
-    if comparisons and (cut := _find_best_cut(comparisons)) is not None:
-        span = comparisons[0].locate_cut(cut)
+    if comparisons and (span := find_better_range(comparisons)) is not None:
         with suppress(OsgError):
             yield "cut", gesture.with_cut(number, *span), span
     if gesture.further:
         yield "leave_out", gesture.without_demonstration(number), None
     elif (made := _show_again(shown, takes[medoid].query)) is not None:
         yield "show_again", made, None
-
-
-def _find_best_cut(comparisons: Sequence[Comparison]) -> tuple[float, float] | None:
-    """Return the cut with which most takes are within the limit; None if none helps."""
-    whole = np.array([each.base for each in comparisons])
-    best, chosen = float(np.median(whole)), None
-    for start in SHARES:
-        for end in SHARES:
-            after = np.array([each.measure_cut((start, end)) for each in comparisons])
-            # A twentieth a step, so that of cuts that help as much the smaller one is chosen.
-            typical = float(np.median(after)) * (1 + 0.5 * (start + end))
-            if (start or end) and typical < best:
-                best, chosen = typical, (start, end)
-    return chosen
 
 
 def _compare_takes(
@@ -280,24 +299,19 @@ def _compare_takes(
     that of the others for this take.
 
     """
+    vote = recognizer.vote
+    assert isinstance(vote, FusedVote)
+    asked = [Comparison(vote, take.query, shown, None) for take in takes]
     made = [_show_again(shown, take.query) for take in takes]
-    own = [_measure(recognizer, take.query, shown) for take in takes]
-    typical = []
+    apart = np.full((len(takes), len(takes)), np.inf)
     for column, other in enumerate(made):
-        apart = [
-            np.inf if other is None else _measure(recognizer, take.query, other)
-            for row, take in enumerate(takes)
-            if row != column
-        ]
-        typical.append(float(np.median(apart)))
+        if other is not None:
+            movements = Comparison(vote, takes[column].query, other, None).shown
+            apart[:, column] = [each.measure(each.query, movements) for each in asked]
+    rows = ~np.eye(len(takes), dtype=bool)
+    typical = [float(np.median(apart[rows[column], column])) for column in range(len(takes))]
     medoid = int(np.argmin(typical))
-    return medoid, float(np.median(own)), typical[medoid]
-
-
-def _measure(recognizer: Recognizer, query: Trajectory, shown: Gesture) -> float:
-    """Return the novelty of a take for a demonstration as it was shown."""
-    assert isinstance(recognizer.vote, FusedVote)
-    return Comparison(recognizer.vote, query, shown, None).base
+    return medoid, float(np.median([each.base for each in asked])), typical[medoid]
 
 
 def _show_again(shown: Gesture, take: Trajectory) -> Gesture | None:

@@ -26,10 +26,9 @@ from app.recognition.explanation.hand_differences import (
     find_held_differences,
     find_moving_hand_differences,
 )
-from app.recognition.explanation.undoing import Comparison, Undone
+from app.recognition.explanation.undoing import Comparison, Undone, find_better_range
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recognizer import Recognizer
 
 EXPLAINED: Final = 0.2
@@ -39,7 +38,7 @@ by `benchmarks.accuracy.known_faults` on people left out."""
 USUAL: Final = 0.45
 """Novelty of a right take by another person: what no change is expected to remove."""
 
-COST_OF_SIZE: Final = 0.3
+COST_OF_SIZE: Final = 0.2
 """Share of the distance that a change must remove in addition for each whole that it cuts away, so
 that of two changes that explain as much the smaller one is named."""
 
@@ -52,6 +51,10 @@ LEAST_SEEN: Final = 0.06
 CLOSE: Final = 0.15
 """Novelty by which another gesture may be nearer than the gesture meant after a change: a swipe to
 the left that is shown backwards is one to the right."""
+
+AS_NEAR: Final = 1.1
+"""Largest novelty after a change, over that of the gesture that the take is answered as: what is
+well explained by another gesture needs no fault; chosen by `benchmarks.accuracy.known_faults`."""
 
 MOST_LEFT: Final = 1.2
 """Largest novelty after a change: slightly beyond the limit, since a take may have two faults."""
@@ -197,7 +200,10 @@ def find_causes(context: RecognitionContext, expected: str) -> tuple[Cause, ...]
     if comparison is not None:
         start = float(context.poses.time[0])
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
-        found = weigh_changes(comparison, _measure_frames(context), expected, start, rival)
+        answered = context.result.label is not None
+        most = min(MOST_LEFT, AS_NEAR * rival if answered else rival + CLOSE)
+        raw = Trajectory.from_poses(context.poses)
+        found = weigh_changes(comparison, raw, expected, start, most, answered=answered)
     number = table.nearest_demonstration(at)
     found = [
         replace(each, demonstration=number) if each.kind is CauseKind.demonstration else each
@@ -206,7 +212,7 @@ def find_causes(context: RecognitionContext, expected: str) -> tuple[Cause, ...]
     of_gesture = context.faults.get(expected, ())
     faults = of_gesture[number] if number < len(of_gesture) else ()
     if faults:
-        keep = None if comparison is None else comparison.find_better_range()
+        keep = None if comparison is None else find_better_range([comparison])
         blamed = _blame(faults[0], expected, number, keep)
         first = not found or found[0].kind.value in {*CUTS, "too_small"}
         found = [each for each in found if each.kind is not CauseKind.demonstration]
@@ -254,7 +260,9 @@ def weigh_changes(
     raw: Trajectory,
     label: str,
     start: float = 0.0,
-    rival: float = math.inf,
+    most: float = MOST_LEFT,
+    *,
+    answered: bool = False,
 ) -> list[Cause]:
     """Return the kinds of changes that explain the distance of a take, the best first.
 
@@ -263,14 +271,16 @@ def weigh_changes(
     comparison
         The take and the demonstration.
     raw
-        The take at the moments of its frames.
+        The take at the moments of its frames, before repair, which hides jumps.
     label
         The gesture's.
     start
         Second of the take's clock at which it begins.
-    rival
-        Novelty of the take for another gesture, which explains it better than a cut by which it is
-        farther.
+    most
+        Largest novelty after a change.
+    answered
+        Whether the take is answered as another gesture; then what the keypoints show is no cause
+        either unless the take is near without it.
 
     """
     base = comparison.base
@@ -284,8 +294,9 @@ def weigh_changes(
     ordered = sorted(best.values(), key=lambda each: -each[0])
     named = []
     for worth, share, undone in ordered:
-        seen = undone.kind in SEEN and undone.size >= LEAST_SEEN
-        if (worth >= EXPLAINED and undone.novelty <= min(MOST_LEFT, rival + CLOSE)) or seen:
+        near = undone.novelty <= most
+        seen = undone.kind in SEEN and undone.size >= LEAST_SEEN and (near or not answered)
+        if (worth >= EXPLAINED and near) or seen:
             keep = comparison.locate_cut(undone.cut) if any(undone.cut) else None
             named.append(replace(_name(undone.kind, share, label, undone, start), keep=keep))
     return named
@@ -330,13 +341,6 @@ def _blame(
         demonstration=demonstration,
         keep=keep if fault.remedy == "set_range" else None,
     )
-
-
-def _measure_frames(context: RecognitionContext) -> Trajectory:
-    """Return the take at the moments of its frames, repaired if the profile does."""
-    if context.recognizer.repairs:
-        return repair_poses(context.poses).trajectory
-    return Trajectory.from_poses(context.poses)
 
 
 def _find_unseen(result: Recognition) -> str | None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
@@ -147,15 +148,6 @@ class Comparison:
         """Return the novelty with shares of the demonstration cut off its start and its end."""
         return self.measure(self.query, [_cut_ends(self.as_shown, cut)])
 
-    def find_better_range(self) -> tuple[float, float] | None:
-        """Return the seconds of the demonstration to keep so that the take is nearest.
-
-        None where it is nearest to the whole demonstration.
-        """
-        shares = [(start / STEPS, end / STEPS) for start in END_CUTS for end in END_CUTS]
-        best = min(shares, key=lambda cut: self.measure_cut(cut) + sum(cut) / 4)
-        return self.locate_cut(best) if self.measure_cut(best) < self.base else None
-
     def locate_cut(self, cut: tuple[float, float]) -> tuple[float, float]:
         """Return the seconds of the demonstration's clock between which a cut keeps it."""
         before, after = _count_steps(cut)
@@ -281,6 +273,28 @@ class Comparison:
             novelty = self.measure(build_movement(condense(kept), self._landmarks), self.shown)
             times = raw.time[bad]
             yield Undone(kind, float(bad.mean()), novelty, float(times[0]), float(times[-1]))
+
+
+def find_better_range(comparisons: Sequence[Comparison]) -> tuple[float, float] | None:
+    """Return the seconds of a demonstration to keep so that takes are nearest to it.
+
+    Parameters
+    ----------
+    comparisons
+        Of takes with this demonstration, at least one.
+
+    Returns
+    -------
+    By the median take; of cuts that help as much the smaller one. None where none helps.
+
+    """
+    best, chosen = float(np.median([each.base for each in comparisons])), None
+    for before, after in product((0, *END_CUTS), repeat=2):
+        cut = (before / STEPS, after / STEPS)
+        typical = float(np.median([each.measure_cut(cut) for each in comparisons]))
+        if (worth := typical + sum(cut) / 4) < best:
+            best, chosen = worth, comparisons[0].locate_cut(cut)
+    return chosen
 
 
 def flip(movement: Movement, way: tuple[int, int]) -> Movement:

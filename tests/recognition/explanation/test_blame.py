@@ -51,7 +51,7 @@ def test_a_bad_demonstration_is_blamed(bad: PoseSequence, change: str) -> None:
     assert [(each.label, each.demonstration) for each in blamed] == [("hook", 0)]
     assert blamed[0].change == change
     assert blamed[0].failing == 3
-    assert blamed[0].unlike > 1.8
+    assert blamed[0].evidence.unlike > 1.8
     assert blamed[0].repaired >= 2
     assert len(blamed[0].sentence.split()) <= 15
 
