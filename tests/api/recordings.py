@@ -36,7 +36,12 @@ def backwards(share: FloatArray) -> FloatArray:
     return circle(1 - share)
 
 
-SHAPES = {"circle": circle, "circle backwards": backwards, "line": line}
+def corner(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of a corner: up, then to the side."""
+    return np.stack([np.maximum(0, 2 * share - 1), -np.minimum(1, 2 * share)], axis=1)
+
+
+SHAPES = {"circle": circle, "circle backwards": backwards, "line": line, "corner": corner}
 
 
 def recording_of(*shapes: str) -> Recording:

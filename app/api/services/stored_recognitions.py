@@ -120,16 +120,36 @@ def load_context(record: RecognitionRecord, studio: Studio) -> RecognitionContex
         recognizer=recognizer,
         poses=demonstration_in(recording, record.start, record.end, trigger=language.trigger).poses,
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
-        known=tuple(_load_known(studio, record, recognizer)),
+        known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
         faults=faults_of_language(studio, language, find_sources(studio, language)),
         recorded=load_recognition(record),
     )
 
 
-def _load_known(
-    studio: Studio, record: RecognitionRecord, recognizer: Recognizer
+def list_known(studio: Studio, language_id: str) -> list[LabelledTake | PracticeTake]:
+    """Return the takes of the test set and of practice, the oldest first, each range once."""
+    tested = [each.take for each in studio.labelled.of(language_id)]
+    takes: list[LabelledTake | PracticeTake] = [*tested, *studio.practice.of(language_id)]
+    return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
+
+
+def load_known(
+    studio: Studio, language_id: str, recognizer: Recognizer, *, but: str | None = None
 ) -> Iterator[KnownTake]:
-    """Yield the takes of the test set and of practice but the recognised one and demonstrations."""
+    """Yield the known takes of a language but its demonstrations, the newest first.
+
+    Parameters
+    ----------
+    studio
+        Running studio with the takes.
+    language_id
+        The language's.
+    recognizer
+        Of a revision of it.
+    but
+        A clip whose takes are left out.
+
+    """
     language = recognizer.language
     shown = {
         source.clip_id
@@ -137,13 +157,9 @@ def _load_known(
         for source in row
         if source is not None
     }
-    tested = [each.take for each in studio.labelled.of(record.language_id)]
-    practised = studio.practice.of(record.language_id)
-    takes: list[LabelledTake | PracticeTake] = [*tested, *practised]
-    ranges = {(each.clip_id, round(each.start, 2)): each for each in takes}
     count = 0
-    for take in reversed(ranges.values()):
-        if take.clip_id in shown or take.clip_id == record.clip_id or count == MOST_KNOWN:
+    for take in reversed(list_known(studio, language_id)):
+        if take.clip_id in shown or take.clip_id == but or count == MOST_KNOWN:
             continue
         end = take.end if isinstance(take, LabelledTake) else None
         try:

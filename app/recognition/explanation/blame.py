@@ -42,14 +42,14 @@ FEWEST_TAKES: Final = 3
 MOST_TAKES: Final = 8
 """Most known takes of a gesture that are compared with each other."""
 
-WEIGHT_OF_FAILING: Final = 0.5
+WEIGHT_OF_FAILING: Final = 0.75
 """Weight of `Evidence.failing`; chosen, as the next two, by `benchmarks.accuracy.blame`, which
 leaves sets out."""
 
-WEIGHT_OF_GAIN: Final = 0.2
+WEIGHT_OF_GAIN: Final = 0.4
 """Weight of `Evidence.gain`."""
 
-LEAST_EVIDENCE: Final = 1.0
+LEAST_EVIDENCE: Final = 1.25
 """Least evidence against a demonstration at fault."""
 
 MOST_GAIN: Final = 2.0

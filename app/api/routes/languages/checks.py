@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import OrderedDict
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
@@ -19,7 +20,10 @@ from app.api.middleware.shutdown import stopping
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.salute_ranges import faults_of_language
+from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.worker_messages import Failed
+from app.recognition import Language, Recognizer
+from app.recognition.explanation.blame import find_blame
 from app.recognition.health.finding import Finding
 from app.store import LanguageState
 
@@ -90,15 +94,43 @@ def _job(state: LanguageState, studio: Studio) -> CheckJob:
 
 
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
-    """Return the faults of demonstrations whose clips are known, as findings."""
+    """Return the faults of demonstrations as findings, by their clips and by the known takes."""
     language = studio.language(state)
     known = faults_of_language(studio, language, find_sources(studio, language))
-    return [
-        Finding("demonstration_fault", (label,), faults[0].describe(label), True).to_dict()
+    told = [
+        (label, faults[0].describe(label))
         for label, demonstrations in known.items()
         for faults in demonstrations
         if faults
     ]
+    seen = {label for label, _ in told}
+    told += [each for each in _blame(studio, state, language) if each[0] not in seen]
+    return [
+        Finding("demonstration_fault", (label,), sentence, True).to_dict()
+        for label, sentence in told
+    ]
+
+
+CACHED_BLAME = 64
+"""Revisions, each with its known takes, of which it is known which demonstrations they blame."""
+
+_blamed: OrderedDict[tuple[Any, ...], list[tuple[str, str]]] = OrderedDict()
+
+
+def _blame(studio: Studio, state: LanguageState, language: Language) -> list[tuple[str, str]]:
+    """Return gesture and sentence of each demonstration that the known takes blame."""
+    takes = list_known(studio, state.record.id)
+    if not takes or not language.gestures:
+        return []
+    ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
+    key = state.record.id, state.revision.revision, ranges
+    if key not in _blamed:
+        recognizer = Recognizer(language, "full")
+        found = find_blame(recognizer, list(load_known(studio, state.record.id, recognizer)))
+        _blamed[key] = [(each.label, each.sentence) for each in found]
+        while len(_blamed) > CACHED_BLAME:
+            _blamed.popitem(last=False)
+    return _blamed[key]
 
 
 def _refusal(studio: Studio) -> ProblemError:

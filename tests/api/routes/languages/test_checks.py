@@ -10,7 +10,9 @@ from typing import Any
 import httpx
 import pytest
 
+from app.api.services.running_studio import Studio
 from tests.api.languages import many_gestures
+from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, until
 from tests.conftest import ROOT
 from tests.recognition.demonstrations import pool, shown_by
@@ -67,6 +69,23 @@ def test_the_newest_report_is_not_sent_twice(client: httpx.Client, imported: str
     changed = client.get(check, headers={"If-None-Match": tag})
     assert changed.status_code == 200
     assert changed.json()["language"] == "sea"
+
+
+def test_a_demonstration_unlike_the_takes_of_the_test_set_is_named(
+    client: httpx.Client, studio: Studio, language_id: str
+) -> None:
+    place = f"{LANGUAGES}/{language_id}"
+    for label, shape in (("circle", "corner"), ("line", "line")):
+        shown = {"label": label, "clip_id": add_recorded_clip(studio, recording_of(shape))}
+        client.post(f"{place}/gestures", json=shown).raise_for_status()
+    tag = client.get(f"{place}/check").headers["etag"]
+    for shape in ("circle", "circle", "circle", "line", "line", "line"):
+        take = {"clip_id": add_recorded_clip(studio, recording_of(shape)), "expected": shape}
+        client.post(f"{place}/test-set", json={"takes": [take]}).raise_for_status()
+    report = client.get(f"{place}/check", headers={"If-None-Match": tag}).json()
+    faults = [each for each in report["warnings"] if each["kind"] == "demonstration_fault"]
+    assert [each["gestures"] for each in faults] == [["circle"]]
+    assert faults[0]["message"].endswith("is unlike the takes that should be it. Show it again.")
 
 
 def test_an_older_revision_can_be_checked(client: httpx.Client, imported: str) -> None:
