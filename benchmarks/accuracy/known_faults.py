@@ -8,7 +8,7 @@ itself, either name is right.
 
 Spoilt demonstrations are the subject of `benchmarks.accuracy.blame`.
 
-    python -m benchmarks.accuracy.known_faults ../shared/data [--draws 6] [--queries 30]
+    python -m benchmarks.accuracy.known_faults ../shared/data [--draws 6] [--as-near 1.2]
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
-from app.recognition.explanation.causes import find_causes
+from app.recognition.explanation.causes import AS_NEAR, find_causes
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.undoing import Comparison
 from app.recognition.features.motion import find_hands, parse_body_part
@@ -244,13 +244,15 @@ def read(recognizer: Recognizer, poses: PoseSequence) -> str | None:
         return None
 
 
-def name_first(recognizer: Recognizer, poses: PoseSequence, label: str) -> str | None:
+def name_first(
+    recognizer: Recognizer, poses: PoseSequence, label: str, as_near: float = AS_NEAR
+) -> str | None:
     """Return the kind of the first cause of a take; "right" where it is read right all the same."""
     context = RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)
     try:
         if context.result.label == label:
             return "right"
-        causes = find_causes(context, label)
+        causes = find_causes(context, label, as_near)
     except PoseError:
         return None
     return causes[0].kind.value if causes else "none"
@@ -287,7 +289,7 @@ def list_equal_faults(
 
 
 def count_causes(
-    recorded: RecordedSet, drawn: Drawn, random: np.random.Generator
+    recorded: RecordedSet, drawn: Drawn, random: np.random.Generator, as_near: float
 ) -> Iterator[tuple[str, str, str]]:
     """Yield fault, person and answer of every spoilt take that is no longer read right."""
     labels = drawn.recognizer.language.labels
@@ -302,7 +304,7 @@ def count_causes(
             if fault == "keypoints_jumped" and np.median(np.diff(poses.time)) > SLOWEST_FRAMES:
                 continue
             spoilt = spoil(poses, random)
-            first = name_first(drawn.recognizer, spoilt, label)
+            first = name_first(drawn.recognizer, spoilt, label, as_near)
             if first == "right" or first is None:
                 yield fault, "", first or "unread"
                 continue
@@ -314,7 +316,7 @@ def count_causes(
     for index in random.permutation(drawn.right)[: 2 * PER_LANGUAGE].tolist():
         others = [label for label in labels if label != recorded.labels[index]]
         meant = others[int(random.integers(len(others)))]
-        first = name_first(drawn.recognizer, recorded.recordings[index], meant)
+        first = name_first(drawn.recognizer, recorded.recordings[index], meant, as_near)
         answer = NOTHING if first == "none" else first or "unread"
         yield NOTHING, str(recorded.people[index]), answer
 
@@ -347,6 +349,7 @@ def name_turned(recorded: RecordedSet, folder: Any, drawn: Drawn) -> Iterator[tu
 def main() -> None:
     """Print a line per fault: the share named first, people, takes, and what was named."""
     parser = set_arguments(__doc__, draws=6, queries=120)
+    parser.add_argument("--as-near", type=float, default=AS_NEAR, help="another value of AS_NEAR")
     given = parser.parse_args()
     folder = given.data / "trajectories"
     totals: dict[str, Counter[str]] = defaultdict(Counter)
@@ -355,7 +358,7 @@ def main() -> None:
         found: dict[str, Counter[str]] = defaultdict(Counter)
         random = np.random.default_rng(given.seed)
         for drawn in draw_languages(recorded, given.draws, given.queries, given.seed):
-            for fault, person, answer in count_causes(recorded, drawn, random):
+            for fault, person, answer in count_causes(recorded, drawn, random, given.as_near):
                 found[fault][answer] += 1
                 people[fault] |= {f"{recorded.name} {person}"} if person else set()
             if recorded.name in ARM_CLASSES:

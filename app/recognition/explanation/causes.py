@@ -168,7 +168,9 @@ class Cause:
         return {**vars(self), "kind": self.kind.value, "keep": keep}
 
 
-def find_causes(context: RecognitionContext, expected: str) -> tuple[Cause, ...]:
+def find_causes(
+    context: RecognitionContext, expected: str, as_near: float = AS_NEAR
+) -> tuple[Cause, ...]:
     """Find why a take is not read as the gesture that was meant, the first cause first.
 
     Parameters
@@ -177,6 +179,8 @@ def find_causes(context: RecognitionContext, expected: str) -> tuple[Cause, ...]
         The take and the recogniser.
     expected
         A label of its language.
+    as_near
+        See `AS_NEAR`; smaller: fewer causes of takes that are answered as another gesture.
 
     Returns
     -------
@@ -201,7 +205,7 @@ def find_causes(context: RecognitionContext, expected: str) -> tuple[Cause, ...]
         start = float(context.poses.time[0])
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
         answered = context.result.label is not None
-        most = min(MOST_LEFT, AS_NEAR * rival if answered else rival + CLOSE)
+        most = min(MOST_LEFT, as_near * rival if answered else rival + CLOSE)
         raw = Trajectory.from_poses(context.poses)
         found = weigh_changes(comparison, raw, expected, start, most, answered=answered)
     number = table.nearest_demonstration(at)
