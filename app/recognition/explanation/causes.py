@@ -53,8 +53,11 @@ CLOSE: Final = 0.15
 the left that is shown backwards is one to the right."""
 
 AS_NEAR: Final = 1.1
-"""Largest novelty after a change, over that of the gesture that the take is answered as: what is
-well explained by another gesture needs no fault; chosen by `benchmarks.accuracy.known_faults`."""
+"""Largest novelty after a change that turns nothing, over that of the gesture that the take is
+answered as, which explains it well; chosen by `benchmarks.accuracy.known_faults`."""
+
+TURNED: Final = frozenset({"mirrored", "reversed", "upside_down", "other_arm", "turned_away"})
+"""Kinds that change all of the take, of which there are few to choose from."""
 
 MOST_LEFT: Final = 1.2
 """Largest novelty after a change: slightly beyond the limit, since a take may have two faults."""
@@ -204,10 +207,9 @@ def find_causes(
     if comparison is not None:
         start = float(context.poses.time[0])
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
-        answered = context.result.label is not None
-        most = min(MOST_LEFT, as_near * rival if answered else rival + CLOSE)
         raw = Trajectory.from_poses(context.poses)
-        found = weigh_changes(comparison, raw, expected, start, most, answered=answered)
+        answered = as_near if context.result.label is not None else None
+        found = weigh_changes(comparison, raw, expected, start, rival, answered)
     number = table.nearest_demonstration(at)
     found = [
         replace(each, demonstration=number) if each.kind is CauseKind.demonstration else each
@@ -264,9 +266,8 @@ def weigh_changes(
     raw: Trajectory,
     label: str,
     start: float = 0.0,
-    most: float = MOST_LEFT,
-    *,
-    answered: bool = False,
+    rival: float = math.inf,
+    as_near: float | None = None,
 ) -> list[Cause]:
     """Return the kinds of changes that explain the distance of a take, the best first.
 
@@ -280,11 +281,11 @@ def weigh_changes(
         The gesture's.
     start
         Second of the take's clock at which it begins.
-    most
-        Largest novelty after a change.
-    answered
-        Whether the take is answered as another gesture; then what the keypoints show is no cause
-        either unless the take is near without it.
+    rival
+        Novelty of the take for another gesture, which explains it better than a change by which it
+        is farther.
+    as_near
+        See `AS_NEAR`; None for a take that is not answered as another gesture.
 
     """
     base = comparison.base
@@ -298,8 +299,11 @@ def weigh_changes(
     ordered = sorted(best.values(), key=lambda each: -each[0])
     named = []
     for worth, share, undone in ordered:
-        near = undone.novelty <= most
-        seen = undone.kind in SEEN and undone.size >= LEAST_SEEN and (near or not answered)
+        most = rival + CLOSE
+        if as_near is not None and undone.kind not in TURNED:
+            most = as_near * rival
+        near = undone.novelty <= min(MOST_LEFT, most)
+        seen = undone.kind in SEEN and undone.size >= LEAST_SEEN and (near or as_near is None)
         if (worth >= EXPLAINED and near) or seen:
             keep = comparison.locate_cut(undone.cut) if any(undone.cut) else None
             named.append(replace(_name(undone.kind, share, label, undone, start), keep=keep))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
-from app.recognition.explanation.blame import find_blame
+from app.recognition.explanation.blame import Evidence, find_blame
 from app.recognition.explanation.context import KnownTake
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.explanation.test_causes import HOOK, corners, hook
@@ -83,3 +83,19 @@ def test_a_cut_says_what_it_keeps() -> None:
     after = Recognizer(recognizer.language.with_changed(repaired), "full")
     assert after.recognize(recording(hook)).label == "hook"
     assert replace(blamed, change="leave_out").sentence.endswith("Leave it out.")
+
+
+def test_less_evidence_lets_a_good_demonstration_be_suspected_only_if_takes_fail() -> None:
+    bad = recording(corners((-0.3, 0.8), (-1.2, 0.1), (-0.2, 0.1), (-1.2, 0.8)))
+    recognizer = Recognizer(language_of(bad), "full")
+    (suspected,) = find_blame(recognizer, known(recognizer), least=-np.inf)
+    assert suspected.evidence.failing == 1
+    assert find_blame(recognizer, known(recognizer), least=suspected.evidence.weigh() + 0.01) == ()
+
+
+def test_each_kind_of_evidence_weighs() -> None:
+    some = Evidence(unlike=2.0, failing=0.5, gain=0.5)
+    for more in ({"unlike": 3.0}, {"failing": 1.0}, {"gain": 1.0}):
+        assert replace(some, **more).weigh() > some.weigh()
+    # A change that repairs other gestures too says no more of this demonstration.
+    assert replace(some, gain=9.0).weigh() == replace(some, gain=2.0).weigh()

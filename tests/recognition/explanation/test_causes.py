@@ -173,3 +173,14 @@ def test_a_sentence_has_at_most_fifteen_words(kind: str) -> None:
 def test_a_fault_of_a_demonstration_has_at_most_fifteen_words(kind: FaultKind) -> None:
     fault = DemonstrationFault(kind=kind, words="", remedy="show_again")
     assert len(fault.describe("hook").split()) <= 15
+
+
+def test_jumps_are_no_cause_of_a_take_that_is_answered_as_another_gesture() -> None:
+    query = recording(circle, jitter=0.01)
+    xy, wrist = query.xy.copy(), query.landmarks.index("right_wrist")
+    # A tenth of its moments: enough to be seen, and still a circle.
+    xy[44:51, wrist] += (120.0, 0.0)
+    jumping = replace(query, xy=xy)
+    recognizer = Recognizer(language_of(), "full")
+    assert recognizer.recognize(jumping).label == "circle"
+    assert causes_of(jumping) == []
