@@ -71,7 +71,7 @@ def format_report(report: HealthReport) -> str:
 
 
 def _format_head(report: HealthReport) -> Iterator[str]:
-    errors = sum(finding.below_bar for finding in report.findings)
+    errors = sum(finding.error for finding in report.findings)
     counted = "1 error" if errors == 1 else f"{errors} errors"
     result = "no errors" if report.ok else f"NOT READY, {counted}"
     yield f"{report.language}, revision {report.revision}: {result}"
@@ -129,7 +129,7 @@ def _format_gesture(report: HealthReport, gesture: GestureHealth) -> tuple[str, 
 def _format_findings(report: HealthReport) -> Iterator[str]:
     for finding in report.findings:
         yield ""
-        yield f"{'ERROR' if finding.below_bar else 'note'}: {finding.message}"
+        yield f"{'ERROR' if finding.error else 'note'}: {finding.message}"
 
 
 def _align(rows: Sequence[Sequence[str]]) -> Iterator[str]:

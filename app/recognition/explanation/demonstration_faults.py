@@ -306,7 +306,7 @@ def _find_ways(
 ) -> Iterator[DemonstrationFault]:
     """Yield a fault if a stroke reaches from one salute to the other, with a way at either end."""
     for bracket in brackets:
-        if bracket.last_salute is None:
+        if bracket.closing is None:
             continue
         if start > bracket.start + AT_SALUTE or end < bracket.end - AT_SALUTE:
             continue

@@ -58,7 +58,7 @@ class Ambiguity:
 
     def finding(self) -> Finding:
         """Return the ambiguity as a finding of the health report."""
-        return Finding(_KINDS[self.kind], (), self.message, below_bar=True)
+        return Finding(_KINDS[self.kind], (), self.message, error=True)
 
 
 class _Lead(NamedTuple):

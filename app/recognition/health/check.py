@@ -105,7 +105,7 @@ def check_health(
         revision=language.revision,
         forecast=forecast,
         gestures=gestures,
-        findings=tuple(sorted(findings, key=lambda finding: not finding.below_bar)),
+        findings=tuple(sorted(findings, key=lambda finding: not finding.error)),
         places=embed_gestures(distances),
         trigger=trigger,
         limit=LimitHealth.measure(recognizer),
@@ -189,7 +189,7 @@ def find_forecast_findings(language: Language, forecast: Forecast) -> Iterator[F
             (label, *others),
             f"{label}: {right.happened} of {right.n} demonstrations are read right by other "
             f"people's; {', '.join(each.words for each in failed)}",
-            below_bar=bool(wrong) or 1 - right.rate >= MOST_MISSED,
+            error=bool(wrong) or 1 - right.rate >= MOST_MISSED,
         )
 
 
@@ -206,10 +206,10 @@ def _duplicate_findings(language: Language, distances: FloatArray) -> Iterator[F
             (one, other),
             f"{one} and {other} are the same {SAME[shapes[first]]}, so the robot cannot "
             "distinguish them: change or remove one of them",
-            below_bar=True,
+            error=True,
         )
     if (more := len(pairs) - MOST_DUPLICATES) > 0:
-        yield Finding("duplicate", (), f"{more} further pairs are the same as well", below_bar=True)
+        yield Finding("duplicate", (), f"{more} further pairs are the same as well", error=True)
 
 
 def _demonstration_findings(language: Language) -> Iterator[Finding]:
@@ -238,7 +238,7 @@ def _label_findings(labels: Sequence[str]) -> Iterator[Finding]:
             (one, other),
             f"the labels {one} and {other} look alike, so a slate does not tell which is meant; "
             "rename one of the two gestures",
-            below_bar=are_confusable(one, other),
+            error=are_confusable(one, other),
         )
 
 
@@ -248,4 +248,4 @@ def _profile_findings(language: Language) -> Iterator[Finding]:
             f"the language uses the profile {language.profile}, which rejects nothing, while this "
             "report is for the profile full: choose the profile full before a dive"
         )
-        yield Finding("unrejecting", (), message, below_bar=True)
+        yield Finding("unrejecting", (), message, error=True)

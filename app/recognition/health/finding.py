@@ -80,7 +80,7 @@ class Finding:
         Labels of the gestures concerned; none for phrases.
     message
         What is wrong and why that matters, in one sentence or two.
-    below_bar
+    error
         Whether it is an error and not a note.
 
     """
@@ -88,11 +88,11 @@ class Finding:
     kind: FindingKind
     gestures: tuple[str, ...]
     message: str
-    below_bar: bool = False
+    error: bool = False
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return vars(self) | {"gestures": list(self.gestures)}
+        """Return plain JSON types; with `below_bar`, as version 0.2 called `error`."""
+        return vars(self) | {"gestures": list(self.gestures), "below_bar": self.error}
 
 
 def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[Finding]:

@@ -179,7 +179,7 @@ class HealthReport:
     @property
     def ok(self) -> bool:
         """Whether there is no error."""
-        return not any(finding.below_bar for finding in self.findings)
+        return not any(finding.error for finding in self.findings)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""

@@ -106,7 +106,7 @@ def list_trigger_findings(
             f"the trigger's pose is not seen of {health.missed.rate:.0%} of other people: choose "
             "one with the hands farther from where they usually are"
         )
-        yield Finding("trigger_missed", (), message, below_bar=True)
+        yield Finding("trigger_missed", (), message, error=True)
     if health.false_per_hour > MOST_AN_HOUR:
         message = (
             f"ordinary movement holds the trigger's pose about {health.false_per_hour:.0f} times "
@@ -125,7 +125,7 @@ def _check_gesture(label: str, shown: Trajectory, poses: Sequence[ArmPose]) -> I
             f"{label} holds the trigger's pose, which ends the take in the middle of it: choose "
             "another trigger, or show the gesture without that pose"
         )
-        yield Finding("trigger_like", (label,), message, below_bar=True)
+        yield Finding("trigger_like", (label,), message, error=True)
     elif any((_score(pose, shown) >= ENTER_SCORE).any() for pose in poses):
         message = (
             f"{label} passes through the trigger's pose: shown slowly, it ends the take in the "

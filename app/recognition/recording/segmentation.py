@@ -39,33 +39,33 @@ class TakeState(str, Enum):
 
 @dataclass(frozen=True)
 class Bracket:
-    """The salutes around a take; the second one may be missing.
+    """The triggers around a take; the closing one may be missing.
 
     Attributes
     ----------
-    first_salute
-        From the first frame of the start salute to its last one.
-    last_salute
-        From the first frame of the stop salute to when it had been held long enough; None: the
+    opening
+        From the first frame of the start trigger to its last one.
+    closing
+        From the first frame of the stop trigger to when it had been held long enough; None: the
         stream or the time for a take ended without one.
     end
-        Seconds: when the take ends, by the stop salute or without one.
+        Seconds: when the take ends, by the stop trigger or without one.
 
     """
 
-    first_salute: Span
-    last_salute: Span | None
+    opening: Span
+    closing: Span | None
     end: float
 
     @property
     def start(self) -> float:
         """When the take begins, in seconds."""
-        return self.first_salute.end
+        return self.opening.end
 
     @property
     def closed(self) -> bool:
-        """Whether a stop salute ended the take."""
-        return self.last_salute is not None
+        """Whether a stop trigger ended the take."""
+        return self.closing is not None
 
 
 @dataclass
@@ -210,7 +210,7 @@ class TakeMachine:
             if since - released < self.shortest:
                 return None
             return Bracket(
-                first_salute=Span(self._began, released), last_salute=Span(since, time), end=since
+                opening=Span(self._began, released), closing=Span(since, time), end=since
             )
         if self._released is None or time - released <= self.longest:
             return None
@@ -232,18 +232,16 @@ class TakeMachine:
             self._released = None
             return None
         self.state, self._closing = TakeState.done, since
-        return Bracket(
-            first_salute=Span(self._began, released), last_salute=Span(since, time), end=since
-        )
+        return Bracket(opening=Span(self._began, released), closing=Span(since, time), end=since)
 
     def _find_gap(self, time: float) -> Bracket | None:
         ended, self._ended = self._ended, None
         if ended is None or not self.shortest <= self._began - ended.end <= self.longest:
             return None
-        return Bracket(first_salute=ended, last_salute=Span(self._began, time), end=self._began)
+        return Bracket(opening=ended, closing=Span(self._began, time), end=self._began)
 
     def _unclosed(self, released: float, end: float) -> Bracket:
-        return Bracket(first_salute=Span(self._began, released), last_salute=None, end=end)
+        return Bracket(opening=Span(self._began, released), closing=None, end=end)
 
 
 def create_held_pose() -> HeldTrigger:
@@ -376,13 +374,13 @@ def cut_take(
     # A camera that stalls may have given no frame in between.
     if trim and len(untrimmed):
         around = poses.between(
-            bracket.first_salute.start,
-            bracket.last_salute.end if bracket.last_salute else bracket.end,
+            bracket.opening.start,
+            bracket.closing.end if bracket.closing else bracket.end,
         )
         stroke = find_stroke(
             repair_poses(around).poses,
-            bracket.first_salute,
-            bracket.last_salute,
+            bracket.opening,
+            bracket.closing,
             posed=trigger.kind == "pose",
         )
     return Take(

@@ -148,7 +148,7 @@ class Piece:
 
 
 def find_stroke(
-    poses: PoseSequence, first_salute: Span, last_salute: Span | None, *, posed: bool = False
+    poses: PoseSequence, opening: Span, closing: Span | None, *, posed: bool = False
 ) -> Span:
     """Find the gesture's own movement between two salutes.
 
@@ -158,9 +158,9 @@ def find_stroke(
     ----------
     poses
         Poses from the first salute to the last one.
-    first_salute, last_salute
+    opening, closing
         When the salutes were seen. The hand may keep the shape while it leaves, and form it before
-        it arrives. `last_salute` None: the take was not closed, and only its beginning is trimmed.
+        it arrives. `closing` None: the take was not closed, and only its beginning is trimmed.
     posed
         Whether the triggers are poses of the arms. Any movement entirely within a pose is unrest,
         within a salute a small one only.
@@ -170,16 +170,12 @@ def find_stroke(
     The stroke; everything between the salutes where no reach is clear.
 
     """
-    end = last_salute.start if last_salute else float(poses.time[-1])
-    whole = Span(first_salute.end, end)
-    motion = _hand_motion(
-        poses.between(first_salute.start, last_salute.end if last_salute else end)
-    )
+    end = closing.start if closing else float(poses.time[-1])
+    whole = Span(opening.end, end)
+    motion = _hand_motion(poses.between(opening.start, closing.end if closing else end))
     if motion is None:
         return whole
-    motion = motion.between(
-        motion.slowest(first_salute), motion.slowest(last_salute) if last_salute else end
-    )
+    motion = motion.between(motion.slowest(opening), motion.slowest(closing) if closing else end)
     pieces = split_pieces(motion)
     pieces = [
         piece
@@ -198,7 +194,7 @@ def find_stroke(
         motion, pieces[0], moving, small
     )
     comes = (
-        last_salute is not None
+        closing is not None
         and motion.time[pieces[-1].last] >= whole.end - SETTING_OUT
         and _is_reach(motion, pieces[-1], moving, small)
     )

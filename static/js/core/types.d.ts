@@ -199,12 +199,12 @@ export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
   alignment: Alignment | null;
 };
 
-/** A finding of the health report; `below_bar` marks an error, the others are notes. */
+/** A finding of the health report; `error` marks an error, the others are notes. */
 export interface Finding {
   kind: string;
   gestures: string[];
   message: string;
-  below_bar: boolean;
+  error: boolean;
 }
 
 /** What takes are read as; all null where nothing can be foretold. */

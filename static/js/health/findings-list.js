@@ -9,15 +9,15 @@ import { compare, editLink } from "./finding-links.js";
 const AT_FIRST = 5; // Findings shown before the table and the map; the worst come first.
 
 /** @param {Finding} finding */
-function finding({ kind, gestures, message, below_bar: below }) {
+function finding({ kind, gestures, message, error }) {
   return h(
     "li",
-    { className: `finding ${below ? "below" : "note"}` },
-    h("span", { className: "mark", "aria-hidden": "true" }, below ? "!" : "i"),
+    { className: `finding ${error ? "error" : "note"}` },
+    h("span", { className: "mark", "aria-hidden": "true" }, error ? "!" : "i"),
     h(
       "div",
       { className: "finding-text" },
-      h("p", {}, h("b", {}, below ? "Error: " : "Note: "), message),
+      h("p", {}, h("b", {}, error ? "Error: " : "Note: "), message),
       h(
         "div",
         { className: "finding-links" },

@@ -38,7 +38,7 @@ const imageOf = (label) =>
 
 /** @param {HealthReport} report */
 function verdict({ ok, warnings: findings }) {
-  const errors = findings.filter((finding) => finding.below_bar).length;
+  const errors = findings.filter((finding) => finding.error).length;
   const notes = findings.length - errors;
   const text = ok ? "No errors" : plural(errors, "error");
   return h(

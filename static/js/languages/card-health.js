@@ -41,7 +41,7 @@ function write(line, report) {
   const { warnings: findings } = report;
   line.hidden = false;
   line.className = `health ${report.ok ? "well" : "unwell"}`;
-  const errors = findings.filter((finding) => finding.below_bar);
+  const errors = findings.filter((finding) => finding.error);
   if (errors.length)
     line.textContent = `${plural(errors.length, "health error")}: ${errors[0].message}`;
   else

@@ -42,7 +42,7 @@ function ambiguities() {
     list.map(({ message, gestures }, index) =>
       h(
         "li",
-        { className: "finding below" },
+        { className: "finding error" },
         h("span", { className: "mark", "aria-hidden": "true" }, "!"),
         h("div", { className: "finding-text" }, h("p", {}, message)),
         h(

@@ -86,7 +86,7 @@ def test_the_health_check_tells_that_the_hand_must_be_seen(recognizer: Recognize
     report = check_health(recognizer.language)
     (note,) = [each for each in report.findings if each.kind == "hand_shape_only"]
     assert note.gestures == ("fist", "flat")
-    assert not note.below_bar
+    assert not note.error
     assert "duplicate" not in {each.kind for each in report.findings}
 
 

@@ -142,4 +142,4 @@ def test_an_ambiguity_is_a_warning_below_the_bar(kind: str) -> None:
     )
     findings = [each.finding() for each in find_ambiguities(grammar)]
     assert findings[0].kind == f"phrases_{kind}"
-    assert findings[0].below_bar
+    assert findings[0].error

@@ -40,7 +40,7 @@ def test_two_gestures_that_are_the_same_are_an_error(confused: HealthReport) -> 
     assert not confused.ok
     (finding,) = [each for each in confused.findings if each.kind == "duplicate"]
     assert finding.gestures == ("circle", "ring")
-    assert finding.below_bar
+    assert finding.error
     assert "the same movement" in finding.message
 
 
@@ -57,11 +57,11 @@ def test_of_many_duplicates_a_hundred_are_named_and_the_others_counted() -> None
 
 def test_labels_that_look_alike_are_found_and_are_errors_beyond_ascii() -> None:
     first, second = HEALTHY.gestures
-    for one, other, below_bar in (("up1", "upl", False), ("up", "u\u0440", True)):
+    for one, other, error in (("up1", "upl", False), ("up", "u\u0440", True)):
         gestures = [replace(first, label=one), replace(second, label=other)]
         report = check_health(replace(HEALTHY, gestures=gestures))
         (found,) = [each for each in report.findings if each.kind == "look_alike"]
-        assert (found.gestures, found.below_bar) == ((one, other), below_bar)
+        assert (found.gestures, found.error) == ((one, other), error)
 
 
 def test_a_gesture_with_the_other_hand_is_no_duplicate() -> None:
@@ -90,7 +90,7 @@ def test_the_report_is_plain_json(confused: HealthReport) -> None:
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert list(report)[:2] == ["language", "revision"]
     assert {"ok", "forecast", "gestures", "warnings", "map"} <= set(report)
-    assert {"kind", "gestures", "message", "below_bar"} == set(report["warnings"][0])
+    assert {"kind", "gestures", "message", "error", "below_bar"} == set(report["warnings"][0])
     assert report["gestures"][0]["nearest"]["label"] == "ring"
     assert report["gestures"][0]["right"] is None
     assert [place["label"] for place in report["map"]] == ["circle", "ring", "line"]
@@ -121,7 +121,7 @@ def test_a_gesture_without_demonstration_is_told_and_not_judged() -> None:
 def test_a_language_that_rejects_nothing_is_not_ready() -> None:
     report = check_health(replace(HEALTHY, profile="paper"))
     (finding,) = [each for each in report.findings if each.kind == "unrejecting"]
-    assert finding.below_bar
+    assert finding.error
     assert "profile paper" in finding.message
     assert not report.ok
 
@@ -162,6 +162,6 @@ def test_sequences_of_hand_shapes_are_confused_with_their_like_alone() -> None:
         for seed, (label, shapes) in enumerate(shown.items())
     ]
     report = check_health(Language("signs", gestures))
-    (error,) = [each for each in report.findings if each.below_bar]
+    (error,) = [each for each in report.findings if each.error]
     assert (error.kind, error.gestures) == ("duplicate", ("go", "went"))
     assert "are the same sequence of hand shapes" in error.message

@@ -62,7 +62,7 @@ def test_a_fault_is_found_and_told_about_that_gesture(
     assert finding.kind == kind
     assert finding.gestures == ("circle",)
     assert "circle" in finding.message
-    assert not finding.below_bar
+    assert not finding.error
 
 
 def test_a_hand_held_up_may_be_taken_for_a_salute() -> None:

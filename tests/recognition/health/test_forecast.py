@@ -71,7 +71,7 @@ def test_a_demonstration_of_something_else_is_named_with_its_diver_and_what_it_i
         for each in report.findings
         if each.kind == "misread" and each.gestures == ("circle", "wedge")
     ]
-    assert finding.below_bar
+    assert finding.error
     assert "Cy's is read as wedge" in finding.message
 
 
@@ -138,7 +138,7 @@ def test_a_gesture_that_others_never_read_is_an_error_and_one_refusal_of_three_a
             for at, (diver, outcome) in enumerate(zip(DIVERS, outcomes, strict=True))
         )
         found = find_forecast_findings(pool(circle=circle, line=line), Forecast(3, readings))
-        return [(each.kind, each.below_bar) for each in found]
+        return [(each.kind, each.error) for each in found]
 
     assert kinds("right", "right", "right") == []
     assert kinds("right", "right", "refused") == [("missed", False)]

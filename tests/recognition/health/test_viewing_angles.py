@@ -53,7 +53,7 @@ def test_two_gestures_that_are_the_same_from_one_side_are_named_with_that_side()
     assert {frozenset(each.gestures) for each in found} == {frozenset(("tilted", "bob"))}
     for finding in found:
         assert "when the diver is turned by 60 degrees to the" in finding.message
-        assert not finding.below_bar
+        assert not finding.error
 
 
 def test_without_depth_no_angle_is_known() -> None:

@@ -61,7 +61,7 @@ def test_a_take_lies_between_two_salutes(rate: float) -> None:
     )
     assert found.closed
     assert (found.start, found.end) == pytest.approx((1.3, 3.3), abs=2 / rate)
-    assert found.first_salute.start == pytest.approx(0.5, abs=1 / rate)
+    assert found.opening.start == pytest.approx(0.5, abs=1 / rate)
 
 
 def test_the_start_salute_never_counts_as_stop_however_long_it_is_held() -> None:
@@ -167,7 +167,7 @@ def test_takes_never_overlap_and_only_the_last_may_be_open(
     found = brackets(*stretches)
     for bracket in found:
         assert bracket.end - bracket.start >= SHORTEST_TAKE - 1e-9
-        assert bracket.first_salute.start <= bracket.start
+        assert bracket.opening.start <= bracket.start
     for before, after in pairwise(found):
         assert before.closed
         assert before.end < after.start

@@ -34,7 +34,7 @@ def test_a_language_is_checked(client: httpx.Client, imported: str) -> None:
     answer = client.get(f"{LANGUAGES}/{imported}/check")
     assert answer.status_code == 200
     report = answer.json()
-    assert report["ok"] is not any(warning["below_bar"] for warning in report["warnings"])
+    assert report["ok"] is not any(warning["error"] for warning in report["warnings"])
     assert report["gestures"][0]["nearest"]["label"] == "line"
     assert report["forecast"]["right"] is None
     assert [gesture["label"] for gesture in report["gestures"]] == ["circle", "line"]

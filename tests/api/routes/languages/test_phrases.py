@@ -114,7 +114,7 @@ def test_ambiguities_are_told_as_the_phrases_change(client: httpx.Client, place:
     assert (found["kind"], found["phrases"], found["gestures"]) == ("prefix", ["photo"], ["line"])
     assert view["may_end"]
     report = client.get(f"{place}/check").json()
-    kinds = [each["kind"] for each in report["warnings"] if each["below_bar"]]
+    kinds = [each["kind"] for each in report["warnings"] if each["error"]]
     assert "phrases_prefix" in kinds
     client.patch(place, json={"grammar": GRAMMAR})
     assert shown(client, place)["ambiguities"] == []
