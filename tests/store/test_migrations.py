@@ -13,7 +13,7 @@ from alembic.migration import MigrationContext
 from sqlalchemy import inspect
 from sqlmodel import SQLModel
 
-from app.api.jobs.extraction import options_of
+from app.api.jobs.extraction_queue import options_of
 from app.clip_sources import ReadOptions
 from app.recognition import Language
 from app.store import ClipStore, Database, LanguageStore, RecognitionStore

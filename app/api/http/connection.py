@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from starlette.requests import ClientDisconnect, Request
 
-from app.api.jobs.places import compute_in_place
+from app.api.jobs.job import compute_in_place
 
 Result = TypeVar("Result")
 

@@ -1,4 +1,4 @@
-"""Jobs: work that takes long, with progress and cancel; one module per kind.
+"""Jobs: work that takes long, with progress and cancel.
 
-A new kind is a class with the members of `job.Job`; a route awaits it with `studio.runner.run`.
+A new kind is a task (`app.api.workers.tasks`), which a route runs as a `job.TaskJob`.
 """

@@ -1,26 +1,63 @@
-"""Extraction queue: runs the stored jobs a few at a time, in turn between clients."""
+"""Extractions: finding the poses of stored clips, a few at a time, in turn between clients."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
+from collections import OrderedDict, deque
+from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import asdict
+from functools import partial
+from typing import ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
-from app.api.events.broadcast import Broadcast
-from app.api.jobs.extraction import ExtractionJob, job_event
-from app.api.jobs.fair_queue import FairQueue
-from app.api.jobs.job import JobCancelled
-from app.api.jobs.persistence import persist
-from app.api.jobs.runner import JobRunner
+from app.api.events.broadcast import Broadcast, Event
+from app.api.jobs.job import Job as RunningJob
+from app.api.jobs.job import JobCancelled, JobRunner, Progress, Report, run_task
+from app.api.workers.tasks import Record
+from app.api.workers.worker_messages import Failed, Finished
 from app.api.workers.worker_processes import Workers
-from app.store import ClipStore, Job, JobStatus, JobStore, StoreError
+from app.clip_sources import ReadOptions, source_named
+from app.settings import Settings
+from app.store import (
+    Clip,
+    ClipStore,
+    Job,
+    JobStatus,
+    JobStore,
+    NotFound,
+    StoreError,
+    StoreUnavailable,
+)
+from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.models import VIDEO
 
 RENEW_SECONDS = 10.0
 """Seconds between two renewals: a server may miss three before another one takes over its jobs."""
 
+FIRST_PAUSE_SECONDS = 0.5
+LONGEST_PAUSE_SECONDS = 5.0
+"""Longest pause between attempts: short enough that nobody waits long once the database is back."""
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
 logger = logging.getLogger(__name__)
+
+
+def job_event(job: Job) -> Event:
+    """Return the event about a stored job."""
+    return Event("jobs", {"id": job.id, "clip_id": job.clip_id})
+
+
+def options_of(clip: Clip) -> ReadOptions:
+    """Return how the file of a stored clip is read."""
+    options = ReadOptions()
+    if clip.options is not None:
+        options = ReadOptions.model_validate_json(clip.options)
+    return options.model_copy(update={"topic": clip.topic})
 
 
 class ExtractionQueue:
@@ -36,8 +73,8 @@ class ExtractionQueue:
         Starts the processes.
     broadcast
         Publishes every step as ``jobs``, and every end as ``clips``.
-    count
-        Number of jobs that run at the same time.
+    settings
+        How many jobs run at the same time, and whether colours are corrected.
 
     """
 
@@ -48,14 +85,14 @@ class ExtractionQueue:
         jobs: JobStore,
         workers: Workers,
         broadcast: Broadcast,
-        count: int,
+        settings: Settings,
     ) -> None:
         self._runner = runner
         self._clips = clips
         self._jobs = jobs
         self._workers = workers
         self._broadcast = broadcast
-        self._count = count
+        self._settings = settings
         self._waiting = FairQueue()
         self._running: set[str] = set()
         self._loops: list[asyncio.Task[None]] = []
@@ -65,7 +102,7 @@ class ExtractionQueue:
         """Requeue the jobs that an earlier run left open, and start the workers."""
         for job in await run_in_threadpool(self._jobs.resume):
             await self._waiting.put(job.client, job.id)
-        self._loops = [asyncio.create_task(self._work()) for _ in range(self._count)]
+        self._loops = [asyncio.create_task(self._work()) for _ in range(self._settings.workers)]
         self._loops.append(asyncio.create_task(self._keep_up()))
 
     def look(self) -> None:
@@ -125,13 +162,46 @@ class ExtractionQueue:
                 logger.warning("the leases of jobs cannot be renewed now: %s", error)
 
     async def _run(self, job: Job) -> None:
+        def event(progress: Progress) -> Event:
+            event = job_event(job)
+            return Event(event.kind, {**event.data, "progress": asdict(progress)})
+
+        run = partial(self._extract, job)
         self._running.add(job.id)
         try:
             with suppress(JobCancelled):
-                await self._runner.run(ExtractionJob(job, self._clips, self._jobs, self._workers))
+                await self._runner.run(RunningJob("extraction", job.id, event, run, resumable=True))
         finally:
             self._running.discard(job.id)
         self._publish(job)
+
+    async def _extract(self, job: Job, report: Report) -> Finished | Failed | None:
+        """Extract a clip, unless its job was cancelled or it was deleted; return how it ended."""
+        if not await persist(self._jobs.is_running, job.id):
+            return None
+        report(Progress("starting"))
+        try:
+            clip = (await persist(self._clips.get, job.clip_id)).clip
+        except NotFound:
+            return None
+        place = self._clips.place
+        task = Record(
+            source=clip.source,
+            file=await persist(self._clips.received, clip),
+            options=options_of(clip).model_copy(update={"water": self._settings.water}),
+            video=place(clip.id, VIDEO) if source_named(clip.source).makes_video else None,
+            recording=place(clip.id, RECORDING),
+            poster=place(clip.id, POSTER),
+            filmstrip=place(clip.id, FILMSTRIP),
+        )
+        # Stored after the end of the worker, because storing may have to wait for the database.
+        match ended := await run_task(self._workers, task, report):
+            case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
+                await persist(self._clips.keep_found, clip)
+                await persist(self._jobs.complete, job.id, frames, warnings, of_salutes)
+            case Failed(code=code, detail=detail):
+                await persist(self._jobs.finish, job.id, JobStatus.FAILED, code=code, error=detail)
+        return ended
 
     async def _give_up(self, job_id: str) -> None:
         error = "the server could not keep what it found in this clip; try again"
@@ -143,3 +213,52 @@ class ExtractionQueue:
     def _publish(self, job: Job) -> None:
         self._broadcast.send(job_event(job))
         self._broadcast.publish("clips", id=job.clip_id)
+
+
+class FairQueue:
+    """Ids of waiting jobs by client; a client with a hundred jobs does not delay the others."""
+
+    def __init__(self) -> None:
+        self._waiting: OrderedDict[str, deque[str]] = OrderedDict()
+        self._known: set[str] = set()
+        self._changed = asyncio.Condition()
+
+    async def put(self, client: str, job_id: str) -> None:
+        """Add a job at the end of its client's queue, unless it is in it already."""
+        async with self._changed:
+            if job_id in self._known:
+                return
+            self._known.add(job_id)
+            self._waiting.setdefault(client, deque()).append(job_id)
+            self._changed.notify()
+
+    async def get(self) -> str:
+        """Take the next job, waiting for one."""
+        async with self._changed:
+            await self._changed.wait_for(lambda: self._waiting)
+            client, jobs = next(iter(self._waiting.items()))
+            job_id = jobs.popleft()
+            self._known.discard(job_id)
+            if jobs:
+                self._waiting.move_to_end(client)
+            else:
+                del self._waiting[client]
+            return job_id
+
+
+async def persist(
+    call: Callable[Arguments, Result], *args: Arguments.args, **kwargs: Arguments.kwargs
+) -> Result:
+    """Call a method of the store in a thread, and repeat it while the database is locked or full.
+
+    A job whose end is not stored would seem to run for ever. Cancelling the task ends the attempts.
+    """
+    pause = FIRST_PAUSE_SECONDS
+    while True:
+        try:
+            return await run_in_threadpool(call, *args, **kwargs)
+        except StoreUnavailable as error:
+            if pause == FIRST_PAUSE_SECONDS:
+                logger.warning("a job's state cannot be stored yet: %s", error)
+            await asyncio.sleep(pause)
+            pause = min(2 * pause, LONGEST_PAUSE_SECONDS)

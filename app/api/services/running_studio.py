@@ -25,9 +25,7 @@ from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
-from app.api.jobs.job import progress_of
-from app.api.jobs.places import compute_in_place
-from app.api.jobs.runner import JobRunner
+from app.api.jobs.job import JobRunner, compute_in_place, progress_of
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.kept_exports import KeptExports
@@ -331,7 +329,7 @@ async def _studio(
 
     broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics, clips.hold), JobRunner(broadcast, metrics)
-    extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, count=settings.workers)
+    extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, settings)
     studio = Studio(
         settings=settings,
         clips=clips,

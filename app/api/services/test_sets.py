@@ -16,14 +16,15 @@ from app.api.http.schemas.test_sets import (
     RateView,
     TestSetView,
 )
-from app.api.jobs.test_run import TestRunJob
+from app.api.jobs.job import Job, Progress, Report, events_about, run_task
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
-from app.api.workers.test_takes import RecognizedTake, TakeToRecognize, TestRunRequest
+from app.api.workers.tasks import TakeToRecognize, TestRun
+from app.api.workers.worker_messages import Failed, Finished, RecognizedTake
 from app.evaluation.proportion import Share
 from app.store import (
     LabelledResult,
@@ -67,8 +68,13 @@ def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTake
         raise ProblemError(409, "test_set_full", str(error)) from error
 
 
-def test_run_of(studio: Studio, state: LanguageState) -> TestRunJob:
-    """Return the job that recognises the takes without a result for the revision.
+def test_run_key(language_id: str, revision: int) -> str:
+    """Return the identity of the run of a revision among the jobs: two would do the same."""
+    return f"test {language_id} {revision}"
+
+
+def test_run_of(studio: Studio, state: LanguageState) -> Job[Finished | Failed] | None:
+    """Return the job that recognises the takes without a result for the revision; None if none is.
 
     For a clip without poses, this fault is stored as the result of its takes.
 
@@ -87,15 +93,21 @@ def test_run_of(studio: Studio, state: LanguageState) -> TestRunJob:
             fault = problem_of(error).detail
             answer = RecognizedTake(start=take.start, end=take.end, fault=fault)
             _keep(studio, state, take, answer)
-    request = TestRunRequest(document=state.revision.document, takes=wanted)
-    return TestRunJob(
-        state.record.id,
-        state.revision.revision,
-        request,
-        lambda index, found: _keep(studio, state, takes[index], found),
-        studio.workers,
-        studio.clips.folder,
-    )
+    if not takes:
+        return None
+    language_id, revision = state.record.id, state.revision.revision
+
+    def keep(index: int, found: RecognizedTake) -> None:
+        if index < len(takes):  # A process that a file has taken over may say anything.
+            _keep(studio, state, takes[index], found)
+
+    async def run(report: Report) -> Finished | Failed:
+        report(Progress("recognising", 0, len(takes)))  # It may have to wait for its turn.
+        task = TestRun(document=state.revision.document, takes=tuple(wanted))
+        return await run_task(studio.workers, task, report, keep)
+
+    event = events_about("tests", id=language_id, revision=revision)
+    return Job("test_run", test_run_key(language_id, revision), event, run)
 
 
 def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:

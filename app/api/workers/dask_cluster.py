@@ -1,18 +1,32 @@
-"""Dask cluster: runs worker processes on the machines of an existing cluster."""
+"""Dask cluster: runs worker processes on the machines of an existing cluster.
+
+Where the clips are in an object store, its machines share no folder with the server. A task then
+creates its own folder, copies the input files of its process into it, runs the process there as if
+it were the server's folder, and returns the output files to the server.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import logging
-from collections.abc import AsyncIterator, Iterable, Sequence
+import subprocess
+import sys
+import tempfile
+from collections.abc import AsyncIterator, Iterable, Iterator
 from contextlib import asynccontextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 from uuid import uuid4
 
-from app.api.workers.executor import ExecutorLost, Lines, TaskFiles
-from app.api.workers.rights import rights_to
-from app.api.workers.task_folders import Contents, OwnFolders
+from app.api.workers.executor import COMMAND, PACKAGE_PARENT, ExecutorLost, Lines, Order, TaskFiles
+from app.api.workers.rights import environment_of_workers, line_of
+from app.store.atomic_files import PARTIAL_SUFFIX
+from app.store.errors import StoreUnavailable
+from app.store.models import new_id
+from app.store.objects import open_object_store
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -29,10 +43,157 @@ LAST_LINES_SECONDS: Final = 10.0
 RESULT_SECONDS: Final = 600.0
 """Longest transfer of a task's files in seconds; a video of a gigabyte takes a minute."""
 
-Told = tuple[str, Any]
-"""Message of a task: its kind, and a line or a file."""
+STARTED, LINE, FILES, ENDED, LOST = "started", "line", "files", "ended", "lost"
+"""Kinds of what a task tells; `LOST` means that the clip cannot be fetched now."""
+
+MOST_TOLD = 64 * 1024
+"""Most bytes of a file that is told: the scheduler keeps the newest thousand messages."""
+
+Contents = dict[str, bytes]
+"""Files by their paths under the server's folder, with ``/`` between."""
+
+_processes: dict[str, subprocess.Popen[bytes]] = {}
+"""Running processes of this Dask worker, by task."""
 
 logger = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class OwnFolder:
+    """The server's data folder, which no other machine sees.
+
+    Attributes
+    ----------
+    root
+        The folder, which a task's folder replaces on its machine.
+    clips
+        The folder of its copies of clips, in `root`.
+    storage
+        Address of the object store that has the clips' files.
+
+    """
+
+    root: Path
+    clips: Path
+    storage: str
+
+    def prepare(self, order: Order, folder: Path) -> Order:
+        """Fill a task's folder with the files of clips that it reads; return its order there.
+
+        Raises
+        ------
+        StoreUnavailable
+            When the object store does not answer, or has no such file.
+
+        """
+
+        def moved(path: Path) -> Path:
+            there = folder / path.relative_to(self.root)
+            there.parent.mkdir(parents=True, exist_ok=True)
+            return there
+
+        files, objects = order.files, open_object_store(self.storage)
+        for path in files.inputs:
+            name = path.relative_to(self.clips).as_posix()
+            if not objects.download(name, moved(path)):
+                raise StoreUnavailable(f"{self.storage} holds no {name}")
+        scratch = moved(order.scratch)
+        scratch.mkdir()
+        return replace(
+            order,
+            task=order.task.replace(_quoted(self.root), _quoted(folder)),
+            files=TaskFiles(*(tuple(map(moved, each)) for each in (files.inputs, files.outputs))),
+            scratch=scratch,
+        )
+
+    def put(self, contents: Contents) -> None:
+        """Write files that a task returned, in place of earlier ones."""
+        for path, content in contents.items():
+            target = self.root / path
+            if not target.parent.is_dir():
+                continue  # The clip or the waiting request is gone.
+            partial = target.with_name(f".{target.name}.{new_id()}{PARTIAL_SUFFIX}")
+            try:
+                partial.write_bytes(content)
+                partial.replace(target)
+            finally:
+                partial.unlink(missing_ok=True)
+
+
+def _quoted(path: Path) -> str:
+    """Return a path as it is written in a JSON document."""
+    return json.dumps(str(path), ensure_ascii=False)[1:-1]
+
+
+def run_worker(order: Order, task: str, topic: str, own: OwnFolder | None) -> Contents:
+    """Run an order's process to its end on a Dask worker; tell its lines under `topic`.
+
+    If the server's folder is not seen here, the files that the process has written are returned,
+    and small ones, such as the clip's first picture, are told before the line that follows them.
+    """
+    from distributed import get_worker
+
+    def tell(kind: str, content: str | Contents) -> None:
+        get_worker().log_event(topic, (task, kind, content))
+
+    written = Contents()
+    with tempfile.TemporaryDirectory(prefix="osg-task-") as folder:
+        if own is not None:
+            try:
+                order = own.prepare(order, Path(folder))
+            except StoreUnavailable as error:
+                tell(LOST, str(error))
+                return {}
+        tell(STARTED, get_worker().address)
+        waiting = order.files.outputs if own is not None else ()
+        for line in _lines(order, task):
+            small = [
+                path for path in waiting if path.is_file() and path.stat().st_size <= MOST_TOLD
+            ]
+            if small:
+                tell(FILES, _contents(small, folder))
+                waiting = tuple(path for path in waiting if path not in small)
+            tell(LINE, line)
+        if own is not None:
+            written = _contents(order.files.outputs, folder)
+    tell(ENDED, "")
+    return written
+
+
+def _contents(files: Iterable[Path], folder: str) -> Contents:
+    """Return those of the files in a task's folder that are written."""
+    written = [path for path in files if path.is_file()]
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in written}
+
+
+def _lines(order: Order, task: str) -> Iterator[str]:
+    """Yield the lines of a worker process."""
+    process = subprocess.Popen(
+        [sys.executable, *COMMAND],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=PACKAGE_PARENT,
+        env=environment_of_workers(),
+    )
+    _processes[task] = process
+    try:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        with contextlib.suppress(BrokenPipeError):  # It has ended already.
+            process.stdin.write(line_of(order))
+            process.stdin.flush()
+        for line in process.stdout:
+            yield line.decode()
+    finally:
+        _processes.pop(task, None)
+        process.kill()
+        process.wait()
+
+
+def end_worker(task: str) -> None:
+    """End the process of a task, where it runs on this Dask worker."""
+    if (process := _processes.get(task)) is not None:
+        process.kill()
 
 
 class DaskCluster:
@@ -46,38 +207,31 @@ class DaskCluster:
     address
         The scheduler's ``HOST:PORT``.
     own
-        The server's folders, if the machines of the cluster do not see them.
+        The server's folder, if the machines of the cluster do not see it.
 
     """
 
-    def __init__(self, address: str, own: OwnFolders | None = None) -> None:
+    def __init__(self, address: str, own: OwnFolder | None = None) -> None:
         self._address = address
         self._own = own
         self._topic = f"osg-{uuid4().hex}"
-        self._lines: dict[str, asyncio.Queue[Told]] = {}
+        self._told: dict[str, asyncio.Queue[tuple[str, Any]]] = {}
         self._client: Client | None = None
         self._connecting = asyncio.Lock()
 
     @asynccontextmanager
-    async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
-        """Run a process on a machine with a free place; see `Executor`."""
-        from app.api.workers.dask_task import end_worker, run_worker
-
-        workspace = None
-        if self._own is not None:
-            workspace = await asyncio.to_thread(self._own.describe, files)
+    async def start(self, order: Order) -> AsyncIterator[Lines]:
+        """Run a task on a machine with a free place; see `Executor`."""
         client, task = await self._connected(), f"osg-{uuid4().hex}"
-        queue = self._lines[task] = asyncio.Queue()
-        given = ([*rights_to(files), *arguments], task, self._topic, workspace)
+        told = self._told[task] = asyncio.Queue()
+        given = (order, task, self._topic, self._own)
         future = client.submit(run_worker, *given, key=task, pure=False)
         try:
-            lines = _TaskLines(client, future, queue, self._own)
-            await lines.wait_for_start()
-            yield lines
+            yield _TaskLines(client, future, told, self._own)
         finally:
-            del self._lines[task]
+            del self._told[task]
             with contextlib.suppress(Exception):  # The scheduler may be gone.
-                await asyncio.wait_for(self._end(client, future, end_worker, task), CONNECT_SECONDS)
+                await asyncio.wait_for(self._end(client, future, task), CONNECT_SECONDS)
 
     async def close(self) -> None:
         """Leave the cluster."""
@@ -85,9 +239,7 @@ class DaskCluster:
             with contextlib.suppress(Exception):
                 await asyncio.wait_for(self._client.close(), CONNECT_SECONDS)
 
-    async def _end(
-        self, client: Client, future: Future[Contents], end_worker: Any, task: str
-    ) -> None:
+    async def _end(self, client: Client, future: Future[Contents], task: str) -> None:
         if not future.done():
             await future.cancel()
             # Cancelling only keeps a task from beginning; a running task is ended where it runs.
@@ -99,108 +251,82 @@ class DaskCluster:
         from distributed import Client
 
         async with self._connecting:
-            if self._client is not None and self._client.status == "running":
-                # A client that has reconnected by itself has lost its subscriptions.
-                self._client.subscribe_topic(self._topic, self._hear)
-                return self._client
-            await self.close()
-            try:
-                self._client = await Client(
-                    f"tcp://{self._address}",
-                    asynchronous=True,
-                    set_as_default=False,
-                    timeout=CONNECT_SECONDS,
-                    name="osg-studio",
-                )
-            except (OSError, TimeoutError) as error:
-                self._client = None
-                raise ExecutorLost(f"no Dask scheduler answers at {self._address}") from error
+            if self._client is None or self._client.status != "running":
+                await self.close()
+                try:
+                    self._client = await Client(
+                        f"tcp://{self._address}",
+                        asynchronous=True,
+                        set_as_default=False,
+                        timeout=CONNECT_SECONDS,
+                        name="osg-studio",
+                    )
+                except (OSError, TimeoutError) as error:
+                    self._client = None
+                    raise ExecutorLost(f"no Dask scheduler answers at {self._address}") from error
+            # Each time: a client that has reconnected by itself has lost its subscriptions.
             self._client.subscribe_topic(self._topic, self._hear)
             return self._client
 
     def _hear(self, event: tuple[float, Any]) -> None:
         task, kind, content = event[1]
-        if task in self._lines:
-            self._lines[task].put_nowait((kind, content))
+        if task in self._told:
+            self._told[task].put_nowait((kind, content))
 
 
 class _TaskLines:
-    """The lines that a task sends."""
+    """The lines that a task tells."""
 
     def __init__(
         self,
         client: Client,
         future: Future[Contents],
-        queue: asyncio.Queue[Told],
-        own: OwnFolders | None,
+        told: asyncio.Queue[tuple[str, Any]],
+        own: OwnFolder | None,
     ) -> None:
-        self._client, self._future, self._queue, self._own = client, future, queue, own
+        self._client, self._future, self._told, self._own = client, future, told, own
         self._silence = 0.0
         self._machine: str | None = None
-        self._held: str | None = None
+        self._held = b""
         self._ended = False
-
-    async def wait_for_start(self) -> None:
-        """Wait until the task has a place and begins."""
-        from app.api.workers.dask_task import ENDED, LOST, STARTED
-
-        while True:
-            kind, content = await self._next()
-            if kind == LOST:
-                raise ExecutorLost(content)
-            if kind == ENDED:
-                self._ended = True
-            if kind in (STARTED, ENDED):
-                return
 
     async def readline(self, silence_seconds: float | None = None) -> bytes:
         """Return the next line; see `Lines`."""
-        from app.api.workers.dask_task import ENDED, FILE, LINE, LOST
-
         while not self._ended:
             kind, content = await self._next(silence_seconds)
             if kind == LINE and self._own is None:
                 return str(content).encode()
             if kind == LINE:
                 # The last line says that all is written, but large files arrive after it.
-                held, self._held = self._held, content
-                if held is not None:
-                    return held.encode()
-            elif kind == FILE:
-                await self._put([content])
-            elif kind == LOST:
-                raise ExecutorLost(content)
+                held, self._held = self._held, str(content).encode()
+                if held:
+                    return held
+            elif kind == FILES and self._own is not None:
+                await asyncio.to_thread(self._own.put, content)
             elif kind == ENDED:
                 self._ended = True
-                if self._own is not None:
-                    await self._put((await self._result()).items())
+                await self._put_result()
             # The task was restarted on another machine and repeats its messages.
-        held, self._held = self._held, None
-        return b"" if held is None else held.encode()
+        held, self._held = self._held, b""
+        return held
 
-    async def _result(self) -> Contents:
-        """Return the files that a task returns at its end."""
-        if self._future.status == "error":
-            return {}
+    async def _put_result(self) -> None:
+        """Write the files that a task returns at its end, if they are not where they belong."""
+        if self._own is None or self._future.status == "error":
+            return
         try:
             found: Contents = await asyncio.wait_for(self._future, RESULT_SECONDS)
         except Exception as error:
             raise ExecutorLost(f"what a task has written did not come: {error}") from error
-        return found
+        await asyncio.to_thread(self._own.put, found)
 
-    async def _put(self, files: Iterable[tuple[str, bytes]]) -> None:
-        """Write files where the process would have written them on this machine."""
-        assert self._own is not None
-        for path, content in files:
-            await asyncio.to_thread(self._own.put, path, content)
-
-    async def _next(self, silence_seconds: float | None = None) -> Told:
-        from app.api.workers.dask_task import ENDED, STARTED
-
+    async def _next(self, silence_seconds: float | None = None) -> tuple[str, Any]:
         while True:
             with contextlib.suppress(TimeoutError):
-                kind, content = await asyncio.wait_for(self._queue.get(), LOOK_SECONDS)
+                kind, content = await asyncio.wait_for(self._told.get(), LOOK_SECONDS)
                 self._silence = 0.0
+                if kind == LOST:
+                    raise ExecutorLost(content)
                 if kind == STARTED:
                     self._machine = content
                 return kind, content

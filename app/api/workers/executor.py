@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import AbstractAsyncContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
 COMMAND: Final = ("-m", "app.api.workers")
-"""Arguments of Python that start a worker process."""
+"""Arguments of Python that start a worker process, which reads its order from stdin."""
 
 PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]
 
@@ -17,8 +16,7 @@ PACKAGE_PARENT: Final = Path(__file__).resolve().parents[3]
 class ExecutorLost(Exception):
     """Raised when the outcome of a process cannot be known any more; it may be started again.
 
-    A restart is safe: a worker depends only on its files and arguments, and writes each file at
-    once.
+    A restart is safe: a task depends only on its fields and files, and writes each file at once.
     """
 
 
@@ -42,28 +40,42 @@ class Lines(Protocol):
 
 @dataclass(frozen=True)
 class TaskFiles:
-    """The files that a worker process reads and writes.
+    """The files that a task reads and writes."""
+
+    inputs: tuple[Path, ...] = ()
+    outputs: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True)
+class Order:
+    """A task for a process; without its class, because Dask loads this into its scheduler too.
 
     Attributes
     ----------
-    inputs
-        Files that it reads.
-    outputs
-        Files that it writes, or folders of files.
+    task
+        A `Task` as JSON.
+    files
+        Its files.
+    scratch
+        Empty folder into which it may unpack archives.
+    memory_bytes, cpu_seconds, file_bytes
+        Its limits; 0 for none.
 
     """
 
-    inputs: tuple[Path, ...]
-    outputs: tuple[Path, ...]
+    task: str
+    files: TaskFiles
+    scratch: Path
+    memory_bytes: int = 0
+    cpu_seconds: int = 0
+    file_bytes: int = 0
 
 
 class Executor(Protocol):
     """Protocol of executors, which run worker processes."""
 
-    def start(
-        self, arguments: Sequence[str], files: TaskFiles
-    ) -> AbstractAsyncContextManager[Lines]:
-        """Run a worker process with these arguments; it is ended at the end of the context.
+    def start(self, order: Order) -> AbstractAsyncContextManager[Lines]:
+        """Run a task in a process, which is ended at the end of the context.
 
         The context begins when the process does, which may have to wait for a place. Files that the
         process has written are here before the line that reports them.

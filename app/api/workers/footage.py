@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
 from collections.abc import Callable, Sequence
-from contextlib import aclosing
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.api.workers.worker_messages import Failed, Progressed
+from app.api.workers.tasks import FindLandmarks
+from app.api.workers.worker_messages import Answered, Failed, Progressed
 from app.api.workers.worker_processes import Workers
-from app.clip_sources import ReadOptions, source_of
+from app.clip_sources import source_of
 from app.evaluation.kept_recordings import kept_recording
 from app.recognition.errors import OsgError
 
@@ -75,15 +74,13 @@ class Footage:
         workers: Workers,
         progress: Callable[[FootageProgress], None],
     ) -> None:
-        self._waiting = deque(clips)
         self._keep_in = keep_in
         self._workers = workers
         self._progress = progress
         self._sizes = {clip: clip.stat().st_size for clip in clips}
         self._read = dict.fromkeys(clips, 0)
-        self._done_bytes = 0
         self._locks: dict[Path, asyncio.Lock] = {}
-        self._ended: list[Extracted] = []
+        self._ended = 0
 
     @property
     def total_bytes(self) -> int:
@@ -93,20 +90,20 @@ class Footage:
     async def extract(self, count: int) -> list[Extracted]:
         """Find the landmarks of all clips in `count` processes; return the result of each."""
         self._keep_in.mkdir(parents=True, exist_ok=True)
+        places = asyncio.Semaphore(count)
         async with asyncio.TaskGroup() as group:
-            for _ in range(min(count, len(self._waiting))):
-                group.create_task(self._work())
-        return sorted(self._ended, key=lambda ended: ended.clip)
+            tasks = [group.create_task(self._work(clip, places)) for clip in self._sizes]
+        return sorted((task.result() for task in tasks), key=lambda ended: ended.clip)
 
-    async def _work(self) -> None:
-        while self._waiting:
-            clip = self._waiting.popleft()
+    async def _work(self, clip: Path, places: asyncio.Semaphore) -> Extracted:
+        async with places:
             try:
                 ended = await self._find(clip)
             except (OsgError, OSError) as error:
                 ended = Extracted(clip, None, problem=str(error))
-            self._ended.append(ended)
-            self._advance(clip, 1.0)
+        self._ended += 1
+        self._advance(clip, 1.0)
+        return ended
 
     async def _find(self, clip: Path) -> Extracted:
         recording = await asyncio.to_thread(kept_recording, clip, self._keep_in)
@@ -114,18 +111,18 @@ class Footage:
         async with self._locks.setdefault(recording, asyncio.Lock()):
             if recording.is_file():
                 return Extracted(clip, recording)
-            source, options = source_of(clip), ReadOptions()
-            messages = self._workers.find_landmarks(source, clip, options, recording, THREADS)
-            async with aclosing(messages) as steps:
-                async for step in steps:
-                    if isinstance(step, Progressed):
-                        self._advance(clip, step.done / max(step.total, 1))
-                    elif isinstance(step, Failed):
-                        return Extracted(clip, None, problem=step.detail)
-        return Extracted(clip, recording, new=True)
+            task = FindLandmarks(
+                source=source_of(clip).name, file=clip, recording=recording, threads=THREADS
+            )
+
+            async def hear(step: Progressed | Answered) -> None:
+                if isinstance(step, Progressed):
+                    self._advance(clip, step.done / max(step.total, 1))
+
+            ended = await self._workers.run(task, hear)
+        problem = ended.detail if isinstance(ended, Failed) else ""
+        return Extracted(clip, None if problem else recording, not problem, problem)
 
     def _advance(self, clip: Path, share: float) -> None:
-        read = round(share * self._sizes[clip])
-        self._done_bytes += read - self._read[clip]
-        self._read[clip] = read
-        self._progress(FootageProgress(len(self._ended), self._done_bytes))
+        self._read[clip] = round(share * self._sizes[clip])
+        self._progress(FootageProgress(self._ended, sum(self._read.values())))

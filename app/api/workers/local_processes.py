@@ -1,34 +1,47 @@
-"""Local processes: the executor that runs worker processes on this machine."""
+"""Local processes: the executor that runs worker processes on this machine.
+
+On Linux a fork server of this process forks them. That of Python (`multiprocessing`) would not do:
+it has the environment of the server, which a child can read in ``/proc/self/environ``; each child
+loads the server's main module again, and has a pipe by which it can have files of shared memory
+removed; and an ended child's id can be killed when it is another process's already.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import atexit
 import contextlib
+import functools
+import os
+import signal
+import socket
+import subprocess
 import sys
+import threading
 from asyncio.subprocess import PIPE
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
-from typing import Self
+from dataclasses import dataclass
+from typing import Final
 
-from app.api.workers.executor import COMMAND, PACKAGE_PARENT, Lines, TaskFiles
-from app.api.workers.forked_worker import ForkedWorker, can_fork
-from app.api.workers.rights import environment_of_workers, rights_to, rights_to_models
-from app.recognition.models.storage import models_dir
+from app.api.workers.executor import COMMAND, PACKAGE_PARENT, Lines, Order
+from app.api.workers.rights import environment_of_workers, line_of
+
+END_SECONDS: Final = 5.0
+"""Longest wait in seconds for the end of the fork server, which takes some milliseconds."""
 
 
 class LocalProcesses:
     """Runs worker processes on this machine."""
 
     @asynccontextmanager
-    async def start(self, arguments: Sequence[str], files: TaskFiles) -> AsyncIterator[Lines]:
-        """Run a process; see `Executor`."""
-        worker: ForkedWorker | _StartedWorker | None = None
-        arguments = [*rights_to_models(models_dir()), *rights_to(files), *arguments]
-        if can_fork():
-            worker = await ForkedWorker.begin(arguments)
-        if worker is None:
-            worker = await _StartedWorker.begin(arguments)
+    async def start(self, order: Order) -> AsyncIterator[Lines]:
+        """Run a task; see `Executor`."""
+        line = await asyncio.to_thread(line_of, order)
+        # None can be forked while the fork server dies.
+        worker = (await _fork_worker() if can_fork() else None) or await _start_worker()
         try:
+            worker.orders.write(line)
             yield worker
         finally:
             await worker.end()
@@ -37,36 +50,142 @@ class LocalProcesses:
         """Do nothing: every process ends with its context."""
 
 
-class _StartedWorker:
-    """A running worker process that was started from the beginning."""
+@functools.cache
+def can_fork() -> bool:
+    """Return whether this system has file descriptors of processes, as Linux since 5.3."""
+    try:
+        os.close(os.pidfd_open(os.getpid()))
+    except (AttributeError, OSError):
+        return False
+    return True
 
-    def __init__(self, process: asyncio.subprocess.Process, lines: asyncio.StreamReader) -> None:
-        self._process = process
-        self._lines = lines
 
-    @classmethod
-    async def begin(cls, arguments: Sequence[str]) -> Self:
-        """Begin a worker."""
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            *COMMAND,
-            *arguments,
-            stdin=PIPE,
-            stdout=PIPE,
-            cwd=PACKAGE_PARENT,
-            env=environment_of_workers(),
-            # Ctrl-C in the terminal is for the server, which then ends its workers in order.
-            start_new_session=True,
-        )
-        assert process.stdout is not None
-        return cls(process, process.stdout)
+@dataclass(frozen=True)
+class _Worker:
+    """A running worker process; `end` kills it, and waits until it has ended."""
+
+    lines: asyncio.StreamReader
+    orders: asyncio.StreamWriter
+    end: Callable[[], Awaitable[None]]
 
     async def readline(self, silence_seconds: float | None = None) -> bytes:
-        """Return the next line; see `Lines`."""
-        return await asyncio.wait_for(self._lines.readline(), silence_seconds)
+        try:
+            return await asyncio.wait_for(self.lines.readline(), silence_seconds)
+        except ConnectionResetError:  # The process ended before it had read its order.
+            return b""
 
-    async def end(self) -> None:
-        """End the process, and wait until it has ended."""
+
+async def _start_worker() -> _Worker:
+    """Start a worker from the beginning."""
+    process = await asyncio.create_subprocess_exec(
+        sys.executable,
+        *COMMAND,
+        stdin=PIPE,
+        stdout=PIPE,
+        cwd=PACKAGE_PARENT,
+        env=environment_of_workers(),
+        # Ctrl-C in the terminal is for the server, which then ends its workers in order.
+        start_new_session=True,
+    )
+
+    async def end() -> None:
         with contextlib.suppress(ProcessLookupError):
+            process.kill()
+        await process.wait()
+
+    assert process.stdin is not None
+    assert process.stdout is not None
+    return _Worker(process.stdout, process.stdin, end)
+
+
+async def _fork_worker() -> _Worker | None:
+    """Fork a worker; return None if that is impossible now, with the reason on stderr."""
+    lines, connection = await asyncio.open_unix_connection(sock=_fork_server.connect())
+    process: int | None = None
+    try:
+        # The process waits for its order after sending its id, so the id is still its own.
+        said = await lines.readline()
+        process = os.pidfd_open(int(said)) if said else None
+    except (ConnectionResetError, ProcessLookupError):
+        return None
+    finally:
+        if process is None:
+            connection.close()
+    if process is None:
+        return None
+    return _Worker(lines, connection, functools.partial(_kill, process, connection))
+
+
+async def _kill(process: int, connection: asyncio.StreamWriter) -> None:
+    """Kill a process by its file descriptor, which is never reused for another one."""
+    loop = asyncio.get_running_loop()
+    ended = asyncio.Event()
+    loop.add_reader(process, ended.set)
+    try:
+        with contextlib.suppress(ProcessLookupError):
+            signal.pidfd_send_signal(process, signal.SIGKILL)
+        await ended.wait()
+    finally:
+        loop.remove_reader(process)
+        os.close(process)
+        connection.close()
+
+
+class _ForkServer:
+    """Fork server of this process, started with the first worker."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._requests: socket.socket | None = None
+
+    def connect(self) -> socket.socket:
+        """Return a connection to a process that is about to be forked."""
+        ours, its = socket.socketpair()
+        with its, self._lock:
+            if not self._give(its):
+                self._restart()
+                self._give(its)
+        return ours
+
+    def end(self) -> None:
+        """End the fork server if it runs; a later connection starts another one."""
+        with self._lock:
+            if self._process is not None and self._requests is not None:
+                self._requests.close()
+                self._requests = None
+                try:
+                    self._process.wait(END_SECONDS)
+                except subprocess.TimeoutExpired:
+                    self._process.kill()
+
+    def _restart(self) -> None:
+        if self._process is not None:
             self._process.kill()
-        await self._process.wait()
+            self._process.wait()
+        self._requests, its = socket.socketpair(type=socket.SOCK_SEQPACKET)
+        with its:
+            self._process = subprocess.Popen(
+                [sys.executable, *COMMAND, "--fork-server"],
+                stdin=its.fileno(),
+                stdout=subprocess.DEVNULL,
+                cwd=PACKAGE_PARENT,
+                env=environment_of_workers(),
+                start_new_session=True,
+            )
+
+    def _give(self, connection: socket.socket) -> bool:
+        """Send a connection to the fork server; return False if it is not there."""
+        if self._requests is None:
+            return False
+        try:
+            socket.send_fds(self._requests, [b"+"], [connection.fileno()])
+        except OSError:
+            self._requests.close()
+            self._requests = None
+            return False
+        return True
+
+
+_fork_server: Final = _ForkServer()
+atexit.register(_fork_server.end)

@@ -7,19 +7,14 @@ installation (`app.system.confinement`).
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Final
 
-from app.api.workers.executor import TaskFiles
-from app.system.confinement import READ, UNPACK, WRITE, confine
-
-READS, WRITES, SCRATCH = "--reads=", "--writes=", "--scratch="
-"""Arguments of a worker process that name what it may read, write, and unpack into."""
-
-MOST_NAMED: Final = 500
-"""Most files named one by one, because a command line is limited; of more, their common folder."""
+from app.api.workers.executor import Order
+from app.recognition.models.storage import models_dir
+from app.system.confinement import READ, UNPACK, WRITE
 
 # fmt: off
 _PASSED: Final = frozenset(
@@ -57,40 +52,23 @@ def environment_of_workers(environment: Mapping[str, str] = os.environ) -> dict[
     return {**passed, "ORT_DISABLE_TELEMETRY": "1"}
 
 
-def rights_to(files: TaskFiles) -> list[str]:
-    """Return the arguments that let a worker read and write these files."""
+def line_of(order: Order) -> bytes:
+    """Return the line that starts a worker on this machine: first its rights, then its work."""
+    files, models = order.files, models_dir()
     folders = {path if path.is_dir() else path.parent for path in files.outputs}
+    read = [*files.inputs, models]
     # Only the command line reads folders: their owner may have linked what is on another disk.
-    linked = [target for path in files.inputs if path.is_dir() for target in _linked(path)]
-    return [
-        *(f"{READS}{path}" for path in _few([*files.inputs, *linked])),
-        *(f"{WRITES}{path}" for path in sorted(folders)),
+    linked = [path.resolve() for folder in read for path in folder.glob("*") if path.is_symlink()]
+    grants = [
+        *((str(path), READ) for path in [*read, *linked]),
+        *((str(path), WRITE) for path in sorted(folders)),
+        (str(order.scratch), UNPACK),
     ]
-
-
-def rights_to_models(folder: Path) -> list[str]:
-    """Return the arguments that let a worker read the models in a folder."""
-    return [f"{READS}{path}" for path in (folder, *_linked(folder))]
-
-
-def confine_worker(arguments: Sequence[str]) -> None:
-    """Confine this process, which has one thread, to the files that its arguments name."""
-    confine(list(_grants(arguments)))
-
-
-def _linked(folder: Path) -> list[Path]:
-    """Return where the links in a folder lead."""
-    return [path.resolve() for path in folder.glob("*") if path.is_symlink()]
-
-
-def _few(paths: Collection[Path]) -> Collection[Path]:
-    if len(paths) <= MOST_NAMED:
-        return paths
-    return (Path(os.path.commonpath(paths)),)
-
-
-def _grants(arguments: Sequence[str]) -> Iterator[tuple[Path, int]]:
-    for beginning, rights in ((READS, READ), (WRITES, WRITE), (SCRATCH, UNPACK)):
-        for argument in arguments:
-            if argument.startswith(beginning):
-                yield Path(argument.removeprefix(beginning)), rights
+    start = {
+        "environment": environment_of_workers(),
+        "grants": grants,
+        "limits": (order.memory_bytes, order.cpu_seconds, order.file_bytes),
+        "scratch": str(order.scratch),
+        "task": order.task,
+    }
+    return json.dumps(start).encode() + b"\n"

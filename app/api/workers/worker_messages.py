@@ -1,9 +1,10 @@
-"""Messages from a worker process to the server, one JSON object per line."""
+"""Messages from a worker process to the server, one JSON object per line; long ones in parts."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
 
@@ -20,6 +21,12 @@ Pose = tuple[tuple[float, float] | None, ...]
 """A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
 fractions of the upright picture's width and height; outside 0 to 1 beyond the picture's edge, None
 if not seen."""
+
+PART_CHARACTERS = 15_000
+"""Most characters in a line, each of up to four bytes: asyncio reads lines of at most 64 KiB."""
+
+MORE, LAST = b"+", b"="
+"""Beginnings of the lines of a message in parts; every other line is a whole message."""
 
 POSE_DIGITS = 4
 """Digits of a pose's fractions: a tenth of a pixel in a picture 1000 wide."""
@@ -67,9 +74,9 @@ class Progressed(_Said):
     Attributes
     ----------
     stage
-        ``poses`` or ``saving``.
+        ``poses`` or ``saving`` of a clip; other tasks name their own.
     done, total
-        Frames; `total` is an estimate if the container does not count them.
+        Frames or other pieces of work; `total` is an estimate if the container does not count them.
     time
         Time of the newest frame, in seconds after the first; None if no frame is shown.
     pose
@@ -85,13 +92,38 @@ class Progressed(_Said):
     pose: Pose | None = None
 
 
+class RecognizedTake(_Said):
+    """The answer about one take: `Recognition.to_dict` in `answer`, or why there is none.
+
+    Attributes
+    ----------
+    start, end
+        Seconds of the recognised part, without transit.
+
+    """
+
+    start: float
+    end: float
+    answer: dict[str, Any] | None = None
+    fault: Line | None = None
+
+
+class Answered(_Said):
+    """The answer about the take with that index; a process that is started again repeats them."""
+
+    kind: Literal["answered"] = "answered"
+    index: Count
+    take: RecognizedTake
+
+
 class Finished(_Said):
-    """The recording is on disk."""
+    """The work is done: files are on disk; `result` is what it found, if that is no file."""
 
     kind: Literal["finished"] = "finished"
-    frames: Count
-    warnings: tuple[Line, ...]
+    frames: Count = 0
+    warnings: tuple[Line, ...] = ()
     salute_warnings: tuple[Line, ...] = ()
+    result: Any = None
 
 
 class Failed(_Said):
@@ -103,7 +135,7 @@ class Failed(_Said):
     pointer: str | None = None
 
 
-Message = Probed | Progressed | Finished | Failed
+Message = Probed | Progressed | Answered | Finished | Failed
 
 _MESSAGE: TypeAdapter[Message] = TypeAdapter(Annotated[Message, Field(discriminator="kind")])
 
@@ -118,18 +150,25 @@ def pose_in(xy: FloatArray, width: int, height: int) -> Pose:
     )
 
 
-def dump(message: Message) -> str:
-    """Return the line for `message`, without a line break."""
-    return message.model_dump_json()
+def dump(message: Message) -> Iterator[str]:
+    """Yield the lines for `message`, without line breaks."""
+    text = message.model_dump_json()
+    if len(text) <= PART_CHARACTERS:
+        yield text
+        return
+    starts = range(0, len(text), PART_CHARACTERS)
+    for start in starts:
+        begins = LAST if start == starts[-1] else MORE
+        yield begins.decode() + text[start : start + PART_CHARACTERS]
 
 
 def parse(line: bytes) -> Message:
-    """Return the message of a line.
+    """Return the message of a line, or of the parts of several.
 
     Raises
     ------
     ValueError
-        When the line is no message.
+        When this is no message.
 
     """
     return _MESSAGE.validate_json(line)

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.api.jobs.fair_queue import FairQueue
+from app.api.jobs.extraction_queue import FairQueue
 
 
 async def drained(entries: list[tuple[str, str]]) -> list[str]:

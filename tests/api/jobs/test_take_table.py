@@ -9,9 +9,8 @@ from collections.abc import Callable
 import pytest
 
 from app.api.events.broadcast import Broadcast
-from app.api.jobs.job import JobCancelled, Progress
-from app.api.jobs.runner import JobRunner
-from app.api.jobs.take_table import Rows, TakeTableJob
+from app.api.jobs.job import JobCancelled, JobRunner, Progress
+from app.api.jobs.take_table import Rows, take_table_job
 from app.store import Clip
 
 
@@ -27,7 +26,9 @@ def test_progress_counts_the_frames_of_all_clips() -> None:
         return [{"clip": clip.name}]
 
     clips = [clip_of("a.mp4", 100), clip_of("b.mp4", 300)]
-    rows = asyncio.run(TakeTableJob("mine", clips, recognize, asyncio.Semaphore()).run(told.append))
+    rows = asyncio.run(
+        take_table_job("mine", clips, recognize, asyncio.Semaphore()).run(told.append)
+    )
     assert rows == [{"clip": "a.mp4"}, {"clip": "b.mp4"}]
     assert [(each.stage, each.done, each.total) for each in told] == [
         ("clip 1 of 2: a.mp4", 0, 400),
@@ -55,7 +56,7 @@ def test_a_cancelled_table_recognises_no_further_take() -> None:
     async def scenario() -> None:
         runner = JobRunner(Broadcast())
         clips, places = [clip_of("a.mp4", 9), clip_of("b.mp4", 9)], asyncio.Semaphore()
-        job = TakeTableJob("mine", clips, recognize, places)
+        job = take_table_job("mine", clips, recognize, places)
         waiting = asyncio.create_task(runner.run(job))
         await asyncio.to_thread(begun.wait, 60)
         cancelling = asyncio.create_task(runner.cancel(job.key))

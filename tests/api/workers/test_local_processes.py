@@ -8,14 +8,16 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from app.api.workers import local_processes
-from app.api.workers.executor import TaskFiles
+from app.api.workers.executor import Order, TaskFiles
 from app.api.workers.local_processes import LocalProcesses
+from app.api.workers.tasks import AnyTask, Probe, Record
 from app.recognition.models.storage import DIRECTORY_VARIABLE
 from tests.api.running import until
 from tests.api.running_workers import alive, fork_servers_of, linux, workers_of
@@ -26,12 +28,13 @@ pytestmark = [pytest.mark.slow, linux]
 PROBE_TWICE = """
 import asyncio, sys
 from pathlib import Path
-from app.api.workers.executor import TaskFiles
 from app.api.workers.local_processes import LocalProcesses
+from app.api.workers.executor import Order, TaskFiles
+
+order = Order(sys.argv[1], TaskFiles((Path(sys.argv[2]),)), Path("/nowhere"))
 
 async def probe():
-    files = TaskFiles((Path(sys.argv[1]),), ())
-    async with LocalProcesses().start(["probe", "video", sys.argv[1]], files) as lines:
+    async with LocalProcesses().start(order) as lines:
         while line := await lines.readline():
             print(line.decode())
 
@@ -40,7 +43,7 @@ for _ in range(2):
 """
 
 CANCEL_AT_ONCE = """
-from app.api.workers.forked_worker import _fork_server
+from app.api.workers.local_processes import _fork_server
 
 for _ in range(20):
     _fork_server.connect().close()
@@ -60,24 +63,34 @@ def clip(tmp_path: Path) -> Path:
     return write_clip(tmp_path / "clip.mp4")
 
 
-async def answers(arguments: list[str], files: TaskFiles) -> list[dict[str, Any]]:
-    """Run a worker to its end, and return its messages."""
+async def answers(task: AnyTask, files: TaskFiles | None = None) -> list[dict[str, Any]]:
+    """Run a worker to its end, with rights to other files or its own; return its messages."""
     found = []
-    async with LocalProcesses().start(arguments, files) as lines:
+    given = order(task) if files is None else replace(order(task), files=files)
+    async with LocalProcesses().start(given) as lines:
         while line := await lines.readline():
             found.append(json.loads(line))
     return found
 
 
+def order(task: AnyTask) -> Order:
+    """Return an order without limits, which unpacks nothing."""
+    return Order(task.model_dump_json(), task.files, Path("/nowhere"))
+
+
 async def probe(clip: Path) -> str:
-    (answer,) = await answers(["probe", "video", str(clip)], TaskFiles((clip,), ()))
+    (answer,) = await answers(Probe(source="video", file=clip))
     return str(answer["kind"])
 
 
-def record(clip: Path) -> tuple[list[str], TaskFiles]:
-    """Return arguments and files of a worker that records a clip into files beside it."""
-    made = tuple(clip.with_suffix(each) for each in (".npz", ".poster.jpg", ".strip.jpg"))
-    return ["record", "video", str(clip), *map(str, (clip, *made))], TaskFiles((clip,), made)
+def record(clip: Path, folder: Path | None = None) -> Record:
+    """Return the task that records a clip into files beside it, or in another folder."""
+    place = (folder or clip.parent) / clip.name
+    made = [place.with_suffix(each) for each in (".npz", ".poster.jpg", ".strip.jpg")]
+    recording, poster, filmstrip = made
+    return Record(
+        source="video", file=clip, recording=recording, poster=poster, filmstrip=filmstrip
+    )
 
 
 @pytest.mark.usefixtures("way")
@@ -90,7 +103,7 @@ def test_a_worker_is_ended_with_its_context(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "long.mp4", frames=2000)
 
     async def leave_early() -> int:
-        async with LocalProcesses().start(*record(clip)) as lines:
+        async with LocalProcesses().start(order(record(clip))) as lines:
             await lines.readline()
             (worker,) = workers_of(os.getpid())
             os.kill(worker, signal.SIGSTOP)
@@ -104,9 +117,9 @@ def test_a_worker_is_ended_with_its_context(tmp_path: Path) -> None:
 def test_a_worker_has_the_environment_of_the_moment(
     clip: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert asyncio.run(answers(*record(clip)))[-1]["kind"] == "finished"
+    assert asyncio.run(answers(record(clip)))[-1]["kind"] == "finished"
     monkeypatch.setenv(DIRECTORY_VARIABLE, str(clip.parent / "none"))
-    assert asyncio.run(answers(*record(clip)))[-1]["code"] == "model_missing"
+    assert asyncio.run(answers(record(clip)))[-1]["code"] == "model_missing"
 
 
 def test_many_workers_begin_at_once(clip: Path) -> None:
@@ -135,7 +148,8 @@ def test_the_process_that_is_forked_has_one_thread(clip: Path) -> None:
 
 
 def test_processes_end_without_a_word(clip: Path) -> None:
-    command = [sys.executable, "-X", "dev", "-c", PROBE_TWICE, str(clip)]
+    probing = Probe(source="video", file=clip).model_dump_json()
+    command = [sys.executable, "-X", "dev", "-c", PROBE_TWICE, probing, str(clip)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout.count("probed") == 2
     assert done.stderr == ""

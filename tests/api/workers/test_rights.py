@@ -14,15 +14,16 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.workers import forked_worker, local_processes
+from app.api.workers import local_processes
 from app.api.workers.executor import TaskFiles
 from app.api.workers.local_processes import LocalProcesses
-from app.api.workers.rights import environment_of_workers, rights_to
+from app.api.workers.rights import environment_of_workers
+from app.api.workers.tasks import Probe
 from app.system.confinement import landlock_version
 from tests.api.routes.clips.test_clips import CLIPS
 from tests.api.running import assert_problem
 from tests.api.running_workers import linux, workers_of
-from tests.api.workers.test_local_processes import answers, record
+from tests.api.workers.test_local_processes import answers, order, record
 from tests.keypoint_files.files import sleap_labels
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.strategies import BODY, circle, recording
@@ -42,11 +43,11 @@ landlock = pytest.mark.skipif(landlock_version() < 1, reason="this kernel has no
 @pytest.fixture
 def secrets(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Put secrets into the environment of this process, before its fork server starts."""
-    forked_worker._fork_server.end()
+    local_processes._fork_server.end()
     for name, value in SECRETS.items():
         monkeypatch.setenv(name, value)
     yield
-    forked_worker._fork_server.end()
+    local_processes._fork_server.end()
 
 
 @pytest.mark.withstands(row="H28")
@@ -60,7 +61,7 @@ def test_a_worker_has_no_secret_of_the_server(
     clip = write_clip(tmp_path / "long.mp4", frames=500)
 
     async def look() -> bytes:
-        async with LocalProcesses().start(*record(clip)) as lines:
+        async with LocalProcesses().start(order(record(clip))) as lines:
             await lines.readline()
             (worker,) = workers_of(os.getpid())
             return Path(f"/proc/{worker}/environ").read_bytes()
@@ -83,27 +84,32 @@ def test_a_worker_reads_no_file_but_its_own(
 ) -> None:
     monkeypatch.setattr(local_processes, "can_fork", lambda: way == "forked")
     own, other = write_clip(tmp_path / "own.mp4"), write_clip(tmp_path / "other.mp4")
-    command = ["probe", "video", str(other)]
-    (answer,) = asyncio.run(answers(command, TaskFiles((own,), ())))
+    # A process that a file has taken over would open another file than that of its task.
+    task = Probe(source="video", file=other)
+    (answer,) = asyncio.run(answers(task, TaskFiles((own,))))
     assert answer["kind"] == "failed"
-    (answer,) = asyncio.run(answers(command, TaskFiles((other,), ())))
+    (answer,) = asyncio.run(answers(task))
     assert answer["kind"] == "probed"
 
 
 @landlock
 def test_a_worker_writes_nowhere_but_into_the_folders_of_its_results(tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "clip.mp4", frames=2)
-    command, files = record(clip)
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
-    outputs = tuple(elsewhere / path.name for path in files.outputs)
-    denied = asyncio.run(answers(command, TaskFiles(files.inputs, outputs)))
+    denied = asyncio.run(answers(record(clip), record(clip, elsewhere).files))
     assert denied[-1]["code"] == "storage_unavailable"
 
 
-def test_of_thousands_of_files_the_common_folder_is_named(tmp_path: Path) -> None:
-    clips = tuple(tmp_path / "clips" / str(number) / "recording.npz" for number in range(5000))
-    assert rights_to(TaskFiles(clips, ())) == [f"--reads={tmp_path / 'clips'}"]
+@landlock
+def test_a_worker_may_read_each_of_thousands_of_files(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "clip.mp4")
+    others = [tmp_path / f"{number}.npz" for number in range(3000)]
+    for other in others:
+        other.touch()
+    files = TaskFiles((*others, clip))
+    (answer,) = asyncio.run(answers(Probe(source="video", file=clip), files))
+    assert answer["kind"] == "probed"
 
 
 def test_rights_are_taken_before_libraries_begin_threads() -> None:

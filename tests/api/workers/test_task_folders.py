@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
-from app.api.workers.executor import TaskFiles
-from app.api.workers.task_folders import OwnFolders, Written
+from app.api.workers.dask_cluster import OwnFolder, _contents
+from app.api.workers.executor import Order
+from app.api.workers.tasks import Record
 from app.recognition import Recording
 from app.settings import Settings
 from app.store import StoreUnavailable
@@ -22,6 +23,7 @@ from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.routes.clips.test_clips import upload
 from tests.api.running import Running, until
 from tests.api.running_workers import linux, workers_of
+from tests.api.workers.test_local_processes import order, record
 from tests.dask_cluster import Cluster, dask_cluster
 from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
@@ -34,59 +36,50 @@ FRAMES = 60
 
 
 @pytest.fixture
-def folders(tmp_path: Path) -> OwnFolders:
+def folder(tmp_path: Path) -> OwnFolder:
     root = tmp_path / "server"
     (root / "clips" / CLIP).mkdir(parents=True)
-    return OwnFolders(root, root / "clips", STORAGE)
+    return OwnFolder(root, root / "clips", STORAGE)
 
 
 def test_a_task_works_in_its_own_folder_as_in_the_servers(
-    folders: OwnFolders, s3: S3Server, tmp_path: Path
+    folder: OwnFolder, s3: S3Server, tmp_path: Path
 ) -> None:
     root, there = tmp_path / "server", tmp_path / "task"
-    received, scratch = root / "clips" / CLIP / "video", root / "clips" / ".unpacked-1"
-    answers, request = scratch / "answers", scratch / "request.json"
-    answers.mkdir(parents=True)
-    request.write_text(json.dumps({"recording": str(received)}), encoding="utf-8")
-    kept = tmp_path / "kept"
-    kept.write_bytes(b"video")
-    open_object_store(STORAGE).upload(kept, f"{CLIP}/video")
-    found = root / "clips" / CLIP / "recording.npz"
-    workspace = folders.describe(TaskFiles((received, request), (answers, found)))
-    arguments = workspace.prepare(there, [f"--scratch={scratch / 'own'}", str(request)])
-    assert arguments == [
-        f"--scratch={there / 'clips' / '.unpacked-1' / 'own'}",
-        str(there / "clips" / ".unpacked-1" / "request.json"),
-    ]
-    assert Path(arguments[0].partition("=")[2]).is_dir()
-    wanted = Path(json.loads(Path(arguments[1]).read_text(encoding="utf-8"))["recording"])
-    assert wanted.read_bytes() == b"video"
-    written = Written(there, workspace)
-    (there / "clips" / ".unpacked-1" / "answers" / "0.json").write_bytes(b"half")
-    (there / "clips" / CLIP / "recording.npz").write_bytes(bytes(100))
-    first = dict(written.take(50))
-    (there / "clips" / ".unpacked-1" / "answers" / "0.json").write_bytes(b"whole")
-    last = dict(written.take())
-    for path, content in (first | last).items():
-        folders.put(path, content)
-    assert (len(last), (answers / "0.json").read_bytes()) == (2, b"whole")
-    assert found.read_bytes() == bytes(100)
-    assert dict(written.take()) == {}
+    clip = root / "clips" / CLIP
+    sent = tmp_path / "sent"
+    sent.write_bytes(b"video")
+    open_object_store(STORAGE).upload(sent, f"{CLIP}/video")
+    task = record(clip / "video", clip / "found")
+    (clip / "found").mkdir()
+    given = Order(task.model_dump_json(), task.files, root / "clips" / ".unpacked-1")
+    prepared = folder.prepare(given, there)
+    assert prepared.scratch == there / "clips" / ".unpacked-1"
+    assert prepared.scratch.is_dir()
+    moved = Record.model_validate_json(prepared.task)
+    assert moved.files == prepared.files
+    assert moved.file.read_bytes() == b"video"
+    moved.recording.write_bytes(bytes(100))
+    moved.poster.write_bytes(b"picture")
+    task.poster.write_bytes(b"earlier")
+    folder.put(_contents(prepared.files.outputs, str(there)))
+    assert task.recording.read_bytes() == bytes(100)
+    assert task.poster.read_bytes() == b"picture"
+    assert not task.filmstrip.exists()
 
 
 def test_what_the_object_store_lacks_is_told(
-    folders: OwnFolders, s3: S3Server, tmp_path: Path
+    folder: OwnFolder, s3: S3Server, tmp_path: Path
 ) -> None:
     received = tmp_path / "server" / "clips" / CLIP / "video"
-    workspace = folders.describe(TaskFiles((received,), ()))
     with pytest.raises(StoreUnavailable, match=f"holds no {CLIP}/video"):
-        workspace.prepare(tmp_path / "task", [])
+        folder.prepare(order(record(received)), tmp_path / "task")
 
 
 def test_what_is_written_for_a_clip_that_is_gone_is_left_out(
-    folders: OwnFolders, tmp_path: Path
+    folder: OwnFolder, tmp_path: Path
 ) -> None:
-    folders.put("clips/elsewhere/poster.jpg", b"picture")
+    folder.put({"clips/elsewhere/poster.jpg": b"picture"})
     assert not (tmp_path / "server" / "clips" / "elsewhere").exists()
 
 
@@ -105,6 +98,14 @@ def settings(tmp_path: Path, cluster: Cluster) -> Settings:
         executor=f"dask://{cluster.address}",
         storage=STORAGE,
     )
+
+
+def open_files(process: int) -> list[str]:
+    """Return what a process has open."""
+    places = list(Path(f"/proc/{process}/fd").iterdir())
+    with suppress(FileNotFoundError):
+        return [str(place.readlink()) for place in places]
+    return []
 
 
 @linux
@@ -130,9 +131,8 @@ def test_every_kind_of_job_runs_without_a_folder_in_common(
     open_object_store(STORAGE).upload(*kept)
     until(lambda: workers_of(machine, "record"))
     (worker,) = workers_of(machine, "record")
-    command = Path(f"/proc/{worker}/cmdline").read_text()
-    assert "/osg-task-" in command
-    assert str(tmp_path) not in command
+    until(lambda: any("/osg-task-" in each for each in open_files(worker)))
+    assert not any(str(studio.settings.data_dir) in each for each in open_files(worker))
     until(lambda: client.get(f"/api/v1/jobs/{ids['job_id']}").json()["status"] == "done")
     found = Recording.load(studio.clips.recording(ids["id"]))
     assert len(found.poses) == FRAMES

@@ -3,6 +3,8 @@
 import pytest
 
 from app.api.workers.worker_messages import (
+    LAST,
+    MORE,
     Failed,
     Finished,
     Message,
@@ -25,9 +27,18 @@ from app.api.workers.worker_messages import (
     ids=lambda message: message.kind,
 )
 def test_a_message_is_one_line_and_comes_back(message: Message) -> None:
-    line = dump(message)
+    (line,) = dump(message)
     assert "\n" not in line
     assert parse(line.encode()) == message
+
+
+def test_a_long_message_is_sent_in_lines_that_every_reader_takes() -> None:
+    message = Finished(result={"name": "\U0001f93f+=" * 40_000})
+    *parts, last = (line.encode() for line in dump(message))
+    assert max(map(len, [*parts, last])) < 64 * 1024
+    assert {line[:1] for line in parts} == {MORE}
+    assert last[:1] == LAST
+    assert parse(b"".join(line[1:] for line in (*parts, last))) == message
 
 
 @pytest.mark.parametrize(

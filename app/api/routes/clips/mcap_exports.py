@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tempfile
 from pathlib import Path
 from typing import Annotated
 from urllib.parse import quote
@@ -16,12 +17,10 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, Identifier
-from app.api.jobs.bag_export import BagExportJob
-from app.api.jobs.extraction import files_of
-from app.api.jobs.job import JobCancelled
+from app.api.jobs.job import JobCancelled, events_about, task_job
 from app.api.middleware.shutdown import stopping
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.api.workers.bag_export_request import BagExportRequest, ExportedRecognition
+from app.api.workers.tasks import Export, ExportedRecognition
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.triggers.trigger import SALUTE
@@ -64,7 +63,7 @@ async def write_session(
     How far it is comes as `exports` among the events; closing the request cancels it. The file is
     kept for ten minutes, and sent once.
     """
-    content = await run_in_threadpool(_request, studio, clip_id)
+    content = await run_in_threadpool(_export, studio, clip_id)
     target = await _write(request, studio, clip_id, wanted.id, content)
     size = target.stat().st_size
     studio.exports.keep(clip_id, wanted.id, target)
@@ -88,7 +87,7 @@ async def get_session(
     It is written first, which closing the request cancels, unless `export` names one that is here:
     another server of several, and a second request, write it again.
     """
-    content = await run_in_threadpool(_request, studio, clip_id)
+    content = await run_in_threadpool(_export, studio, clip_id)
     name = export or new_id()
     target = studio.exports.take(clip_id, name)
     if target is None:
@@ -104,33 +103,34 @@ async def get_session(
 
 
 async def _write(
-    request: Request, studio: Studio, clip_id: str, export_id: str, content: BagExportRequest
+    request: Request, studio: Studio, clip_id: str, export_id: str, content: Export
 ) -> Path:
     """Write an export while its client waits, and return the file, which the caller must remove."""
     # The name marks a partial file, so that after a crash the next start removes it.
     target = studio.clips.new_partial()
-    try:
-        files = await run_in_threadpool(files_of, studio.clips, clip_id)
-        job = BagExportJob(export_id, content, target, files, studio.workers)
-        ended = await while_connected(request, studio.runner.run(job))
+    key = f"session {target.name}"
+    # In a folder of its own, because the process may write into the folder of its file.
+    with tempfile.TemporaryDirectory(prefix=".unpacked-", dir=target.parent) as folder:
+        written = Path(folder) / target.name
+        task = content.model_copy(update={"target": written})
+        event = events_about("exports", id=export_id)
+        job = task_job("bag_export", key, event, studio.workers, task)
+        try:
+            ended = await while_connected(request, studio.runner.run(job))
+        except JobCancelled as error:
+            raise stopping() from error
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
-    except JobCancelled as error:
-        target.unlink(missing_ok=True)
-        raise stopping() from error
-    except BaseException:
-        target.unlink(missing_ok=True)
-        raise
-    return target
+        return written.replace(target)
 
 
-def _name(content: BagExportRequest) -> str:
+def _name(content: Export) -> str:
     """Return the name under which a browser saves the file."""
     return f"{Path(content.clip).stem}.mcap"
 
 
-def _request(studio: Studio, clip_id: str) -> BagExportRequest:
-    """Collect the content of a clip's bag."""
+def _export(studio: Studio, clip_id: str) -> Export:
+    """Collect the content of a clip's bag; its file is still to be named."""
     studio.recording(clip_id)  # raises while its poses are not found
     clip = studio.clips.get(clip_id).clip
     records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
@@ -141,10 +141,13 @@ def _request(studio: Studio, clip_id: str) -> BagExportRequest:
         if last is None
         else studio.language(studio.languages.get(last.language_id, last.revision)).trigger
     )
-    return BagExportRequest(
+    return Export(
         clip=clip.name,
+        video=studio.clips.video(clip_id),
+        recording=studio.clips.recording(clip_id),
+        target=Path(),
         trigger=trigger_to_entry(trigger),
-        recognitions=[
+        recognitions=tuple(
             ExportedRecognition(
                 start=record.start,
                 end=record.end,
@@ -154,5 +157,5 @@ def _request(studio: Studio, clip_id: str) -> BagExportRequest:
                 result=json.loads(record.result),
             )
             for record in records
-        ],
+        ),
     )

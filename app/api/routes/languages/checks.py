@@ -14,14 +14,14 @@ from app import __version__
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
-from app.api.jobs.check import CheckJob
-from app.api.jobs.job import JobCancelled
+from app.api.jobs.job import Job, JobCancelled, events_about, task_job
 from app.api.middleware.shutdown import stopping
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.salute_ranges import faults_of_language
 from app.api.services.stored_recognitions import list_known, load_known
-from app.api.workers.worker_messages import Failed
+from app.api.workers.tasks import Check
+from app.api.workers.worker_messages import Failed, Finished
 from app.recognition import Language, Recognizer
 from app.recognition.explanation.blame import find_blame
 from app.recognition.health.finding import Finding
@@ -64,11 +64,12 @@ async def check_language(
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
     try:
-        report = await while_connected(request, studio.runner.run(_job(state, studio)))
+        ended = await while_connected(request, studio.runner.run(_job(state, studio)))
     except JobCancelled as error:
         raise _refusal(studio) from error
-    if isinstance(report, Failed):
-        raise ProblemError(422, report.code, report.detail)
+    if isinstance(ended, Failed):
+        raise ProblemError(422, ended.code, ended.detail)
+    report = ended.result
     warnings = [*faults, *report["warnings"]]
     return report | {"ok": report["ok"] and not faults, "warnings": warnings}
 
@@ -83,14 +84,12 @@ async def cancel_check(
     return Response(status_code=204)
 
 
-def _job(state: LanguageState, studio: Studio) -> CheckJob:
-    return CheckJob(
-        state.record.id,
-        state.revision.revision,
-        state.revision.document,
-        studio.workers,
-        studio.clips.folder,
-    )
+def _job(state: LanguageState, studio: Studio) -> Job[Finished | Failed]:
+    """Return the check of a revision: the same document gives the same report."""
+    document = state.revision.document
+    key = f"check {hashlib.sha256(document.encode()).hexdigest()}"
+    event = events_about("checks", id=state.record.id, revision=state.revision.revision)
+    return task_job("check", key, event, studio.workers, Check(document=document), cached=True)
 
 
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:

@@ -20,7 +20,7 @@ from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_responses import announce, save_language
 from app.api.services.running_studio import CurrentStudio, Studio, computed
-from app.api.workers.language_files import ImportedLanguage, read_language
+from app.api.workers.tasks import Import, ImportedLanguage, read_language
 from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file_schema import FORMAT, VERSION
@@ -156,13 +156,13 @@ async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLan
     if size <= SMALL_BYTES:
         content = await run_in_threadpool(file.read_bytes)
         return await run_in_threadpool(read_language, content, name)
-    found = await studio.workers.import_language(file, name)
-    if isinstance(found, Failed):
+    ended = await studio.workers.run(Import(file=file, name=name))
+    if isinstance(ended, Failed):
         faults = (
-            [] if found.pointer is None else [Fault(pointer=found.pointer, detail=found.detail)]
+            [] if ended.pointer is None else [Fault(pointer=ended.pointer, detail=ended.detail)]
         )
-        raise ProblemError(422, found.code, found.detail, errors=faults)
-    return ImportedLanguage.model_validate_json(found)
+        raise ProblemError(422, ended.code, ended.detail, errors=faults)
+    return ImportedLanguage.model_validate(ended.result)
 
 
 def _create(

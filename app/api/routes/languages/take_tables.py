@@ -11,7 +11,7 @@ from app.api.http.connection import while_connected
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.take_tables import TakeRowView, TakeTableRequest, TakeTableView
 from app.api.jobs.job import JobCancelled
-from app.api.jobs.take_table import TakeTableJob
+from app.api.jobs.take_table import take_table_job
 from app.api.middleware.shutdown import stopping
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.take_tables import recognize_clip_takes
@@ -31,7 +31,7 @@ async def make_take_table(
     """
     state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
     recognize = partial(recognize_clip_takes, studio, state)
-    job = TakeTableJob(wanted.id, clips, recognize, studio.computations)
+    job = take_table_job(wanted.id, clips, recognize, studio.computations)
     try:
         rows = await while_connected(request, studio.runner.run(job))
     except JobCancelled as error:

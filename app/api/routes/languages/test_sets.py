@@ -9,14 +9,15 @@ from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
 from app.api.jobs.job import JobCancelled
-from app.api.jobs.test_run import test_run_key
 from app.api.middleware.shutdown import stopping
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.test_sets import (
     add_labelled,
+    test_run_key,
     test_run_of,
     view_test_set,
 )
+from app.api.workers.worker_messages import Failed
 from app.store import LanguageState
 
 router = APIRouter(prefix="/languages/{language_id}/test-set", tags=["languages"])
@@ -46,13 +47,13 @@ async def run_test_set(request: Request, language_id: str, studio: CurrentStudio
     409, and keeps what is done.
     """
     state = await run_in_threadpool(studio.languages.get, language_id)
-    job = await run_in_threadpool(test_run_of, studio, state)
-    try:
-        failed = await while_connected(request, studio.runner.run(job))
-    except JobCancelled as error:
-        raise _refusal(studio) from error
-    if failed is not None:
-        raise ProblemError(422, failed.code, failed.detail)
+    if (job := await run_in_threadpool(test_run_of, studio, state)) is not None:
+        try:
+            ended = await while_connected(request, studio.runner.run(job))
+        except JobCancelled as error:
+            raise _refusal(studio) from error
+        if isinstance(ended, Failed):
+            raise ProblemError(422, ended.code, ended.detail)
     return await run_in_threadpool(_changed, studio, state)
 
 

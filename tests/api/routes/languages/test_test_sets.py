@@ -10,8 +10,8 @@ from typing import Any
 import httpx
 import pytest
 
-from app.api.jobs.test_run import test_run_key as key_of_run
 from app.api.services.running_studio import Studio
+from app.api.services.test_sets import test_run_key as key_of_run
 from app.store import JobStatus
 from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
