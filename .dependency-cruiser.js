@@ -2,7 +2,7 @@
 const FOLDERS = ["core", "clips", "languages", "upload", "camera", "export", "gestures", "studio"];
 
 /** Views, which build on those folders; they do not import each other. */
-const VIEWS = ["administration", "editor", "health", "live", "phrases", "practice"];
+const VIEWS = ["administration", "editor", "health", "invitation", "live", "phrases", "practice"];
 
 const inside = (names) => `^static/js/(${names.join("|")})/`;
 

@@ -21,14 +21,21 @@ from starlette.routing import BaseRoute
 
 from app import __version__, resources
 from app.api.http import problems
-from app.api.http.page_files import ADDRESS, PageFiles
+from app.api.http.page_files import (
+    ADDRESS,
+    INVITATION_ADDRESS,
+    InvitationFiles,
+    PageFiles,
+)
+from app.api.http.schemas.invitations import MOST_TAKE_BYTES
+from app.api.ingest.invited_takes import settle_takes
 from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.audit import Audit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
-from app.api.middleware.identities import check_tokens
+from app.api.middleware.identities import Identities, check_tokens
 from app.api.middleware.request_bodies import BodyLimit, BodyPace, StrictBodies
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
@@ -37,7 +44,7 @@ from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
 from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics
-from app.api.routes import events, server_state
+from app.api.routes import events, invited, server_state
 from app.api.routes.administration import audit, sign_in
 from app.api.routes.administration import metrics as metrics_routes
 from app.api.routes.clips import (
@@ -51,6 +58,7 @@ from app.api.routes.clips import (
 from app.api.routes.gestures import demonstrations, gestures, previews
 from app.api.routes.languages import (
     checks,
+    invitations,
     language_files,
     language_settings,
     languages,
@@ -99,11 +107,13 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         async with open_studio(settings, metrics) as studio:
             app.state.studio = studio
-            sweeper = asyncio.create_task(registry.sweep())
+            judging = settle_takes(studio, Identities(settings))
+            tasks = [asyncio.create_task(each) for each in (registry.sweep(), judging)]
             try:
                 yield
             finally:
-                sweeper.cancel()
+                for each in tasks:
+                    each.cancel()
                 await asyncio.to_thread(registry.close)
 
     app = FastAPI(
@@ -150,6 +160,8 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         test_sets.router,
         take_tables.router,
         practice.router,
+        invitations.router,
+        invited.router,
         slates.router,
         language_settings.router,
         triggers.router,
@@ -273,6 +285,9 @@ def _serve_page(app: FastAPI) -> None:
     files = PageFiles(folder)
     app.get("/", include_in_schema=False)(files.read_page)
     app.mount(ADDRESS, files, name="static")
+    invited_page = InvitationFiles(folder)
+    app.get(INVITATION_ADDRESS, include_in_schema=False)(invited_page.read_page)
+    app.get(f"{INVITATION_ADDRESS}/{{path:path}}", include_in_schema=False)(invited_page.read_file)
 
 
 def _describe(app: FastAPI) -> None:
@@ -294,6 +309,7 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     """Add the middleware that checks every request, the outermost last."""
     limits = {
         f"{API}/clips": settings.max_clip_bytes + FRAME_BYTES,
+        f"{API}/invited/takes": min(settings.max_clip_bytes, MOST_TAKE_BYTES) + FRAME_BYTES,
         f"{API}/uploads/*": settings.max_clip_bytes,
         f"{API}/languages/import": settings.limits.max_language_bytes,
     }

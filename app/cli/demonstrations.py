@@ -114,7 +114,7 @@ def add_demonstrations(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> None:
-    """Add demonstrations to gestures, up to five each; those of another diver help most."""
+    """Add demonstrations to gestures, up to eight each; those of another diver help most."""
     loaded = Language.load(language)
     given = [parse_demonstrations(text) for text in demonstrations]
     for shown in given:

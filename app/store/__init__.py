@@ -2,11 +2,11 @@
 
 from app.store.audit import AuditStore
 from app.store.clips import ClipPage, ClipQuery, ClipStore, ClipWithJob
+from app.store.data_folder import FolderLock, identity_of
 from app.store.database import Database
 from app.store.demonstration_sources import SourceStore
-from app.store.errors import Conflict, NotFound, StoreError, StoreUnavailable
-from app.store.folder_lock import FolderLock
-from app.store.identity import identity_of
+from app.store.errors import Conflict, InvitationClosed, NotFound, StoreError, StoreUnavailable
+from app.store.invitations import InvitationState, InvitationStore, require_open
 from app.store.jobs import JobStore
 from app.store.labelled_takes import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.languages import Draft, LanguageState, LanguageStore
@@ -14,6 +14,8 @@ from app.store.models import (
     AuditEntry,
     Clip,
     DemonstrationSource,
+    Invitation,
+    InvitedTake,
     Job,
     JobStatus,
     LabelledResult,
@@ -44,6 +46,11 @@ __all__ = [
     "DemonstrationSource",
     "Draft",
     "FolderLock",
+    "Invitation",
+    "InvitationClosed",
+    "InvitationState",
+    "InvitationStore",
+    "InvitedTake",
     "Job",
     "JobStatus",
     "JobStore",
@@ -75,4 +82,5 @@ __all__ = [
     "UploadStore",
     "Usage",
     "identity_of",
+    "require_open",
 ]

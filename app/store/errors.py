@@ -26,5 +26,22 @@ class Conflict(StoreError):
         self.current = current
 
 
+class InvitationClosed(StoreError):
+    """Raised when an invitation is not valid any more, or takes nothing more.
+
+    Parameters
+    ----------
+    message
+        Why, and what to do, in one line.
+    code
+        Stable word: ``withdrawn``, ``expired`` or ``used_up``.
+
+    """
+
+    def __init__(self, message: str, code: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+
 class StoreUnavailable(StoreError):
     """Raised when the database is damaged, locked or cannot be opened."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from enum import StrEnum
+from typing import Literal
 from uuid import uuid4
 
 from sqlalchemy import (
@@ -279,6 +280,66 @@ class PracticeTake(SQLModel, table=True):
     """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
     revision: int
     recognition_id: str = Field(max_length=32)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+
+class Invitation(SQLModel, table=True):
+    """A link by which other people add their takes to one language, and can do nothing else."""
+
+    __tablename__ = "invitation"
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    sha256: str = Field(max_length=64, unique=True)
+    """Digest of its token, which is stored nowhere."""
+    owner: str = Field(max_length=80)
+    """Name of the token that made it: what comes in is that one's, and takes of its quota."""
+    most_takes: int
+    """Takes that may be sent, also those that are returned."""
+    most_bytes: int = Field(sa_type=ByteCount)
+    """Bytes of these takes together."""
+    takes: int = 0
+    """Takes sent so far."""
+    bytes: int = Field(default=0, sa_type=ByteCount)
+    created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+    expires: datetime = Field(sa_type=UtcDateTime)
+    withdrawn: datetime | None = Field(default=None, sa_type=UtcDateTime)
+
+    @property
+    def closed(self) -> Literal["withdrawn", "expired"] | None:
+        """Why it is not valid any more: ``withdrawn``, ``expired``, or None while it is valid."""
+        if self.withdrawn is not None:
+            return "withdrawn"
+        return "expired" if self.expires <= now() else None
+
+
+class InvitedTake(SQLModel, table=True):
+    """A take that somebody sent by an invitation."""
+
+    __tablename__ = "invited_take"
+    __table_args__ = (
+        CheckConstraint("status IN ('waiting', 'added', 'returned')", name="invited_take_status"),
+    )
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    invitation_id: str = Field(
+        foreign_key="invitation.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    clip_id: str = Field(max_length=32)
+    """Its clip. The clip is stored after this row, and that of a returned take is deleted."""
+    label: str = Field(max_length=200)
+    """The gesture that it shows."""
+    diver: str = Field(max_length=80)
+    size: int = Field(sa_type=ByteCount)
+    """Bytes."""
+    status: str = Field(default="waiting", max_length=16, index=True)
+    """``waiting``, ``added`` as a demonstration, or ``returned``."""
+    reason: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
+    """Why it was returned and what to do, for the person who shows."""
+    claimed: datetime | None = Field(default=None, sa_type=UtcDateTime)
+    """When a server last began to judge it."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 

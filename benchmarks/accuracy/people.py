@@ -52,7 +52,14 @@ from app.recognition import (
     Recognizer,
 )
 from app.recognition.decision.rejection import ASK_RATIO
-from app.recognition.health.forecast import OUTCOMES, Outcome, make_forecast
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.recognition.health.forecast import (
+    ENOUGH_PEOPLE,
+    OUTCOMES,
+    Outcome,
+    make_forecast,
+    measure_curve,
+)
 from app.recognition.health.forecast import judge as find_outcome
 from app.recognition.matching.dtw import dtw_distances
 from app.recognition.poses.sequence import FloatArray
@@ -397,14 +404,54 @@ def compare_forecasts(sets: Iterator[RecordedSet], given: Namespace) -> None:
         )
 
 
+def compare_stops(sets: Iterator[RecordedSet], given: Namespace) -> None:
+    """Print after how many people the check asks for no more, and what further people then reach.
+
+    The people of a draw show the language one after the other, at most eight and all but one.
+    """
+    print("| set | languages | people at the stop | right: of one | at the stop | of all | all |")
+    print("| --- " * 7 + "|")
+    for recorded in sets:
+        stops, right = list[int](), defaultdict[str, Counter[Outcome]](Counter)
+        for number, chosen in enumerate(draws(recorded, given.draws, given.queries, given.seed)):
+            several = draw_several(
+                recorded, chosen, MAX_DEMONSTRATIONS, given.queries, given.seed + number
+            )
+            everybody = len(several.takes)
+            if everybody < ENOUGH_PEOPLE:
+                break
+            counts = range(1, everybody)
+            enough = (each for each in counts if not asks_more(recorded, several, each))
+            stops.append(next(enough, everybody))
+            for name, people in (("one", 1), ("stop", stops[-1]), ("all", everybody)):
+                right[name].update(count_outcomes(recorded, several, people)["reached"])
+        if stops:
+            shares = [str(Share(of["right"], of.total())) for of in right.values()]
+            spread = f"{np.mean(stops):.1f} ({min(stops)}-{max(stops)})"
+            cells = [recorded.name, len(stops), spread, *shares, everybody]
+            print(f"| {' | '.join(map(str, cells))} |", flush=True)
+
+
+def asks_more(recorded: RecordedSet, several: SeveralPeople, people: int) -> bool:
+    """Return whether the check of a language shown by some people asks for one more."""
+    gestures = [define(recorded, row) for row in several.rows(people)]
+    language = Language(recorded.name, gestures)
+    forecast = make_forecast(language)
+    return replace(forecast, curve=measure_curve(language, forecast)).asks_more
+
+
 def main() -> None:
     """Print the table of every set, and write the JSON file after each."""
     parser = set_arguments(__doc__, draws=8, queries=60)
     parser.add_argument("--ratio", type=float, default=ASK_RATIO, help="of scores in one answer")
     parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
     parser.add_argument("--forecasts", action="store_true", help="forecasts alone")
+    parser.add_argument("--stops", action="store_true", help="number of people asked for, alone")
     given = parser.parse_args()
     folder = given.data / "trajectories"
+    if given.stops:
+        compare_stops(all_sets(folder, given.sets), given)
+        return
     if given.forecasts:
         compare_forecasts(all_sets(folder, given.sets), given)
         return

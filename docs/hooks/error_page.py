@@ -13,6 +13,7 @@ import app.api
 from app.recognition import OsgError, errors
 
 MEANINGS = {
+    "already_shown": "this person has shown the gesture already, or eight people have",
     "bad_request": "the request states the length of its body twice",
     "check_cancelled": "the health check was cancelled by another request",
     "client_left": "the client closed the connection before it was answered",
@@ -27,6 +28,8 @@ MEANINGS = {
     "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
     "idempotency_key_reused": "this `Idempotency-Key` came with another file before",
     "internal": "unexpected error; the server's log has the details",
+    "invitation_closed": "the invitation is withdrawn, over, or its limit is reached (`reason`)",
+    "invitation_unknown": "no invitation has this token",
     "is_demonstration": "a take that is a demonstration of its gesture proves nothing as a test",
     "job_not_needed": "the job is done, or the topic is chosen already",
     "label_taken": "another gesture of the language has this label, or one that looks like it",
@@ -35,6 +38,7 @@ MEANINGS = {
     "malformed_upload": "the upload is not valid multipart or tus",
     "model_missing": "a pose or hand model is not installed",
     "no_demonstration": "the gesture has no demonstration, only an image",
+    "no_gestures": "nobody can be invited to a language without gestures",
     "not_found": "no such clip, language, gesture, job or recognition",
     "queue_full": "too many clips of this client are waiting",
     "range_empty": "the range holds no keypoints",

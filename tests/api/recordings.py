@@ -59,8 +59,10 @@ def recording_of(*shapes: str) -> Recording:
     return _recording(np.concatenate(paths), np.concatenate(scores))
 
 
-def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp4") -> str:
-    """Store a clip whose job is done, and return its id."""
+def add_recorded_clip(
+    studio: Studio, recording: Recording, name: str = "dive.mp4", *, clip_id: str | None = None
+) -> str:
+    """Store a clip whose job is done, under an id if one is given, and return its id."""
     from app.store import Clip
     from app.store.clips import RECORDING
 
@@ -68,6 +70,7 @@ def add_recorded_clip(studio: Studio, recording: Recording, name: str = "dive.mp
     partial.write_bytes(bytes(range(256)) * 4)
     width, height = recording.poses.frame_size
     clip = Clip(name=name, media_type="video/mp4", size=1024, width=width, height=height)
+    clip.id = clip_id or clip.id
     added = studio.clips.add(clip, partial, "test")
     studio.jobs.start(added.job.id)
     recording.save(studio.clips.place(clip.id, RECORDING))

@@ -100,8 +100,8 @@ def test_the_rates_of_an_arm_trigger_are_told_above_the_gestures() -> None:
 def test_what_others_will_reach_stands_first_or_who_must_be_asked() -> None:
     lines = format_report(check_health(shown_by(("Ann", "Bo", "Cy")))).splitlines()
     assert lines[1].startswith("Other people's demonstrations are read right in ")
-    assert lines[1].endswith(", n 12).")
-    assert lines[2].startswith("asked back with the right one ")
+    assert ", n 12). The last person raised the" in lines[1]
+    assert lines[3].startswith("asked back with the right one ")
     alone = format_report(check_health(pool(circle=circle))).splitlines()
     assert "nothing can be foretold" in alone[1]
     assert alone[2].endswith("Ask two more people to show it, and name the divers.")

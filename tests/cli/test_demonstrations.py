@@ -99,7 +99,7 @@ def test_a_demonstration_of_another_diver_is_added_and_removed(
         (["add", "{pool}", "wave={clip}"], "no gesture 'wave' in 'pool'"),
         (["add", "{pool}", "line"], "LABEL=CLIP"),
         (["add", "{pool}", "line={still}"], "nothing moves in the demonstration of 'line'"),
-        (["add", "{pool}", "line={clip},{clip},{clip},{clip},{clip}"], "the limit is 5"),
+        (["add", "{pool}", "line=" + ",".join(["{clip}"] * 8)], "the limit is 8"),
         (["remove", "{pool}", "circle", "0"], "no demonstration 0: it has 2, counted from 1"),
         (["remove", "{pool}", "circle", "3"], "no demonstration 3: it has 2, counted from 1"),
         (["remove", "{pool}", "line", "1"], "the only demonstration of 'line' cannot be removed"),

@@ -16,6 +16,7 @@ const sheets = await filesIn("styles/", ".css");
 const recognitionPage = [
   ...(await filesIn("recognition-page/", ".css")),
   ...(await filesIn("recognition-page/", ".js")),
+  ...(await filesIn("invitation-page/", ".css")),
 ];
 
 test("only tokens.css has colours", async () => {

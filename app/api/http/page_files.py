@@ -10,14 +10,39 @@ import re
 from hashlib import sha256
 from pathlib import Path
 
-from fastapi.responses import HTMLResponse
+from fastapi.responses import FileResponse, HTMLResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import Scope
 
 ADDRESS = "/static"
 """Path of the files."""
+
+INVITATION_ADDRESS = "/invitation"
+"""Path of the page of invited people, and of its files."""
+
+INVITATION_FILES = frozenset(
+    {
+        "icon.svg",
+        "invitation-page/invitation-page.css",
+        "styles/base.css",
+        "styles/tokens.css",
+        "js/camera/mirror.js",
+        "js/camera/recording.js",
+        "js/camera/trouble.js",
+        "js/camera/video-source.js",
+        "js/core/api.js",
+        "js/core/dom.js",
+        "js/core/text-limit.js",
+        "js/invitation/gesture-takes.js",
+        "js/invitation/invitation-view.js",
+        "js/invitation/take-camera.js",
+        "js/invitation/take-sending.js",
+    }
+)
+"""Files that anybody may fetch: those that the page of invited people needs."""
 
 _ALL_SHEETS = "styles/all.css"
 """Path of the joined style sheets, in their folder so that relative addresses in them stay
@@ -87,3 +112,37 @@ class PageFiles(StaticFiles):
                 digest.update(f"{path.relative_to(self._folder)} {len(contents)} ".encode())
                 digest.update(contents)
         return digest.hexdigest()[:16]
+
+
+class InvitationFiles:
+    """Serves the page of invited people, who may not fetch the page's other files.
+
+    Parameters
+    ----------
+    folder
+        Folder of its HTML and the files of `INVITATION_FILES`.
+
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def read_page(self) -> FileResponse:
+        """Return the page."""
+        return self._answer("invitation-page/invitation-page.html")
+
+    def read_file(self, path: str) -> FileResponse:
+        """Return one of its files.
+
+        Raises
+        ------
+        HTTPException
+            404 for any other path.
+
+        """
+        if path not in INVITATION_FILES:
+            raise HTTPException(404)
+        return self._answer(path)
+
+    def _answer(self, path: str) -> FileResponse:
+        return FileResponse(self._folder / path, headers={"Cache-Control": _ASK_FIRST})

@@ -28,7 +28,7 @@ from app.recognition.errors import (
 )
 from app.recognition.language.file import list_document_steps
 from app.recognition.text.strict_json import build_pointer
-from app.store import Conflict, NotFound, QuotaExceeded, StoreError
+from app.store import Conflict, InvitationClosed, NotFound, QuotaExceeded, StoreError
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -159,6 +159,12 @@ def problem_of(error: Exception) -> ProblemError:
             )
         case QuotaExceeded():
             return _convert_quota(error)
+        case InvitationClosed():
+            # The rest of a body stays unread, so the connection cannot be used again.
+            headers = {"Connection": "close"}
+            return ProblemError(
+                403, "invitation_closed", str(error), headers=headers, reason=error.code
+            )
         case StoreError():
             headers = {"Retry-After": RETRY_SECONDS}
             return ProblemError(503, "store_unavailable", str(error), headers=headers)

@@ -28,7 +28,8 @@ from app.api.middleware.identities import ANYBODY, Identities, Identity
 from app.api.middleware.open_connections import OpenConnections, Proof
 from app.api.middleware.roles import SAFE_METHODS
 from app.settings import Settings, is_loopback
-from app.store import SignInStore, StoreError
+from app.store import InvitationStore, SignInStore, StoreError
+from app.store.invitations import closed
 from app.store.models import SignIn
 from app.store.sign_ins import LIFETIME
 from app.store.tokens import TokensUnavailable, digest
@@ -38,8 +39,13 @@ logger = logging.getLogger(__name__)
 COOKIE = "osg_studio_session"
 """Name of the cookie of a session."""
 
-OPEN_PATHS = frozenset({"/healthz", "/api/v1/healthz"})
-"""Paths that are answered without a token, for monitoring."""
+OPEN_PATHS: Final = ("/healthz", "/api/v1/healthz", "/invitation")
+"""Paths that, with all below them, are answered without a token: for monitoring, and the page of
+invited people, whose files are the program's own."""
+
+INVITED: Final = "/api/v1/invited"
+"""Path that invited people reach, with all below it. There the token of an invitation is needed,
+and elsewhere it is none."""
 
 MOST_GUESSES: Final = 20
 """Wrong tokens that one address may send within `GUESS_SECONDS`; several people may share it."""
@@ -222,16 +228,23 @@ class TokenRequired:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on requests with a token."""
-        if scope["type"] not in ("http", "websocket") or scope["path"] in OPEN_PATHS:
+        if scope["type"] not in ("http", "websocket") or _is_below(scope["path"], *OPEN_PATHS):
             return await self._app(scope, receive, send)
         sign_ins: SignInStore = scope["app"].state.studio.sign_ins
+        answer: Identity | tuple[Identity, Proof] | ProblemError | Response
         try:
-            answer = await self._answer(scope, sign_ins)
+            if _is_below(scope["path"], INVITED):
+                answer = await self._answer_invited(scope)
+            else:
+                answer = await self._answer(scope, sign_ins)
         except TokensUnavailable as error:
             answer = self._no_list(error)
         except StoreError as error:
             answer = problem_of(error)
         match answer:
+            case Identity() as inviter:
+                scope["state"]["identity"] = inviter
+                return await self._app(scope, receive, send)
             case (identity, proof):
                 scope.setdefault("state", {})["identity"] = identity
                 return await self._connections.answer(
@@ -285,6 +298,27 @@ class TokenRequired:
             )
         return response
 
+    async def _answer_invited(self, scope: Scope) -> Identity | ProblemError:
+        """Return in whose name the sender of an invited take acts, or the answer that refuses it.
+
+        Neither a session nor any other token counts here, so that the page of invited people shows
+        the same to everybody.
+        """
+        scheme, _, shown = Headers(scope=scope).get("authorization", "").partition(" ")
+        invitations: InvitationStore = scope["app"].state.studio.invitations
+        token = digest(shown.strip() if scheme.lower() == "bearer" else "")
+        found = await run_in_threadpool(invitations.find, token)
+        if found is None:
+            client = scope["client"][0] if scope.get("client") else "local"
+            waits = self._guesses.too_many(client)
+            self._guesses.add(client)
+            return _too_many(GUESS_SECONDS, "a minute") if waits else _not_invited()
+        owner = self._identities.of_inviter(found.owner)
+        if found.closed or owner is None:
+            return problem_of(closed(found.closed or "withdrawn"))
+        scope.setdefault("state", {})["invitation"] = found
+        return owner
+
     def _of_token(self, shown: str, client: str) -> Identity | ProblemError:
         """Return the identity of a token by its digest; count and refuse a wrong one."""
         # Compared even when too many wrong ones came from this address, which others may share: the
@@ -299,11 +333,9 @@ class TokenRequired:
             self._own_guesses.add(client)
         if not waits and not may_be_guessed:
             return self._no_token()
-        seconds = OWN_GUESS_SECONDS if may_be_guessed else GUESS_SECONDS
-        words = "an hour" if may_be_guessed else "a minute"
-        detail = f"too many wrong tokens came from this address; try again in {words}"
-        again = {"Retry-After": f"{seconds:.0f}"}
-        return ProblemError(429, "too_many_guesses", detail, headers=again)
+        if may_be_guessed:
+            return _too_many(OWN_GUESS_SECONDS, "an hour")
+        return _too_many(GUESS_SECONDS, "a minute")
 
     def _no_list(self, error: TokensUnavailable) -> ProblemError:
         """Return the refusal of everybody; the reason, which names a path, is for the log."""
@@ -328,6 +360,21 @@ class TokenRequired:
                 "adds one with: osg-studio tokens add"
             )
         return ProblemError(401, "token_required", detail, headers=CHALLENGE)
+
+
+def _is_below(path: str, *places: str) -> bool:
+    return any(path == place or path.startswith(f"{place}/") for place in places)
+
+
+def _too_many(seconds: float, words: str) -> ProblemError:
+    detail = f"too many wrong tokens came from this address; try again in {words}"
+    again = {"Retry-After": f"{seconds:.0f}"}
+    return ProblemError(429, "too_many_guesses", detail, headers=again)
+
+
+def _not_invited() -> ProblemError:
+    detail = "this is no invitation; open the whole link, or scan its code again"
+    return ProblemError(401, "invitation_unknown", detail, headers=CHALLENGE)
 
 
 def _page_or(scope: Scope, problem: ProblemError) -> ProblemError | Response:

@@ -108,6 +108,17 @@ class Identities:
                     return identity
         return None
 
+    def of_inviter(self, name: str) -> Identity | None:
+        """Return the identity in whose name invited people add takes, by its name.
+
+        None if nobody of that name may edit any more; raises as `of_token`.
+        """
+        if not self.required:
+            return ANYBODY if name == ANYBODY.name else None
+        self._update()
+        named = [each for each in self._by_digest.values() if each.name == name]
+        return next((each for each in named if each.role is not Role.READ), None)
+
     def is_own(self, token_digest: str) -> bool:
         """Return whether a token is that of the settings, which a person may have made up."""
         return token_digest == self._own

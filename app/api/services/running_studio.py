@@ -39,6 +39,7 @@ from app.store import (
     ClipStore,
     Database,
     FolderLock,
+    InvitationStore,
     JobStatus,
     JobStore,
     LabelledTakeStore,
@@ -104,7 +105,7 @@ class Studio:
     settings
         Settings of the server.
     clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice,
-    sign_ins
+    invitations, sign_ins
         The store.
     workers
         Starts processes that read clips.
@@ -142,6 +143,7 @@ class Studio:
     audit: AuditStore
     labelled: LabelledTakeStore
     practice: PracticeStore
+    invitations: InvitationStore
     sign_ins: SignInStore
     workers: Workers
     runner: JobRunner
@@ -342,6 +344,7 @@ async def _studio(
         audit=AuditStore(database, settings.data_dir),
         labelled=LabelledTakeStore(database),
         practice=PracticeStore(database),
+        invitations=InvitationStore(database),
         sign_ins=SignInStore(database),
         workers=workers,
         runner=runner,

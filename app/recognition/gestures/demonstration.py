@@ -36,8 +36,9 @@ from app.recognition.text.joiners import is_printable
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape_voters import describe_drawing
 
-MAX_DEMONSTRATIONS = 5
-"""Most demonstrations of one gesture: nobody records more before a dive, and it bounds the work."""
+MAX_DEMONSTRATIONS = 8
+"""Most demonstrations of one gesture: one each of eight people, a whole team of divers, and
+it bounds the work."""
 
 MAX_DIVER_LENGTH = 80
 """Characters of a diver's name: a name, not a text."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from app.recognition.health.finding import (
     check_demonstration,
     measure_visible_share,
 )
-from app.recognition.health.forecast import Forecast, make_forecast
+from app.recognition.health.forecast import Forecast, make_forecast, measure_curve
 from app.recognition.health.known_signs import find_known_signs
 from app.recognition.health.report import (
     GestureHealth,
@@ -80,6 +81,8 @@ def check_health(
     forecast = make_forecast(
         language, advance=_count_steps(progress, "other people's demonstrations", shown)
     )
+    count = _count_steps(progress, "numbers of people", shown * max(0, forecast.people - 2))
+    forecast = replace(forecast, curve=measure_curve(language, forecast, advance=count))
     recognizer = Recognizer(language, "full")
     compare = _count_steps(progress, "distances", len(language.gestures))
     distances = _measure_distances(recognizer, compare)

@@ -8,14 +8,14 @@ range that such languages reached.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass, replace
 from typing import Any, Final, Literal
 
 import numpy as np
 
 from app.recognition.decision.result import Recognition
-from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.rate import Rate
 from app.recognition.language.language import Language
@@ -28,6 +28,10 @@ OUTCOMES: Final[tuple[Outcome, ...]] = ("right", "asked", "refused", "wrong")
 
 ENOUGH_PEOPLE: Final = 3
 """Number of people from which a forecast is promised; that of two people ranks languages worse."""
+
+LEAST_GAIN: Final = 0.02
+"""Gain of the interval's lower end by the last person below which no further one is asked for:
+two points, within the error of a forecast (`docs/results.md`, *Forecasts*)."""
 
 ONE_PERSON: Final = (0.43, 0.98)
 """Least and largest share of other people's takes that languages shown by one person read right, by
@@ -74,6 +78,23 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class CurvePoint:
+    """Share of demonstrations that are read right by those of some other people.
+
+    Attributes
+    ----------
+    people
+        Number of these other people.
+    right
+        Rate of demonstrations read right.
+
+    """
+
+    people: int
+    right: Rate
+
+
+@dataclass(frozen=True)
 class Forecast:
     """What other people's takes of a language will be read as.
 
@@ -83,11 +104,29 @@ class Forecast:
         Number of people who have shown gestures; those who are not named count as one.
     readings
         Of every demonstration whose gesture others have shown too; none of one person.
+    curve
+        The share read right by the number of people who have shown the language, fewest first;
+        empty where it is not measured.
 
     """
 
     people: int
     readings: tuple[Reading, ...] = ()
+    curve: tuple[CurvePoint, ...] = ()
+
+    @property
+    def asks_more(self) -> bool:
+        """Whether another person should show the language.
+
+        Not when the last person raised the lower end of the interval by less than `LEAST_GAIN`, nor
+        when a gesture can have no further demonstrations.
+        """
+        if self.people >= MAX_DEMONSTRATIONS:
+            return False
+        if self.people < ENOUGH_PEOPLE or len(self.curve) < ENOUGH_PEOPLE - 1:
+            return True
+        before, last = (point.right.interval[0] for point in self.curve[-2:])
+        return last - before >= LEAST_GAIN
 
     def count(self, outcome: Outcome, label: str | None = None) -> Rate | None:
         """Count an outcome among the readings of a gesture, or of all; None without any."""
@@ -105,6 +144,13 @@ class Forecast:
         """What can be promised, and whom to ask, in a few sentences."""
         if (right := self.count("right")) is not None:
             few = "" if self.people >= ENOUGH_PEOPLE else " Two people are few: ask a third."
+            if not few and self.curve:
+                few = (
+                    " The last person raised the lower end by two points or more: ask one more."
+                    if self.asks_more
+                    else " The last person raised the lower end by less than two points: nobody "
+                    "else is needed."
+                )
             return f"Other people's demonstrations are read right in {right}.{few}"
         if not self.people:
             return "No gesture has a demonstration, so nothing can be foretold."
@@ -126,6 +172,8 @@ class Forecast:
         return {
             "people": self.people,
             "words": self.words,
+            "asks_more": self.asks_more,
+            "curve": [{"people": point.people, **point.right.to_dict()} for point in self.curve],
             **{outcome: rate and rate.to_dict() for outcome, rate in counts.items()},
             "failed": [each.to_dict() for each in self.readings if each.outcome != "right"],
         }
@@ -142,7 +190,57 @@ def make_forecast(language: Language, *, advance: Callable[[], None] = lambda: N
         Called after each reading; an exception that it raises ends the work.
 
     """
-    divers = sorted(
+    divers = _list_divers(language)
+    readings = [
+        reading
+        for diver in divers
+        for reading in _read_diver(language, diver, set(divers) - {diver}, advance)
+    ]
+    order = {label: index for index, label in enumerate(language.labels)}
+    readings.sort(key=lambda each: (order[each.gesture], each.demonstration))
+    return Forecast(len(divers), tuple(readings))
+
+
+def measure_curve(
+    language: Language, forecast: Forecast, *, advance: Callable[[], None] = lambda: None
+) -> tuple[CurvePoint, ...]:
+    """Measure how the share of demonstrations read right grows with the number of people.
+
+    Each person's demonstrations are read by those of one other person, of two, and so on, up to all
+    others, where the share is that of the forecast. These others follow the person in the order
+    of the names, around its end, so that each of them counts as often as any other.
+
+    Parameters
+    ----------
+    language, advance
+        As for `make_forecast`.
+    forecast
+        The language's, by `make_forecast`.
+
+    """
+    divers = _list_divers(language)
+    points = []
+    for count in range(1, len(divers) - 1):
+        outcomes = [
+            reading.outcome
+            for index, diver in enumerate(divers)
+            for reading in _read_diver(
+                language,
+                diver,
+                {divers[(index + step) % len(divers)] for step in range(1, count + 1)},
+                advance,
+            )
+        ]
+        if outcomes:
+            points.append(CurvePoint(count, Rate(outcomes.count("right"), len(outcomes))))
+    if (right := forecast.count("right")) is not None:
+        points.append(CurvePoint(len(divers) - 1, right))
+    return tuple(points)
+
+
+def _list_divers(language: Language) -> list[str]:
+    """Return the names of those who show movements or hand shapes, in alphabetical order."""
+    return sorted(
         {
             shown.diver
             for gesture in language.gestures
@@ -150,21 +248,16 @@ def make_forecast(language: Language, *, advance: Callable[[], None] = lambda: N
             if shown.trajectory is not None
         }
     )
-    readings = [
-        reading
-        for diver in divers
-        if len(divers) > 1
-        for reading in _read_diver(language, diver, advance)
-    ]
-    order = {label: index for index, label in enumerate(language.labels)}
-    readings.sort(key=lambda each: (order[each.gesture], each.demonstration))
-    return Forecast(len(divers), tuple(readings))
 
 
-def _read_diver(language: Language, diver: str, advance: Callable[[], None]) -> Iterator[Reading]:
-    """Yield the readings of the demonstrations by one diver."""
-    others = [_leave_out(gesture, diver) for gesture in language.gestures]
-    # A gesture that nobody else has shown stays as it is, so that it can still be confused.
+def _read_diver(
+    language: Language, diver: str, readers: Set[str], advance: Callable[[], None]
+) -> Iterator[Reading]:
+    """Yield the readings of the demonstrations by one diver, by those of the `readers`."""
+    if not readers:
+        return
+    others = [_keep(gesture, readers) for gesture in language.gestures]
+    # A gesture that no reader has shown stays as it is, so that it can still be confused.
     kept = [other or gesture for other, gesture in zip(others, language.gestures, strict=True)]
     recognizer = Recognizer(replace(language, gestures=kept), "full")
     for gesture, other in zip(language.gestures, others, strict=True):
@@ -177,13 +270,13 @@ def _read_diver(language: Language, diver: str, advance: Callable[[], None]) -> 
                 advance()
 
 
-def _leave_out(gesture: Gesture, diver: str) -> Gesture | None:
-    """Return a gesture without the demonstrations by a diver; None where there are no others."""
+def _keep(gesture: Gesture, divers: Set[str]) -> Gesture | None:
+    """Return a gesture with the demonstrations by some divers alone; None where there are none."""
     shown = gesture.single_demonstrations()
-    if all(each.diver == diver for each in shown):
+    if all(each.diver not in divers for each in shown):
         return None
     for number in reversed(range(len(shown))):
-        if shown[number].diver == diver:
+        if shown[number].diver not in divers:
             gesture = gesture.without_demonstration(number)
     return gesture
 

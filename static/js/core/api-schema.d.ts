@@ -844,6 +844,165 @@ export interface components {
             end?: number | null;
         };
         /**
+         * InvitationDraft
+         * @description Whom to invite, for how long.
+         */
+        InvitationDraft: {
+            /**
+             * People
+             * @description How many; they share the link
+             * @default 2
+             */
+            people: number;
+            /**
+             * Days
+             * @description Until it is over
+             * @default 7
+             */
+            days: number;
+            /**
+             * Takes
+             * @description Most takes, also returned ones; null: 3 of each gesture for each person
+             */
+            takes?: number | null;
+            /**
+             * Bytes
+             * @description Most bytes of all takes; null: 16777216 for each
+             */
+            bytes?: number | null;
+        };
+        /**
+         * InvitationView
+         * @description An invitation and what came in by it; its link is told only once, when it is made.
+         */
+        InvitationView: {
+            /** Id */
+            id: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Expires
+             * Format: date-time
+             */
+            expires: string;
+            /**
+             * Closed
+             * @description Null while it is valid
+             */
+            closed: ("withdrawn" | "expired") | null;
+            /** Most Takes */
+            most_takes: number;
+            /** Most Bytes */
+            most_bytes: number;
+            /**
+             * Takes
+             * @description Takes sent so far, also returned ones
+             */
+            takes: number;
+            /**
+             * Bytes
+             * @description Bytes of these takes together
+             */
+            bytes: number;
+            /**
+             * Shown
+             * @description These takes, the oldest first
+             */
+            shown: components["schemas"]["InvitedTakeView"][];
+        };
+        /**
+         * InvitedGestureView
+         * @description A gesture to show.
+         */
+        InvitedGestureView: {
+            /** Label */
+            label: string;
+            /** Description */
+            description: string;
+            /**
+             * Image
+             * @description Its drawing with start dot and arrow: a data URI of a PNG
+             */
+            image: string;
+            /**
+             * Seconds
+             * @description How long it lasts; null: not known
+             */
+            seconds: number | null;
+            /**
+             * Held Shapes
+             * @description Hand shapes that are held: 0 in a movement
+             */
+            held_shapes: number;
+        };
+        /**
+         * InvitedTakeView
+         * @description A take that somebody sent by an invitation.
+         */
+        InvitedTakeView: {
+            /** Id */
+            id: string;
+            /**
+             * Label
+             * @description The gesture that it shows
+             */
+            label: string;
+            /**
+             * Diver
+             * @description Who shows it
+             */
+            diver: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "waiting" | "added" | "returned";
+            /**
+             * Reason
+             * @description Why it was returned, and what to do; else null
+             */
+            reason: string | null;
+        };
+        /**
+         * InvitedView
+         * @description What somebody sees who was invited: the gestures of one language, and nothing else.
+         */
+        InvitedView: {
+            /**
+             * Id
+             * @description The invitation's
+             */
+            id: string;
+            /**
+             * Language
+             * @description Name of the language
+             */
+            language: string;
+            /**
+             * Trigger
+             * @description What begins and ends a take
+             * @enum {string}
+             */
+            trigger: "salute" | "pose" | "gesture" | "none";
+            /**
+             * Expires
+             * Format: date-time
+             */
+            expires: string;
+            /** Takes Left */
+            takes_left: number;
+            /**
+             * Most Bytes
+             * @description Largest clip of one take
+             */
+            most_bytes: number;
+            /** Gestures */
+            gestures: components["schemas"]["InvitedGestureView"][];
+        };
+        /**
          * JobStatus
          * @description Where a job stands; the last three are final.
          * @enum {string}
@@ -1246,6 +1405,55 @@ export interface components {
              * @default
              */
             diver: string;
+        };
+        /**
+         * NewInvitationView
+         * @description An invitation that was just made, with the link that is stored nowhere.
+         */
+        NewInvitationView: {
+            /** Id */
+            id: string;
+            /**
+             * Created
+             * Format: date-time
+             */
+            created: string;
+            /**
+             * Expires
+             * Format: date-time
+             */
+            expires: string;
+            /**
+             * Closed
+             * @description Null while it is valid
+             */
+            closed: ("withdrawn" | "expired") | null;
+            /** Most Takes */
+            most_takes: number;
+            /** Most Bytes */
+            most_bytes: number;
+            /**
+             * Takes
+             * @description Takes sent so far, also returned ones
+             */
+            takes: number;
+            /**
+             * Bytes
+             * @description Bytes of these takes together
+             */
+            bytes: number;
+            /**
+             * Shown
+             * @description These takes, the oldest first
+             */
+            shown: components["schemas"]["InvitedTakeView"][];
+            /** Link */
+            link: string;
+            /**
+             * Qr
+             * @description The link as a QR code: an SVG document
+             */
+            qr: string;
         };
         /**
          * OpenedWorkspace

@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Job, Language, LanguageSettings, LanguageSummary, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
+/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 const BASE = "/api/v1";
 
@@ -331,6 +331,17 @@ export const testSets = {
   run: (language) => request("POST", `/languages/${id(language)}/test-set/run`),
   /** @type {(language: string) => Promise<unknown>} */
   cancel: (language) => request("DELETE", `/languages/${id(language)}/test-set/run`),
+};
+
+export const invitations = {
+  /** @type {(language: string) => Promise<Invitation[]>} */
+  list: (language) => request("GET", `/languages/${id(language)}/invitations`),
+  /** @type {(language: string, limits: { people: number, days: number }) => Promise<NewInvitation>} */
+  make: (language, limits) =>
+    request("POST", `/languages/${id(language)}/invitations`, { body: limits }),
+  /** @type {(language: string, invitation: string) => Promise<null>} */
+  withdraw: (language, invitation) =>
+    request("DELETE", `/languages/${id(language)}/invitations/${id(invitation)}`),
 };
 
 export const practice = {

@@ -43,6 +43,11 @@ export type Workspace = Schemas["OpenedWorkspace"];
 export type LanguageSettings = Schemas["SettingsView"];
 export type PracticeRecord = Schemas["PracticeRecordView"];
 export type PracticeTake = Schemas["PracticeTakeView"];
+export type Invitation = Schemas["InvitationView"];
+export type NewInvitation = Schemas["NewInvitationView"];
+export type Invited = Schemas["InvitedView"];
+export type InvitedGesture = Schemas["InvitedGestureView"];
+export type InvitedTake = Schemas["InvitedTakeView"];
 export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
 export type WrittenSession = Schemas["WrittenSessionView"];
@@ -220,6 +225,10 @@ export interface Forecast extends Outcomes {
   people: number;
   /** What can be promised, and whom to ask. */
   words: string;
+  /** Whether another person should show the language. */
+  asks_more: boolean;
+  /** The share read right, by the number of other people who have shown the language. */
+  curve: (Rate & { people: number; n: number })[];
   /** The demonstrations that are not read right by those of the other people. */
   failed: {
     gesture: string;

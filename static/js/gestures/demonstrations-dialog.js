@@ -18,7 +18,7 @@ import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
 /** @typedef {{ text: string, start: number | null, end: number | null }} Range */
 
-const MOST = 5; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
+const MOST = 8; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
 const LONGEST_NAME = 80; // `MAX_DIVER_LENGTH` there
 
 /**

@@ -2,6 +2,8 @@
 
 import { h } from "../core/dom.js";
 import { follow } from "../core/state.js";
+import { invitationsPart } from "./invitations.js";
+import { curvePart } from "./people-curve.js";
 import { rateText } from "./rates.js";
 
 /** @import { HealthReport, TestSet } from "../core/types.d.ts" */
@@ -26,7 +28,7 @@ export function testWords(testSet) {
  *
  * @param {HealthReport["forecast"]} forecast
  */
-export function forecastWords({ people, words, right, asked, refused, wrong }) {
+export function forecastWords({ people, words, asks_more: more, right, asked, refused, wrong }) {
   if (!right || !asked || !refused || !wrong) return [words];
   const others = [
     `${rateText(asked)} are asked back with the right gesture`,
@@ -36,7 +38,11 @@ export function forecastWords({ people, words, right, asked, refused, wrong }) {
   return [
     `Of ${right.n} demonstrations ${rateText(right)} are read right by those of other people.`,
     `${others.join(", ")}.`,
-    ...(people < ENOUGH_PEOPLE ? ["Two people are few: ask a third to show the language."] : []),
+    people < ENOUGH_PEOPLE
+      ? "Two people are few: ask a third to show the language."
+      : more
+        ? "The last person raised the lower end by two points or more: ask one more."
+        : "The last person raised the lower end by less than two points: nobody else is needed.",
   ];
 }
 
@@ -48,6 +54,8 @@ export function expectation() {
     { className: "health-section expectation", "aria-labelledby": "expect-title", hidden: true },
     h("h2", { id: "expect-title" }, "What to expect"),
     lines,
+    curvePart(),
+    invitationsPart(),
   );
   let drawn = "";
   follow(["gestures", "health", "testSet"], ({ gestures, health, testSet }) => {

@@ -23,6 +23,7 @@ import { percent } from "./rates.js";
 /** @type {Record<string, string>} */
 const STAGES = {
   "other people's demonstrations": "Reading demonstrations by those of other people",
+  "numbers of people": "Reading by fewer and by more people",
   distances: "Comparing the gestures",
   "turned divers": "Turning the divers",
   "known signs": "Comparing with divers\u2019 signs",

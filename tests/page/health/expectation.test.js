@@ -10,6 +10,7 @@ const share = { label: "circle", right: 3, asked: 4, rate: 0.75, low: 0.3, high:
 const measured = {
   people: 3,
   words: "",
+  asks_more: false,
   right: rate(0.75),
   asked: rate(0.1),
   refused: rate(0.1),
@@ -20,11 +21,16 @@ test("what is measured among people is told with every outcome", () => {
   assert.deepEqual(forecastWords(measured), [
     "Of 12 demonstrations 75 % (38 to 88) are read right by those of other people.",
     "10 % (5 to 55) are asked back with the right gesture, 10 % (5 to 55) refused, 5 % (2 to 52) read as another.",
+    "The last person raised the lower end by less than two points: nobody else is needed.",
   ]);
 });
 
+test("another person is asked for while the last one raised the lower end", () => {
+  assert.match(forecastWords({ ...measured, asks_more: true }).at(-1), /ask one more/);
+});
+
 test("two people are said to be few", () => {
-  assert.match(forecastWords({ ...measured, people: 2 }).at(-1), /ask a third/);
+  assert.match(forecastWords({ ...measured, people: 2, asks_more: true }).at(-1), /ask a third/);
 });
 
 test("where nothing can be foretold there are no outcomes", () => {

@@ -22,6 +22,7 @@ from app.recognition.explanation.counterfactuals import (
 )
 from app.recognition.explanation.demonstration_faults import DemonstrationFault, FaultKind
 from app.recognition.explanation.explanation import explain
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.landmarks import other_side
@@ -277,7 +278,7 @@ def test_a_trim_keeps_most_of_the_stroke() -> None:
 
 def test_a_gesture_with_as_many_demonstrations_as_it_may_have_gets_no_other() -> None:
     circled = drawn_language().gesture("circle")
-    for seed in range(4):
+    for seed in range(MAX_DEMONSTRATIONS - 1):
         circled = circled.with_demonstration(recording(SHAPES["circle"], jitter=0.01, seed=seed))
     full = Recognizer(drawn_language().with_changed(circled), "paper")
     query = recording(SHAPES["line"], jitter=0.01)

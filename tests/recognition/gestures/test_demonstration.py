@@ -89,8 +89,8 @@ def test_more_demonstrations_than_the_limit_are_refused() -> None:
     gesture = circled()
     for _ in range(MAX_DEMONSTRATIONS - 1):
         gesture = gesture.with_demonstration(recording(circle))
-    assert len(gesture.single_demonstrations()) == MAX_DEMONSTRATIONS == 5
-    with pytest.raises(GestureError, match="would have 6 demonstrations, the limit is 5"):
+    assert len(gesture.single_demonstrations()) == MAX_DEMONSTRATIONS == 8
+    with pytest.raises(GestureError, match="would have 9 demonstrations, the limit is 8"):
         gesture.with_demonstration(recording(circle))
 
 

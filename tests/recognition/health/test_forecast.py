@@ -8,10 +8,20 @@ import pytest
 from app.recognition import Gesture, Language, Recognizer
 from app.recognition.gestures.demonstration import condense
 from app.recognition.health.check import check_health, find_forecast_findings
-from app.recognition.health.forecast import OUTCOMES, Forecast, Reading, judge, make_forecast
+from app.recognition.health.forecast import (
+    LEAST_GAIN,
+    OUTCOMES,
+    CurvePoint,
+    Forecast,
+    Reading,
+    judge,
+    make_forecast,
+    measure_curve,
+)
+from app.recognition.health.rate import Rate
 from tests.recognition.demonstrations import pool, shown_by, with_wrong_take
 from tests.recognition.held_takes import FIST, FLAT, hold
-from tests.recognition.strategies import circle, line, recording
+from tests.recognition.strategies import SHAPES, circle, line, recording
 
 DIVERS = ("Ann", "Bo", "Cy")
 
@@ -165,3 +175,89 @@ def test_readings_are_counted_while_they_are_made_and_can_be_ended() -> None:
 
     with pytest.raises(InterruptedError):
         make_forecast(shown_by(DIVERS), advance=advance)
+
+
+EIGHT = ("Ann", "Bo", "Cy", "Di", "Ed", "Flo", "Gus", "Hal")
+
+
+def curve_of(language: Language) -> tuple[CurvePoint, ...]:
+    return measure_curve(language, make_forecast(language))
+
+
+def test_the_curve_ends_with_the_forecast_and_begins_with_one_person() -> None:
+    language = with_wrong_take()
+    forecast = make_forecast(language)
+    first, last = measure_curve(language, forecast)
+    assert (first.people, last.people) == (1, 2)
+    assert last.right == forecast.count("right")
+    # Each person's demonstrations are read by one other person's, the next by name.
+    reader = {"Ann": "Bo", "Bo": "Cy", "Cy": "Ann"}
+    right = 0
+    for diver, other in reader.items():
+        shown = {
+            gesture.label: {each.diver: each for each in gesture.single_demonstrations()}
+            for gesture in language.gestures
+        }
+        recognizer = Recognizer(Language("one", [row[other] for row in shown.values()]), "full")
+        for label, row in shown.items():
+            trajectory = row[diver].trajectory
+            assert trajectory is not None
+            outcome, _ = judge(recognizer.recognize_trajectory(condense(trajectory)), label)
+            right += outcome == "right"
+    assert first.right == Rate(right, 12)
+
+
+def test_one_person_has_no_curve_and_two_have_one_point() -> None:
+    assert curve_of(shown_by(DIVERS[:1])) == ()
+    (only,) = curve_of(shown_by(DIVERS[:2]))
+    assert (only.people, only.right.n) == (1, 8)
+
+
+@pytest.mark.parametrize(
+    ("people", "happened", "asks"),
+    [
+        (1, (), True),
+        (2, (20,), True),
+        (3, (20, 24), True),  # 0.64 to 0.86
+        (3, (24, 24), False),
+        (3, (24, 20), False),
+        (4, (18, 24, 24), False),
+        (8, (12, 13, 14, 15, 16, 17, 24), False),
+    ],
+)
+def test_another_person_is_asked_for_until_the_last_one_raised_the_lower_end_no_more(
+    people: int, happened: tuple[int, ...], asks: bool
+) -> None:
+    points = tuple(CurvePoint(1 + at, Rate(right, 24)) for at, right in enumerate(happened))
+    assert Forecast(people, curve=points).asks_more is asks
+
+
+def test_the_words_of_three_people_say_whether_to_ask_one_more() -> None:
+    readings = make_forecast(shown_by(DIVERS)).readings
+
+    def words(*happened: int) -> str:
+        points = tuple(CurvePoint(1 + at, Rate(right, 24)) for at, right in enumerate(happened))
+        return Forecast(3, readings, points).words
+
+    assert words(20, 24).endswith("by two points or more: ask one more.")
+    assert words(24, 24).endswith("by less than two points: nobody else is needed.")
+
+
+def test_a_gain_below_two_points_is_none() -> None:
+    def asks(last: int) -> bool:
+        points = (CurvePoint(1, Rate(700, 1000)), CurvePoint(2, Rate(last, 1000)))
+        return Forecast(3, curve=points).asks_more
+
+    gains = {
+        last: Rate(last, 1000).interval[0] - Rate(700, 1000).interval[0] for last in (718, 722)
+    }
+    assert gains[718] < LEAST_GAIN < gains[722]
+    assert (asks(718), asks(722)) == (False, True)
+
+
+def test_the_report_of_eight_people_has_a_curve_and_asks_for_no_more() -> None:
+    content = check_health(shown_by(EIGHT, {"circle": SHAPES["circle"], "line": line})).forecast
+    assert [point.people for point in content.curve] == [1, 2, 3, 4, 5, 6, 7]
+    written = content.to_dict()
+    assert written["asks_more"] is False
+    assert written["curve"][-1] == {"people": 7, **written["right"]}

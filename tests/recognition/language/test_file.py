@@ -114,7 +114,7 @@ def put_in_demonstration(key: str, value: object) -> Change:
 
 
 def repeat_demonstrations(content: Content) -> None:
-    content["gestures"][1]["demonstrations"] *= 3
+    content["gestures"][1]["demonstrations"] *= 4
 
 
 def put_in_path(key: str, value: object) -> Change:
@@ -189,7 +189,7 @@ def put_in_path(key: str, value: object) -> Change:
         (put_in_gesture("diver", "a\nb"), "/gestures/0/diver", "printable"),
         (put_in_gesture("diver", "x" * 81), "/gestures/0/diver", "at most 80 characters"),
         (put_in_gesture("demonstrations", {}), "/gestures/0/demonstrations", "valid list"),
-        (repeat_demonstrations, "/gestures/1/demonstrations", "at most 4 items"),
+        (repeat_demonstrations, "/gestures/1/demonstrations", "at most 7 items"),
         (
             put_in_demonstration("trajectory", None),
             "/gestures/1/demonstrations/1/trajectory",

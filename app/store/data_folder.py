@@ -1,13 +1,23 @@
-"""Folder lock: keeps a second server, which would remove the first's uploads, off a data folder."""
+"""Data folder: the lock that keeps a second server off it, and the id of its server.
+
+A second server would remove the first's uploads. The id survives restarts, so that a server knows
+the jobs that it ran before.
+"""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Self
+from typing import Final, Self
 
 from filelock import FileLock, Timeout
 
+from app.store.atomic_files import PARTIAL_SUFFIX, publish
 from app.store.errors import StoreUnavailable
+from app.store.models import new_id
+
+FILE: Final = "server"
+"""Name of the file with the server's id, which one server at a time uses."""
 
 
 class FolderLock:
@@ -54,3 +64,14 @@ class FolderLock:
 
     def __exit__(self, *_: object) -> None:
         self._lock.release()
+
+
+def identity_of(folder: Path) -> str:
+    """Return the id of a data folder's server, created at its first start."""
+    path = folder / FILE
+    if path.is_file() and re.fullmatch("[0-9a-f]{32}", known := path.read_text("ascii", "replace")):
+        return known
+    made, partial = new_id(), path.with_suffix(PARTIAL_SUFFIX)
+    partial.write_text(made, "ascii")
+    publish(partial, path)
+    return made

@@ -1,0 +1,93 @@
+"""Schemas of invitations: for whoever invites, and for whoever is invited."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated, Final, Literal
+
+from pydantic import BaseModel, Field
+
+from app.api.http.schemas.values import Body
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.recognition.triggers.trigger import TriggerKind
+
+MOST_TAKE_BYTES: Final = 64 * 1024 * 1024
+"""Largest clip of one take: ten seconds of the finest video that a phone records by itself."""
+
+TAKES_OF_A_GESTURE: Final = 3
+"""Takes that an invitation allows a person for one gesture, because some are returned."""
+
+MEAN_TAKE_BYTES: Final = 16 * 1024 * 1024
+"""Bytes that an invitation allows for each take on average: ten seconds of ordinary video."""
+
+TakeStatus = Literal["waiting", "added", "returned"]
+
+
+class InvitationDraft(Body):
+    """Whom to invite, for how long."""
+
+    people: Annotated[
+        int, Field(ge=1, lt=MAX_DEMONSTRATIONS, description="How many; they share the link")
+    ] = 2
+    days: Annotated[int, Field(ge=1, le=30, description="Until it is over")] = 7
+    takes: Annotated[int, Field(ge=1, le=2000)] | None = Field(
+        default=None,
+        description=f"Most takes, also returned ones; null: {TAKES_OF_A_GESTURE} of each gesture "
+        "for each person",
+    )
+    bytes: Annotated[int, Field(ge=1, le=2**40)] | None = Field(
+        default=None, description=f"Most bytes of all takes; null: {MEAN_TAKE_BYTES} for each"
+    )
+
+
+class InvitedTakeView(BaseModel):
+    """A take that somebody sent by an invitation."""
+
+    id: str
+    label: str = Field(description="The gesture that it shows")
+    diver: str = Field(description="Who shows it")
+    status: TakeStatus
+    reason: str | None = Field(description="Why it was returned, and what to do; else null")
+
+
+class InvitationView(BaseModel):
+    """An invitation and what came in by it; its link is told only once, when it is made."""
+
+    id: str
+    created: datetime
+    expires: datetime
+    closed: Literal["withdrawn", "expired"] | None = Field(description="Null while it is valid")
+    most_takes: int
+    most_bytes: int
+    takes: int = Field(description="Takes sent so far, also returned ones")
+    bytes: int = Field(description="Bytes of these takes together")
+    shown: list[InvitedTakeView] = Field(description="These takes, the oldest first")
+
+
+class NewInvitationView(InvitationView):
+    """An invitation that was just made, with the link that is stored nowhere."""
+
+    link: str
+    qr: str = Field(description="The link as a QR code: an SVG document")
+
+
+class InvitedGestureView(BaseModel):
+    """A gesture to show."""
+
+    label: str
+    description: str
+    image: str = Field(description="Its drawing with start dot and arrow: a data URI of a PNG")
+    seconds: float | None = Field(description="How long it lasts; null: not known")
+    held_shapes: int = Field(description="Hand shapes that are held: 0 in a movement")
+
+
+class InvitedView(BaseModel):
+    """What somebody sees who was invited: the gestures of one language, and nothing else."""
+
+    id: str = Field(description="The invitation's")
+    language: str = Field(description="Name of the language")
+    trigger: TriggerKind = Field(description="What begins and ends a take")
+    expires: datetime
+    takes_left: int
+    most_bytes: int = Field(description="Largest clip of one take")
+    gestures: list[InvitedGestureView]

@@ -1,0 +1,243 @@
+"""Invited takes: what other people send by an invitation is added to its language, or returned.
+
+A take is judged on the server once its poses are extracted, whether its sender still waits or not.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from contextlib import suppress
+from datetime import timedelta
+from functools import partial
+from typing import Final
+
+from starlette.concurrency import run_in_threadpool
+
+from app.api.http.problems import ProblemError
+from app.api.http.schemas.gestures import DemonstrationDraft
+from app.api.jobs.job import compute_in_place
+from app.api.middleware.identities import Identities
+from app.api.services.demonstration_sources import find_sources, keep_source
+from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
+from app.api.services.language_documents import edit_document
+from app.api.services.language_responses import save_revision
+from app.api.services.running_studio import Studio
+from app.api.services.salute_ranges import faults_of_source
+from app.recognition import Gesture, Language, OsgError
+from app.recognition.explanation.demonstration_faults import (
+    FEW_HANDS,
+    FaultKind,
+)
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.recognition.recording.clip_range import Demonstration
+from app.recognition.recording.segmentation import find_brackets
+from app.recognition.triggers.trigger import Trigger
+from app.store import (
+    AuditEntry,
+    ClipWithJob,
+    InvitedTake,
+    JobStatus,
+    NotFound,
+    Quota,
+    QuotaExceeded,
+    StoreError,
+)
+from app.store.models import now
+
+LOOK_SECONDS: Final = 1.0
+"""Seconds between two looks for takes whose poses are found: a person waits for the answer."""
+
+LOST: Final = timedelta(minutes=5)
+"""Time after which a take whose clip is not there will have none: storing it takes seconds."""
+
+MOST_MENDED: Final = 2
+"""Ranges that are tried for a take whose first range is not the best one: its stroke, and that
+without rest."""
+
+REASONS: Final[dict[FaultKind, str]] = {
+    FaultKind.whole_clip: "The gesture was not found. Pause shortly before and after it.",
+    FaultKind.contains_salute: "The sign that begins a take is in the middle of it. Show the "
+    "gesture once, between two of them.",
+    FaultKind.reaches_salute: "The way to the gesture is in it. Pause shortly before and after it.",
+    FaultKind.cut_short: "It is cut short. Show all of it.",
+    FaultKind.contains_rest: "There is a long rest in it. Show it in one go.",
+    FaultKind.other_person: "Somebody else is in the picture. Show it alone.",
+    FaultKind.keypoints_jumped: "The arms could not be followed. Show it slower, in better light.",
+    FaultKind.keypoints_missing: "An arm is often not seen. Step back until both arms stay in "
+    "the picture.",
+    FaultKind.no_hand: "Hand not seen. Show it again nearer.",
+    FaultKind.unlike_takes: "It is unlike the gesture. Look at the drawing, and show it again.",
+}
+"""What the person who shows is told of a fault: cause, then what to do."""
+
+logger = logging.getLogger(__name__)
+
+
+class Returned(Exception):
+    """Raised when a take is not added; the message is for the person who shows."""
+
+
+async def settle_takes(studio: Studio, identities: Identities) -> None:
+    """Judge the takes that came in, as long as the server runs."""
+    seen: int | None = None
+    takes: list[InvitedTake] = []
+    while True:
+        try:
+            changes = await run_in_threadpool(lambda: studio.invitations.changes)
+            if takes or changes != seen:
+                takes = await run_in_threadpool(studio.invitations.waiting)
+                for take in takes:
+                    await compute_in_place(studio.edits, partial(_settle, studio, identities, take))
+                seen = changes
+        except StoreError as error:
+            logger.warning("invited takes wait for the store: %s", error)
+        except Exception:
+            # The failure of one take must not end the judging of all others.
+            logger.exception("an invited take could not be judged")
+        await asyncio.sleep(LOOK_SECONDS)
+
+
+def _settle(studio: Studio, identities: Identities, take: InvitedTake) -> None:
+    """Judge a take if its job has ended, and keep the outcome."""
+    found = None
+    try:
+        found = studio.clips.get(take.clip_id)
+        ready = JobStatus(found.job.status).final
+    except NotFound:
+        # Its clip is being stored, was deleted, or never came because the server ended.
+        ready = take.created < now() - LOST
+    if not ready or not studio.invitations.claim(take.id):
+        return
+    reason = None
+    try:
+        _add(studio, identities, take, found)
+    except Returned as returned:
+        reason = str(returned)
+    studio.invitations.settle(take.id, reason)
+    if reason is not None:
+        with suppress(NotFound):
+            studio.clips.delete(take.clip_id)
+    studio.broadcast.publish("clips", id=take.clip_id)
+
+
+def _add(
+    studio: Studio, identities: Identities, take: InvitedTake, found: ClipWithJob | None
+) -> None:
+    """Add a take to its language.
+
+    Raises
+    ------
+    Returned
+        Why it is not added.
+
+    """
+    invitation = studio.invitations.get(take.invitation_id)
+    owner = identities.of_inviter(invitation.owner)
+    if owner is None or invitation.closed == "withdrawn":
+        raise Returned("This invitation was withdrawn.")
+    if found is None:
+        raise Returned("The clip did not arrive. Show it again.")
+    if found.job.status != JobStatus.DONE:
+        raise Returned(
+            f"The clip could not be read: {found.job.error or 'cancelled'}. Record it again."
+        )
+    try:
+        state = studio.languages.get(invitation.language_id)
+        language = studio.language(state)
+        gesture = gesture_in(language, take.label)
+    except (NotFound, ProblemError) as error:
+        raise Returned("The language has no such gesture any more.") from error
+    if any(
+        each and each.clip_id == take.clip_id for each in find_sources(studio, language)[take.label]
+    ):
+        return  # Added by a server that ended before it could say so.
+    draft = _choose_range(studio, take, gesture, language.trigger)
+    quota = Quota(owner.name, owner.quota_bytes, owner.quota_clips)
+    try:
+        shown = demonstration_at(studio, draft, language.trigger)
+        edit = edit_document(
+            f"Add a demonstration of {take.label} by {take.diver}",
+            lambda newest: _with_take(newest, draft, shown),
+        )
+        state = save_revision(studio, quota, invitation.language_id, edit, None)
+    except QuotaExceeded as error:
+        raise Returned("The studio has no room for more. Tell whoever invited you.") from error
+    except (OsgError, NotFound, ProblemError) as error:
+        detail = error.detail if isinstance(error, ProblemError) else error
+        raise Returned(f"It cannot be used: {detail}.") from error
+    keep_source(studio, state, take.label, draft, shown, index=-1)
+    studio.broadcast.publish("languages", id=invitation.language_id)
+    studio.audit.add(
+        AuditEntry(
+            name=owner.name,
+            role=owner.role.value,
+            address="invitation",
+            method="POST",
+            path=f"/api/v1/languages/{invitation.language_id}/demonstrations",
+            status=201,
+            request_id=take.id,
+        )
+    )
+
+
+def _with_take(language: Language, draft: DemonstrationDraft, shown: Demonstration) -> Language:
+    """Return the language with one more demonstration, unless that person or eight have shown it.
+
+    It is made from the newest revision, so that no other take comes in between.
+    """
+    require_unshown(gesture_in(language, draft.label), draft.diver)
+    return add_demonstration_to(language, draft, shown)
+
+
+def require_unshown(gesture: Gesture, diver: str) -> None:
+    """Refuse a further take of a person who has shown the gesture, or of a ninth person.
+
+    Raises
+    ------
+    Returned
+        Which of both.
+
+    """
+    divers = [each.diver.casefold() for each in gesture.single_demonstrations()]
+    if diver.casefold() in divers:
+        raise Returned(f"{diver} has shown {gesture.label} already.")
+    if len(divers) >= MAX_DEMONSTRATIONS:
+        raise Returned(f"{len(divers)} people have shown {gesture.label}, which is enough.")
+
+
+def _choose_range(
+    studio: Studio, take: InvitedTake, gesture: Gesture, trigger: Trigger
+) -> DemonstrationDraft:
+    """Return the take's range without faults.
+
+    Raises
+    ------
+    Returned
+        When there is none.
+
+    """
+    draft = DemonstrationDraft(label=take.label, clip_id=take.clip_id, diver=take.diver)
+    recording = studio.recording(take.clip_id)
+    if not recording.poses.seen.any():
+        raise Returned("Nobody is seen. Stand so that your head and both arms are in the picture.")
+    if trigger.kind in ("salute", "pose"):
+        closed = [each for each in find_brackets(recording, trigger) if each.closed]
+        sign = "salute" if trigger.kind == "salute" else "pose of the arms"
+        if len(closed) > 1:
+            raise Returned(f"It was shown {len(closed)} times. Show it once in each clip.")
+        if not closed:
+            hands = sum(map(bool, recording.hands))
+            if trigger.kind == "salute" and hands < FEW_HANDS * len(recording.hands):
+                raise Returned(REASONS[FaultKind.no_hand])
+            raise Returned(f"The {sign} was not seen twice. Hold it longer, before and after.")
+        draft = draft.model_copy(update={"start": closed[0].start, "end": closed[0].end})
+    first = gesture.single_demonstrations()[0]
+    faults = faults_of_source(studio, draft, first, trigger)
+    for _ in range(MOST_MENDED):
+        if faults and faults[0].remedy == "set_range" and faults[0].start is not None:
+            draft = draft.model_copy(update={"start": faults[0].start, "end": faults[0].end})
+            faults = faults_of_source(studio, draft, first, trigger)
+    if faults:
+        raise Returned(REASONS[faults[0].kind])
+    return draft

@@ -1,0 +1,159 @@
+"""Routes for people who were invited: they see one language's gestures, and add takes to it.
+
+`TokenRequired` lets the token of an invitation reach these routes, and no others.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path, PurePath
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request
+from starlette.concurrency import run_in_threadpool
+
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.invitations import (
+    MOST_TAKE_BYTES,
+    InvitedGestureView,
+    InvitedTakeView,
+    InvitedView,
+)
+from app.api.http.schemas.values import Diver, Label
+from app.api.ingest.intake import inspect, require_place_in_queue, store
+from app.api.ingest.invited_takes import Returned, require_unshown
+from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
+from app.api.ingest.quotas import SenderQuota, require_quota
+from app.api.services.gesture_edits import gesture_in
+from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
+from app.recognition import Gesture
+from app.store import Clip, Invitation, require_open
+from app.store.models import VIDEO
+from app.ui.charts import data_url
+from app.ui.direction_marks import mark_gesture
+
+router = APIRouter(prefix="/invited", tags=["invitations"])
+
+
+def _invitation_of(request: Request) -> Invitation:
+    invitation: Invitation = request.state.invitation
+    return invitation
+
+
+CurrentInvitation = Annotated[Invitation, Depends(_invitation_of)]
+"""Type of a route's parameter that receives the invitation of the request's token."""
+
+FORM = {
+    "requestBody": {
+        "required": True,
+        "content": {
+            "multipart/form-data": {
+                "schema": {
+                    "type": "object",
+                    "required": ["file"],
+                    "properties": {"file": {"type": "string", "format": "binary"}},
+                }
+            }
+        },
+    }
+}
+
+
+@router.get("", responses=problem_responses(404))
+@computed_briefly
+def get_invited_language(studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedView:
+    """Show the gestures of the language that one is invited to."""
+    language = studio.language(studio.languages.get(invitation.language_id))
+    return InvitedView(
+        id=invitation.id,
+        language=language.name,
+        trigger=language.trigger.kind,
+        expires=invitation.expires,
+        takes_left=max(0, invitation.most_takes - invitation.takes),
+        most_bytes=min(studio.settings.max_clip_bytes, MOST_TAKE_BYTES),
+        gestures=[_view(gesture) for gesture in language.gestures],
+    )
+
+
+@router.post(
+    "/takes",
+    status_code=202,
+    responses=problem_responses(404, 408, 409, 415, 429),
+    openapi_extra=FORM,
+)
+async def send_take(
+    request: Request,
+    studio: CurrentStudio,
+    quota: SenderQuota,
+    invitation: CurrentInvitation,
+    label: Annotated[Label, Query(description="The gesture that it shows")],
+    diver: Annotated[Diver, Query(min_length=1, pattern=r"\S", description="Who shows it")],
+) -> InvitedTakeView:
+    """Send a video of one gesture, shown once.
+
+    The take is added to the gesture as this person's demonstration, or returned with the reason;
+    `GET /invited/takes/{id}` tells which.
+    """
+    diver = diver.strip()
+    await run_in_threadpool(_require_wanted, studio, invitation, label, diver)
+    stated = request.headers.get("content-length", "")
+    least = max(0, int(stated) - FRAME_BYTES) if stated.isdecimal() else 0
+    require_open(invitation, least)
+    reserved = await require_place_in_queue(request, studio)
+    await require_quota(quota, studio, least)
+    received = studio.clips.new_partial()
+    try:
+        upload = await receive_file(request, received, studio.settings, reserved=reserved)
+        receive = studio.invitations.receive
+        count = partial(receive, invitation.id, label=label, diver=diver, size=upload.size)
+        # Counted before it is read, so that files that cannot be used are limited as well.
+        take = await run_in_threadpool(count)
+        try:
+            clip = await _inspect_video(received, studio, upload)
+        except ProblemError as error:
+            await run_in_threadpool(studio.invitations.settle, take.id, error.detail)
+            raise
+        clip.id = take.clip_id
+        clip.name = display_name(f"{diver} {label}{PurePath(upload.name).suffix[:8]}")
+        try:
+            await store(clip, received, studio, request)
+        except Exception:
+            await run_in_threadpool(studio.invitations.release, take)
+            raise
+    finally:
+        received.unlink(missing_ok=True)
+    return InvitedTakeView(**take.model_dump())
+
+
+@router.get("/takes/{take_id}", responses=problem_responses(404))
+def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedTakeView:
+    """Tell whether a take was added, or why it was returned."""
+    return InvitedTakeView(**studio.invitations.take(invitation.id, take_id).model_dump())
+
+
+async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Clip:
+    """Probe a received file as `inspect`; refuse what is no video."""
+    clip = await inspect(received, studio, name=upload.name, size=upload.size)
+    if clip.source != VIDEO:
+        detail = f"{upload.name} is no video; record one, or choose another file"
+        raise ProblemError(415, "unsupported_media_type", detail)
+    return clip
+
+
+def _require_wanted(studio: Studio, invitation: Invitation, label: str, diver: str) -> None:
+    language = studio.language(studio.languages.get(invitation.language_id))
+    try:
+        require_unshown(gesture_in(language, label), diver)
+    except Returned as error:
+        raise ProblemError(409, "already_shown", str(error)) from error
+
+
+def _view(gesture: Gesture) -> InvitedGestureView:
+    shown = gesture.trajectory
+    return InvitedGestureView(
+        label=gesture.label,
+        description=gesture.description,
+        image=data_url(mark_gesture(gesture)),
+        seconds=None if shown is None else float(shown.time[-1]),
+        held_shapes=len(gesture.held_shapes),
+    )

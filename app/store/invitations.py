@@ -1,0 +1,226 @@
+"""Store of invitations: who may add takes to a language by a link, and what came in."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+from typing import Final
+
+from sqlalchemy import ColumnElement, or_, update
+from sqlmodel import Session, col, select
+
+from app.store.database import Database
+from app.store.errors import InvitationClosed, NotFound
+from app.store.models import Invitation, InvitedTake, new_id, now
+from app.store.tokens import TOKEN_BYTES, digest
+
+CLAIM: Final = timedelta(minutes=5)
+"""Time after which another server judges a take that one began to judge: it takes seconds."""
+
+MOST_LISTED: Final = 50
+"""Newest invitations of a language that are listed; older ones are over."""
+
+ASK: Final = "ask whoever sent it for a new one"
+
+REASONS: Final = {
+    "withdrawn": f"this invitation was withdrawn; {ASK}",
+    "expired": f"this invitation is over; {ASK}",
+    "used_up": f"this invitation takes nothing more, because its limit is reached; {ASK}",
+}
+
+
+@dataclass(frozen=True)
+class InvitationState:
+    """An invitation and the takes that came in by it, the oldest first."""
+
+    invitation: Invitation
+    takes: Sequence[InvitedTake]
+
+
+class InvitationStore:
+    """Keeps invitations and their takes in `database`; a language's go when it is purged."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    @property
+    def changes(self) -> int:
+        """Grows with every change of the database, see `Database`."""
+        return self._database.changes
+
+    def add(
+        self, language_id: str, owner: str, *, most_takes: int, most_bytes: int, days: int
+    ) -> tuple[Invitation, str]:
+        """Make an invitation; return it with its token, which is stored nowhere."""
+        token = secrets.token_urlsafe(TOKEN_BYTES)
+        made = Invitation(
+            language_id=language_id,
+            sha256=digest(token),
+            owner=owner,
+            most_takes=most_takes,
+            most_bytes=most_bytes,
+            expires=now() + timedelta(days=days),
+        )
+        with self._database.writing() as session:
+            session.add(made)
+        return made, token
+
+    def find(self, token_digest: str) -> Invitation | None:
+        """Return the invitation of a token by its digest, valid or not; None if there is none.
+
+        The lookup is by digest, so that its duration reveals nothing about the token.
+        """
+        with self._database.reading() as session:
+            return session.exec(select(Invitation).where(Invitation.sha256 == token_digest)).first()
+
+    def get(self, invitation_id: str) -> Invitation:
+        """Return an invitation.
+
+        Raises
+        ------
+        NotFound
+            When there is none.
+
+        """
+        with self._database.reading() as session:
+            if (found := session.get(Invitation, invitation_id)) is None:
+                raise NotFound(f"there is no invitation {invitation_id!r}")
+            return found
+
+    def of(self, language_id: str) -> list[InvitationState]:
+        """Return the newest invitations of a language with their takes, the newest first."""
+        with self._database.reading() as session:
+            newest = (
+                select(Invitation)
+                .where(Invitation.language_id == language_id)
+                .order_by(col(Invitation.created).desc(), col(Invitation.id))
+                .limit(MOST_LISTED)
+            )
+            invitations = session.exec(newest).all()
+            query = (
+                select(InvitedTake)
+                .where(col(InvitedTake.invitation_id).in_([each.id for each in invitations]))
+                .order_by(col(InvitedTake.created), col(InvitedTake.id))
+            )
+            takes = session.exec(query).all()
+        return [
+            InvitationState(each, [take for take in takes if take.invitation_id == each.id])
+            for each in invitations
+        ]
+
+    def withdraw(self, language_id: str, invitation_id: str) -> None:
+        """End an invitation; nothing happens to one that is withdrawn already.
+
+        Raises
+        ------
+        NotFound
+            When the language has no such invitation.
+
+        """
+        with self._database.writing() as session:
+            found = session.get(Invitation, invitation_id)
+            if found is None or found.language_id != language_id:
+                raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+            found.withdrawn = found.withdrawn or now()
+            session.add(found)
+
+    def receive(self, invitation_id: str, *, label: str, diver: str, size: int) -> InvitedTake:
+        """Count a take and keep it as waiting, for a clip of its `clip_id`.
+
+        Raises
+        ------
+        InvitationClosed
+            When the invitation is over, or one of its limits would be exceeded.
+
+        """
+        with self._database.writing() as session:
+            invitation = session.get_one(Invitation, invitation_id)
+            require_open(invitation, size)
+            take = InvitedTake(
+                invitation_id=invitation_id, clip_id=new_id(), label=label, diver=diver, size=size
+            )
+            _count(session, invitation, 1, size)
+            session.add(take)
+        return take
+
+    def release(self, take: InvitedTake) -> None:
+        """Forget a take whose clip could not be stored."""
+        with self._database.writing() as session:
+            if (kept := session.get(InvitedTake, take.id)) is not None:
+                session.delete(kept)
+                _count(session, session.get_one(Invitation, take.invitation_id), -1, -take.size)
+
+    def take(self, invitation_id: str, take_id: str) -> InvitedTake:
+        """Return a take of an invitation.
+
+        Raises
+        ------
+        NotFound
+            When the invitation has no such take.
+
+        """
+        with self._database.reading() as session:
+            found = session.get(InvitedTake, take_id)
+        if found is None or found.invitation_id != invitation_id:
+            raise NotFound(f"there is no take {take_id!r} of this invitation")
+        return found
+
+    def waiting(self) -> list[InvitedTake]:
+        """Return the takes that nobody has judged or is judging, the oldest first."""
+        with self._database.reading() as session:
+            query = select(InvitedTake).where(InvitedTake.status == "waiting", _unclaimed())
+            return list(session.exec(query.order_by(col(InvitedTake.created))))
+
+    def claim(self, take_id: str) -> bool:
+        """Return whether this server may judge a take now; no other one may for a while."""
+        with self._database.writing(counted=False) as session:
+            claimed = session.exec(
+                update(InvitedTake)
+                .where(
+                    col(InvitedTake.id) == take_id,
+                    col(InvitedTake.status) == "waiting",
+                    _unclaimed(),
+                )
+                .values(claimed=now())
+            )
+            return claimed.rowcount == 1
+
+    def settle(self, take_id: str, reason: str | None) -> None:
+        """Keep that a take was added, or for which reason it was returned."""
+        with self._database.writing() as session:
+            if (take := session.get(InvitedTake, take_id)) is not None:
+                take.status, take.reason = "added" if reason is None else "returned", reason
+                session.add(take)
+
+
+def require_open(invitation: Invitation, size: int) -> None:
+    """Refuse a take of `size` bytes if the invitation is over or would exceed a limit.
+
+    Raises
+    ------
+    InvitationClosed
+        Why it is refused.
+
+    """
+    code: str | None = invitation.closed
+    if invitation.takes >= invitation.most_takes or invitation.bytes + size > invitation.most_bytes:
+        code = code or "used_up"
+    if code is not None:
+        raise closed(code)
+
+
+def closed(code: str) -> InvitationClosed:
+    """Return the error of an invitation that is closed for this reason, see `REASONS`."""
+    return InvitationClosed(REASONS[code], code)
+
+
+def _unclaimed() -> ColumnElement[bool]:
+    return or_(col(InvitedTake.claimed).is_(None), col(InvitedTake.claimed) < now() - CLAIM)
+
+
+def _count(session: Session, invitation: Invitation, takes: int, size: int) -> None:
+    invitation.takes += takes
+    invitation.bytes += size
+    session.add(invitation)

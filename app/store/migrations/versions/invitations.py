@@ -1,0 +1,59 @@
+"""Migration: invitations, by which other people add takes to a language, and these takes."""
+
+import sqlalchemy as sa
+from alembic import op
+
+revision = "0016"
+down_revision = "0015"
+branch_labels = None
+depends_on = None
+
+_BYTES = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
+
+
+def upgrade() -> None:
+    """Make the tables."""
+    op.create_table(
+        "invitation",
+        sa.Column("id", sa.String(32), nullable=False),
+        sa.Column("language_id", sa.String(32), nullable=False),
+        sa.Column("sha256", sa.String(64), nullable=False),
+        sa.Column("owner", sa.String(80), nullable=False),
+        sa.Column("most_takes", sa.Integer(), nullable=False),
+        sa.Column("most_bytes", _BYTES, nullable=False),
+        sa.Column("takes", sa.Integer(), nullable=False),
+        sa.Column("bytes", _BYTES, nullable=False),
+        sa.Column("created", sa.DateTime(), nullable=False),
+        sa.Column("expires", sa.DateTime(), nullable=False),
+        sa.Column("withdrawn", sa.DateTime(), nullable=True),
+        sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
+        sa.PrimaryKeyConstraint("id"),
+        sa.UniqueConstraint("sha256"),
+    )
+    op.create_index("ix_invitation_language_id", "invitation", ["language_id"])
+    op.create_table(
+        "invited_take",
+        sa.Column("id", sa.String(32), nullable=False),
+        sa.Column("invitation_id", sa.String(32), nullable=False),
+        sa.Column("clip_id", sa.String(32), nullable=False),
+        sa.Column("label", sa.String(200), nullable=False),
+        sa.Column("diver", sa.String(80), nullable=False),
+        sa.Column("size", _BYTES, nullable=False),
+        sa.Column("status", sa.String(16), nullable=False),
+        sa.Column("reason", sa.Text(), nullable=True),
+        sa.Column("claimed", sa.DateTime(), nullable=True),
+        sa.Column("created", sa.DateTime(), nullable=False),
+        sa.CheckConstraint(
+            "status IN ('waiting', 'added', 'returned')", name="invited_take_status"
+        ),
+        sa.ForeignKeyConstraint(["invitation_id"], ["invitation.id"], ondelete="CASCADE"),
+        sa.PrimaryKeyConstraint("id"),
+    )
+    op.create_index("ix_invited_take_invitation_id", "invited_take", ["invitation_id"])
+    op.create_index("ix_invited_take_status", "invited_take", ["status"])
+
+
+def downgrade() -> None:
+    """Drop them."""
+    op.drop_table("invited_take")
+    op.drop_table("invitation")

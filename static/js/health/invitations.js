@@ -1,0 +1,208 @@
+// Invitations: other people add their takes to the language by a link or its QR code.
+
+import * as api from "../core/api.js";
+import { copy } from "../core/clipboard.js";
+import { byId, h, WRITES } from "../core/dom.js";
+import { ago, dateAndTime } from "../core/format.js";
+import { currentLanguage, follow, state } from "../core/state.js";
+import { complain, toast } from "../core/toasts.js";
+
+/** @import { Invitation, InvitedTake, NewInvitation } from "../core/types.d.ts" */
+
+const PEOPLE = 2; // With whoever wrote the language they are three, from which on it is foretold.
+const MOST_PEOPLE = 7; // beside one who has shown it; `MAX_DEMONSTRATIONS` is 8
+const DAYS = [1, 7, 30];
+const MOST_SHOWN = 5;
+
+const THIS_MACHINE = ["localhost", "127.0.0.1", "[::1]"];
+
+/**
+ * What hinders phones at this address, and what to do; empty: nothing.
+ *
+ * @param {string} link
+ */
+export function hindrance(link) {
+  const { protocol, hostname } = new URL(link);
+  if (THIS_MACHINE.includes(hostname))
+    return "Phones do not reach this address, which is only this computer\u2019s. Open the studio under its address in the network, and make the link there.";
+  return protocol === "https:"
+    ? ""
+    : "Over http phones record with their own camera, one gesture at a time. With https they show them hands-free; the documentation says how.";
+}
+
+/**
+ * What came in, in words, with the outcome of every take by person.
+ *
+ * @param {InvitedTake[]} takes
+ */
+export function arrivals(takes) {
+  /** @type {Map<string, InvitedTake[]>} */
+  const people = Map.groupBy(takes, ({ diver }) => diver);
+  return [...people].map(([diver, shown]) => {
+    const words = shown.map(({ label, status, reason }) => {
+      if (status === "waiting") return `${label} is looked at`;
+      return reason ? `${label} returned (${reason.replace(/\.$/, "")})` : `${label} added`;
+    });
+    return `${diver}: ${words.join(", ")}.`;
+  });
+}
+
+/** @param {NewInvitation} made */
+function showLink({ link, qr, expires, most_takes: takes }) {
+  const dialog = byId("dialog");
+  const warning = hindrance(link);
+  dialog.replaceChildren(
+    h(
+      "div",
+      { className: "invitation-link" },
+      h("h2", { id: "dialog-title" }, "Let others scan this"),
+      h("img", {
+        src: `data:image/svg+xml,${encodeURIComponent(qr)}`,
+        alt: "QR code of the link",
+        width: 260,
+        height: 260,
+      }),
+      h("p", { className: "link-text num" }, link),
+      warning ? h("p", { className: "hindrance" }, warning) : null,
+      h(
+        "p",
+        { className: "dim" },
+        `Who has it sees these gestures and adds takes, ${takes} in all, until ${dateAndTime(expires)}; nothing else. It is shown only now.`,
+      ),
+      h(
+        "div",
+        { className: "dialog-actions" },
+        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
+        h(
+          "button",
+          { type: "button", className: "primary", onclick: () => copy(link, "Link copied", "") },
+          "Copy the link",
+        ),
+      ),
+    ),
+  );
+}
+
+/** @param {() => void} made Called when there is a new invitation. */
+function openForm(made) {
+  const dialog = byId("dialog");
+  const { id, name } = currentLanguage();
+  /** @type {(id: string, values: number[], chosen: number) => HTMLSelectElement} */
+  const choice = (id, values, chosen) =>
+    h(
+      "select",
+      { id },
+      values.map((each) => h("option", { value: each, selected: each === chosen }, each)),
+    );
+  const counts = Array.from({ length: MOST_PEOPLE }, (_, index) => index + 1);
+  const people = choice("invited-people", counts, PEOPLE);
+  const days = choice("invited-days", DAYS, DAYS[1]);
+  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
+  const button = h("button", { type: "submit", className: "primary" }, "Make the link");
+  const form = h(
+    "form",
+    {},
+    h("h2", { id: "dialog-title" }, `Invite people to ${name}`),
+    h(
+      "p",
+      { className: "dim" },
+      "They open a link on their phones and show each gesture once. Every take is checked, and added as theirs or returned with the reason.",
+    ),
+    h("div", { className: "field" }, h("label", { for: "invited-people" }, "People"), people),
+    h("div", { className: "field" }, h("label", { for: "invited-days" }, "Days"), days),
+    problem,
+    h(
+      "div",
+      { className: "dialog-actions" },
+      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      button,
+    ),
+  );
+  form.onsubmit = async (event) => {
+    event.preventDefault();
+    button.disabled = true;
+    try {
+      const limits = { people: Number(people.value), days: Number(days.value) };
+      showLink(await api.invitations.make(id, limits));
+      made();
+    } catch (error) {
+      problem.textContent = error.message;
+      problem.hidden = false;
+      button.disabled = false;
+    }
+  };
+  dialog.replaceChildren(form);
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = null;
+  dialog.showModal();
+}
+
+/**
+ * One invitation with what came in by it.
+ *
+ * @param {Invitation} invitation
+ * @param {() => void} withdraw
+ */
+function row({ created, expires, closed, most_takes: most, takes, shown }, withdraw) {
+  const end = closed ?? `valid until ${dateAndTime(expires)}`;
+  return h(
+    "li",
+    { className: `invitation ${closed ? "dim" : ""}` },
+    h(
+      "div",
+      {},
+      h(
+        "p",
+        {},
+        `Made ${ago(created)}, ${closed === "expired" ? "over" : end}. ${takes} of ${most} takes sent.`,
+      ),
+      ...arrivals(shown).map((each) => h("p", { className: "dim" }, each)),
+    ),
+    closed ? null : h("button", { type: "button", ...WRITES, onclick: withdraw }, "Withdraw"),
+  );
+}
+
+/** Make the part of the health view that invites people, and keep it in step. */
+export function invitationsPart() {
+  const list = h("ul", { className: "invitations", "aria-label": "Invitations" });
+  const button = h(
+    "button",
+    { type: "button", ...WRITES, onclick: () => openForm(load) },
+    "Invite people",
+  );
+  const part = h("div", { className: "invite" }, button, list);
+  let drawn = "";
+
+  async function load() {
+    const language = state.gestures?.id;
+    if (!language) return;
+    const found = await api.invitations.list(language).catch(() => null); // Asked again later.
+    if (!found || language !== state.gestures?.id) return;
+    const kept = found.filter(({ closed, takes }) => !closed || takes).slice(0, MOST_SHOWN);
+    const now = JSON.stringify([language, kept]);
+    if (now === drawn) return;
+    drawn = now;
+    list.hidden = !kept.length;
+    list.replaceChildren(
+      ...kept.map((each) =>
+        row(each, async () => {
+          try {
+            await api.invitations.withdraw(language, each.id);
+            toast("Invitation withdrawn", "Its link does nothing any more. What was added stays.");
+          } catch (error) {
+            complain(error, "Withdrawing the invitation");
+          }
+          load();
+        }),
+      ),
+    );
+  }
+
+  follow(["view", "gestures", "clips", "health"], ({ view, gestures, health }) => {
+    const forecast = health?.id === gestures?.id ? health?.report?.forecast : null;
+    button.classList.toggle("primary", Boolean(forecast?.asks_more));
+    part.hidden = !gestures?.gestures.length;
+    if (view === "health" && gestures?.gestures.length) load();
+  });
+  return part;
+}

@@ -1,0 +1,436 @@
+"""Invitations: a link adds takes to one language, within limits, and can do nothing else."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import cv2
+import httpx
+import numpy as np
+import pytest
+from pydantic import SecretStr
+from sqlalchemy import update
+
+from app.api.http.page_files import INVITATION_FILES
+from app.api.middleware.access import MOST_GUESSES
+from app.api.services.running_studio import Studio
+from app.recognition import Recording
+from app.resources import static_dir
+from app.settings import Settings
+from app.store import Invitation, InvitedTake, Role, TokenFile
+from app.store.models import now
+from app.ui.qr_code import draw_qr_code
+from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.recordings import add_recorded_clip, recording_of
+from tests.api.running import Running, assert_problem, client_of, running, until
+
+INVITED = "/api/v1/invited"
+ADMIN = "correct-horse-battery"
+MOST_BYTES = 2**20
+"""Largest clip that the server of these tests takes."""
+
+
+@pytest.fixture
+def server(settings: Settings) -> Iterator[Running]:
+    limits = {"token": SecretStr(ADMIN), "max_clip_bytes": MOST_BYTES}
+    with running(settings.model_copy(update=limits)) as server:
+        yield server
+
+
+@pytest.fixture
+def tokens(settings: Settings) -> TokenFile:
+    return TokenFile(settings.tokens)
+
+
+def client_with(server: Running, token: str) -> httpx.Client:
+    return client_of(server.address, headers={"Authorization": f"Bearer {token}"})
+
+
+@pytest.fixture
+def editor(tokens: TokenFile) -> str:
+    return tokens.add("Ada", Role.EDIT)
+
+
+@pytest.fixture
+def client(server: Running, editor: str) -> Iterator[httpx.Client]:
+    with client_with(server, editor) as client:
+        yield client
+
+
+@pytest.fixture
+def pool(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+    """Return the id of a language of a circle and a line, shown by one person."""
+    for clip, label in ((circle_clip, "circle"), (line_clip, "line")):
+        assert add_gesture(client, language_id, clip, label).status_code == 201
+    return language_id
+
+
+def invite(client: httpx.Client, language_id: str, **limits: int) -> dict[str, Any]:
+    answer = client.post(f"{LANGUAGES}/{language_id}/invitations", json=limits)
+    assert answer.status_code == 201, answer.text
+    made: dict[str, Any] = answer.json()
+    return made
+
+
+def token_of(made: dict[str, Any]) -> str:
+    return str(made["link"]).partition("#")[2]
+
+
+@pytest.fixture
+def made(client: httpx.Client, pool: str) -> dict[str, Any]:
+    return invite(client, pool)
+
+
+@pytest.fixture
+def guest(server: Running, made: dict[str, Any]) -> Iterator[httpx.Client]:
+    """Return the client of somebody who was invited."""
+    with client_with(server, token_of(made)) as guest:
+        yield guest
+
+
+def send(
+    guest: httpx.Client, content: bytes = b"", *, label: str = "circle", name: str = "take.mp4"
+) -> httpx.Response:
+    return guest.post(
+        f"{INVITED}/takes", params={"label": label, "diver": "Bo"}, files={"file": (name, content)}
+    )
+
+
+def show(
+    studio: Studio,
+    made: dict[str, Any],
+    recording: Recording,
+    *,
+    label: str = "circle",
+    diver: str = "Bo",
+) -> InvitedTake:
+    """Send a take whose poses are known, and return it once it is judged."""
+    take = studio.invitations.receive(made["id"], label=label, diver=diver, size=1024)
+    add_recorded_clip(studio, recording, clip_id=take.clip_id)
+    until(lambda: studio.invitations.take(made["id"], take.id).status != "waiting")
+    return studio.invitations.take(made["id"], take.id)
+
+
+def divers_of(client: httpx.Client, language_id: str, label: str) -> list[str]:
+    place = f"{LANGUAGES}/{language_id}/demonstrations"
+    return [each["diver"] for each in client.get(place, params={"label": label}).json()]
+
+
+def assert_closed(answer: httpx.Response, reason: str) -> dict[str, object]:
+    problem = assert_problem(answer, 403, "invitation_closed")
+    assert problem["reason"] == reason
+    return problem
+
+
+def change(studio: Studio, **values: object) -> None:
+    """Change the rows of all invitations."""
+    with studio.invitations._database.writing() as session:
+        session.execute(update(Invitation).values(**values))
+
+
+def test_the_link_shows_the_gestures_of_the_language_and_nothing_else(
+    client: httpx.Client, guest: httpx.Client, made: dict[str, Any], pool: str
+) -> None:
+    seen = guest.get(INVITED).json()
+    assert (seen["language"], seen["trigger"]) == ("pool", "salute")
+    assert [each["label"] for each in seen["gestures"]] == ["circle", "line"]
+    assert all(each["image"].startswith("data:image/png;base64,") for each in seen["gestures"])
+    assert seen["takes_left"] == made["most_takes"] == 2 * 2 * 3
+    assert seen["most_bytes"] == MOST_BYTES
+    assert "Ada" not in str(seen)
+    # The page of the link is open, and its files; the token is in no address that is sent.
+    page = client_of(str(client.base_url))
+    assert re.fullmatch(r"http://127\.0\.0\.1:\d+/invitation#[\w-]{32}", made["link"])
+    assert "text/html" in page.get("/invitation").headers["content-type"]
+    for path in INVITATION_FILES:
+        assert page.get(f"/invitation/{path}").status_code == 200, path
+    for path in ("js/main.js", "index.html", "../index.html", "%2e%2e/index.html", "js"):
+        assert page.get(f"/invitation/{path}").status_code in (401, 404), path
+
+
+def test_the_page_of_invited_people_may_fetch_what_it_imports_and_no_more() -> None:
+    folder = static_dir()
+    page = (folder / "invitation-page" / "invitation-page.html").read_text("utf-8")
+    needed, queue = set[str](), re.findall(r'"/invitation/([^"]+)"', page)
+    while queue:
+        path = queue.pop()
+        if path not in needed:
+            needed.add(path)
+            text = (folder / path).read_text("utf-8")
+            imports = re.findall(r'^(?:import|export)[^;]*? from "([^"]+)";', text, re.MULTILINE)
+            queue += [
+                str((folder / path).parent.joinpath(each).resolve().relative_to(folder.resolve()))
+                for each in imports
+            ]
+    assert needed == INVITATION_FILES
+
+
+@pytest.mark.parametrize(
+    ("method", "path"),
+    [
+        ("GET", "/api/v1/languages"),
+        ("GET", "/api/v1/clips"),
+        ("GET", "/api/v1/session"),
+        ("GET", "/api/v1/events"),
+        ("GET", "/api/v1/audit"),
+        ("GET", "/static/js/main.js"),
+        ("GET", "/openapi.json"),
+        ("POST", "/api/v1/clips"),
+        ("POST", "/api/v1/uploads"),
+        ("POST", "/api/v1/languages"),
+        ("DELETE", "/api/v1/languages/{language}"),
+        ("POST", "/api/v1/languages/{language}/demonstrations"),
+        ("GET", "/api/v1/languages/{language}/invitations"),
+        ("GET", "/api/v1/languages/{language}/export"),
+    ],
+)
+def test_its_token_opens_nothing_else(
+    guest: httpx.Client, pool: str, method: str, path: str
+) -> None:
+    answer = guest.request(method, path.format(language=pool))
+    assert_problem(answer, 401, "token_required")
+
+
+def test_no_other_token_is_an_invitation(
+    server: Running, client: httpx.Client, made: dict[str, Any]
+) -> None:
+    assert_problem(client.get(INVITED), 401, "invitation_unknown")
+    wrong = token_of(made)[:-1] + ("a" if token_of(made)[-1] != "a" else "b")
+    with client_with(server, wrong) as guest:
+        assert_problem(guest.get(INVITED), 401, "invitation_unknown")
+        assert_problem(send(guest), 401, "invitation_unknown")
+    with client_of(server.address) as nobody:
+        assert_problem(nobody.get(INVITED), 401, "invitation_unknown")
+    for path in ("/takes/x", "/takes/%0A", "/takes/x/", "/nothing"):
+        assert_problem(client.get(INVITED + path), 401, "invitation_unknown")
+
+
+def test_wrong_invitations_are_counted_and_the_right_one_passes(
+    server: Running, guest: httpx.Client
+) -> None:
+    with client_with(server, "guess") as guesser:
+        for _ in range(MOST_GUESSES):
+            assert_problem(guesser.get(INVITED), 401, "invitation_unknown")
+        refused = guesser.get(INVITED)
+        assert_problem(refused, 429, "too_many_guesses")
+        assert refused.headers["Retry-After"] == "60"
+    assert guest.get(INVITED).status_code == 200
+
+
+def test_a_session_does_not_count_on_the_page_of_invited_people(server: Running) -> None:
+    with client_of(server.address) as browser:
+        browser.get("/", params={"token": ADMIN})
+        assert browser.get(LANGUAGES).status_code == 200
+        assert_problem(browser.get(INVITED), 401, "invitation_unknown")
+
+
+def test_an_invitation_that_is_over_lets_nobody_in(studio: Studio, guest: httpx.Client) -> None:
+    change(studio, expires=now() - timedelta(seconds=1))
+    refused = assert_closed(guest.get(INVITED), "expired")
+    assert refused["detail"] == "this invitation is over; ask whoever sent it for a new one"
+    assert_closed(send(guest), "expired")
+
+
+def test_a_withdrawn_invitation_lets_nobody_in_and_what_was_sent_is_not_added(
+    client: httpx.Client, studio: Studio, guest: httpx.Client, made: dict[str, Any], pool: str
+) -> None:
+    take = studio.invitations.receive(made["id"], label="circle", diver="Bo", size=1024)
+    place = f"{LANGUAGES}/{pool}/invitations/{made['id']}"
+    assert client.delete(place).status_code == 204
+    assert_closed(guest.get(INVITED), "withdrawn")
+    add_recorded_clip(studio, recording_of("circle"), clip_id=take.clip_id)
+    until(lambda: studio.invitations.take(made["id"], take.id).status != "waiting")
+    (listed,) = client.get(f"{LANGUAGES}/{pool}/invitations").json()
+    assert listed["closed"] == "withdrawn"
+    assert [each["status"] for each in listed["shown"]] == ["returned"]
+    assert divers_of(client, pool, "circle") == [""]
+
+
+@pytest.mark.parametrize("lowered", [True, False])
+def test_it_ends_with_the_right_of_its_maker_to_edit(
+    guest: httpx.Client, tokens: TokenFile, lowered: bool
+) -> None:
+    assert guest.get(INVITED).status_code == 200
+    if lowered:
+        tokens.add("Ada", Role.READ)
+    else:
+        tokens.remove("Ada")
+    assert_closed(guest.get(INVITED), "withdrawn")
+    assert_closed(send(guest), "withdrawn")
+
+
+def test_it_ends_with_its_language(client: httpx.Client, guest: httpx.Client, pool: str) -> None:
+    assert client.delete(f"{LANGUAGES}/{pool}").status_code == 204
+    assert_problem(guest.get(INVITED), 404, "not_found")
+    assert_problem(send(guest), 404, "not_found")
+
+
+def test_readers_see_invitations_and_make_none(
+    server: Running, tokens: TokenFile, made: dict[str, Any], pool: str
+) -> None:
+    place = f"{LANGUAGES}/{pool}/invitations"
+    with client_with(server, tokens.add("Cy", Role.READ)) as reader:
+        (listed,) = reader.get(place).json()
+        assert {"link", "qr", "sha256"}.isdisjoint(listed)
+        assert_problem(reader.post(place, json={}), 403, "role_required")
+        assert_problem(reader.delete(f"{place}/{made['id']}"), 403, "role_required")
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [{"days": 0}, {"days": 31}, {"people": 8}, {"takes": 0}, {"bytes": 0}, {"gestures": 1}],
+)
+def test_limits_that_are_none_are_refused(
+    client: httpx.Client, pool: str, limits: dict[str, int]
+) -> None:
+    answer = client.post(f"{LANGUAGES}/{pool}/invitations", json=limits)
+    assert_problem(answer, 422, "request_invalid")
+
+
+def test_a_language_without_gestures_invites_nobody(client: httpx.Client, language_id: str) -> None:
+    answer = client.post(f"{LANGUAGES}/{language_id}/invitations", json={})
+    assert_problem(answer, 409, "no_gestures")
+
+
+def test_the_code_holds_the_link(made: dict[str, Any]) -> None:
+    drawn = draw_qr_code(made["link"])
+    assert made["qr"] == drawn
+    side = int(re.findall(r"viewBox=\"0 0 (\d+) ", drawn)[0])
+    modules = np.full((side, side), 255, np.uint8)
+    for x, y in re.findall(r"M(\d+) (\d+)h1v1", drawn):
+        modules[int(y), int(x)] = 0
+    assert not (modules[:4] == 0).any()
+    # OpenCV's reader misses one size in ten, so it looks at several.
+    sizes = (cv2.resize(modules, None, fx=each, fy=each, interpolation=0) for each in range(4, 13))
+    assert made["link"] in {cv2.QRCodeDetector().detectAndDecode(each)[0] for each in sizes}
+
+
+def test_a_good_take_is_added_as_the_demonstration_of_its_person(
+    client: httpx.Client, studio: Studio, guest: httpx.Client, made: dict[str, Any], pool: str
+) -> None:
+    take = show(studio, made, recording_of("circle"))
+    assert guest.get(f"{INVITED}/takes/{take.id}").json() == {
+        "id": take.id,
+        "label": "circle",
+        "diver": "Bo",
+        "status": "added",
+        "reason": None,
+    }
+    assert divers_of(client, pool, "circle") == ["", "Bo"]
+    place = f"{LANGUAGES}/{pool}/demonstrations"
+    added = client.get(place, params={"label": "circle"}).json()[1]
+    assert added["source"]["clip_id"] == take.clip_id
+    assert added["source"]["faults"] == []
+    newest = client.get(f"{LANGUAGES}/{pool}/revisions").json()[0]
+    assert newest["change"] == "Add a demonstration of circle by Bo"
+    (entry,) = [each for each in studio.audit.newest(10) if each.request_id == take.id]
+    assert (entry.name, entry.address) == ("Ada", "invitation")
+
+
+def test_a_person_shows_a_gesture_once_and_eight_people_are_enough(
+    client: httpx.Client, studio: Studio, guest: httpx.Client, made: dict[str, Any], pool: str
+) -> None:
+    assert show(studio, made, recording_of("circle")).status == "added"
+    again = show(studio, made, recording_of("circle"))
+    assert (again.status, again.reason) == ("returned", "Bo has shown circle already.")
+    assert_problem(send(guest), 409, "already_shown")
+    assert show(studio, made, recording_of("circle"), diver="bo").status == "returned"
+    for diver in ("Cy", "Di", "Ed", "Flo", "Gus", "Hal"):
+        assert show(studio, made, recording_of("circle"), diver=diver).status == "added"
+    ninth = show(studio, made, recording_of("circle"), diver="Ida")
+    assert ninth.reason == "8 people have shown circle, which is enough."
+    assert len(divers_of(client, pool, "circle")) == 8
+
+
+def test_a_take_that_was_added_before_the_server_ended_stays_added(
+    client: httpx.Client, studio: Studio, made: dict[str, Any], pool: str
+) -> None:
+    take = show(studio, made, recording_of("circle"))
+    with studio.invitations._database.writing() as session:
+        unsaid = update(InvitedTake).values(status="waiting", claimed=None)
+        session.execute(unsaid)
+    until(lambda: studio.invitations.take(made["id"], take.id).status != "waiting")
+    assert studio.invitations.take(made["id"], take.id).status == "added"
+    assert divers_of(client, pool, "circle") == ["", "Bo"]
+    assert studio.clips.get(take.clip_id)
+
+
+def without_body(recording: Recording) -> Recording:
+    return replace(recording, poses=replace(recording.poses, xy=recording.poses.xy * np.nan))
+
+
+def without_salutes(recording: Recording) -> Recording:
+    return replace(recording, salute=np.zeros_like(recording.salute))
+
+
+@pytest.mark.parametrize(
+    ("recording", "reason"),
+    [
+        (without_body(recording_of("circle")), "Nobody is seen. Stand so that"),
+        (without_salutes(recording_of("circle")), "Hand not seen. Show it again nearer."),
+        (recording_of("circle", "circle"), "It was shown 2 times. Show it once in each clip."),
+        (recording_of(), "Hand not seen."),
+    ],
+)
+def test_a_take_with_a_fault_is_returned_with_the_reason_and_its_clip_goes(
+    client: httpx.Client,
+    studio: Studio,
+    made: dict[str, Any],
+    pool: str,
+    recording: Recording,
+    reason: str,
+) -> None:
+    before = {each.clip.id for each in studio.clips.all()}
+    take = show(studio, made, recording)
+    assert take.status == "returned"
+    assert take.reason is not None
+    assert take.reason.startswith(reason)
+    assert divers_of(client, pool, "circle") == [""]
+    assert {each.clip.id for each in studio.clips.all()} == before
+
+
+def test_takes_of_a_gesture_that_is_gone_are_returned(
+    client: httpx.Client, studio: Studio, guest: httpx.Client, made: dict[str, Any], pool: str
+) -> None:
+    client.delete(f"{LANGUAGES}/{pool}/gestures", params={"label": "line"})
+    assert show(studio, made, recording_of("line"), label="line").status == "returned"
+    assert_problem(send(guest, label="line"), 404, "not_found")
+
+
+def test_a_take_of_another_invitation_is_not_shown(
+    server: Running, client: httpx.Client, studio: Studio, made: dict[str, Any], pool: str
+) -> None:
+    take = show(studio, made, recording_of("circle"))
+    with client_with(server, token_of(invite(client, pool))) as other:
+        assert_problem(other.get(f"{INVITED}/takes/{take.id}"), 404, "not_found")
+
+
+def test_what_is_sent_is_within_the_limits_a_video_and_the_makers(
+    server: Running, client: httpx.Client, studio: Studio, pool: str, small_clip: Path
+) -> None:
+    video = small_clip.read_bytes()
+    made = invite(client, pool, takes=3, bytes=len(video) + len(b"words"))
+    with client_with(server, token_of(made)) as guest:
+        assert_problem(send(guest, b"words", name="notes.txt"), 415, "unsupported_media_type")
+        assert_problem(send(guest, b""), 422, "video_unreadable")
+        too_much = video + bytes(200_000)
+        assert_closed(send(guest, too_much), "used_up")
+        assert_problem(send(guest, bytes(MOST_BYTES + 2**17)), 413, "too_large")
+        assert studio.invitations.get(made["id"]).takes == 2
+        sent = send(guest, video)
+        assert sent.status_code == 202
+        assert sent.json()["status"] == "waiting"
+        assert_closed(send(guest, video), "used_up")
+        clip = studio.clips.get(studio.invitations.take(made["id"], sent.json()["id"]).clip_id).clip
+        assert (clip.name, clip.owner) == ("Bo circle.mp4", "Ada")
+        place = f"{INVITED}/takes/{sent.json()['id']}"
+        until(lambda: guest.get(place).json()["status"] != "waiting")
+        assert guest.get(place).json()["status"] == "returned"
+    entry = next(each for each in studio.audit.newest(20) if each.path.startswith(INVITED))
+    assert (entry.name, entry.method, entry.status) == ("Ada", "POST", 202)
+    assert "label=circle" in entry.path

@@ -1,0 +1,181 @@
+"""An invitation in the browser: three people finish a language, two of them by its link."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import httpx
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect
+
+from app.recognition import Language
+from app.settings import Settings
+from tests.api.running import Running, client_of
+from tests.browser.accessibility import faults
+from tests.browser.conftest import WATCH_POLICY, OpenPage, new_context
+
+PHONE = ViewportSize(width=390, height=844)
+
+GESTURES = ("circle", "line")
+
+JUDGED_MS = 300_000
+"""Longest wait for the poses of a clip of a few seconds on a loaded machine."""
+
+CAMERA = """
+const canvas = document.createElement("canvas");
+Object.assign(canvas, { width: 640, height: 480 });
+const context = canvas.getContext("2d");
+const video = Object.assign(document.createElement("video"), { muted: true });
+const draw = () => {
+  context.fillRect(0, 0, canvas.width, canvas.height); // A frame even before the clip plays.
+  context.drawImage(video, 0, 0, canvas.width, canvas.height);
+  requestAnimationFrame(draw);
+};
+const clips = {};
+navigator.mediaDevices.getUserMedia = async () => {
+  for (const label of LABELS) {
+    const clip = await (await fetch(`/recorded/${label}.mp4`)).blob();
+    clips[label] = URL.createObjectURL(clip);
+  }
+  draw();
+  return canvas.captureStream(25);
+};
+new MutationObserver((changes) => {
+  for (const { target } of changes)
+    if (target.matches?.(".picture.recording") && video.paused) {
+      video.src = clips[document.querySelector("h2").textContent];
+      video.play();
+    }
+}).observe(document, { subtree: true, attributes: true, attributeFilter: ["class"] });
+"""
+"""A camera before which a person shows the gesture that is asked for, as on a recorded clip."""
+
+
+@pytest.fixture(scope="module")
+def client(server: Running) -> httpx.Client:
+    return client_of(server.address)
+
+
+@pytest.fixture(scope="module")
+def language(client: httpx.Client, settings: Settings) -> str:
+    """Return the id of a language of two gestures, shown by one person."""
+    sample = Language.from_json((settings.samples_dir / "osg-table-2.json").read_text("utf-8"))
+    gestures = [replace(sample.gesture(label), diver="Ana") for label in GESTURES]
+    content = replace(sample, name="deck", gestures=gestures, grammar=None).to_json()
+    return str(client.post("/api/v1/languages/import", content=content).json()["id"])
+
+
+@pytest.fixture
+def phone(browser: Browser) -> Iterator[Callable[..., Page]]:
+    """Return a function that opens a link on a phone of its own, with a script before the page."""
+    contexts, errors = list[BrowserContext](), list[str]()
+
+    def open_link(link: str, script: str = "") -> Page:
+        context = new_context(browser)
+        contexts.append(context)
+        page = context.new_page()
+        page.set_viewport_size(PHONE)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.add_init_script(WATCH_POLICY)
+        if script:
+            page.add_init_script(script)
+        page.goto(link)
+        return page
+
+    yield open_link
+    for context in contexts:
+        context.close()
+    assert errors == []
+
+
+def begin(page: Page, name: str) -> None:
+    page.get_by_label("Your name").fill(name)
+    page.get_by_role("button", name="Begin").click()
+    expect(page.get_by_text("0 of 2 added")).to_be_visible()
+
+
+def shows(page: Page, label: str, words: str) -> None:
+    row = page.get_by_role("list", name="Gestures").get_by_role("listitem").filter(has_text=label)
+    expect(row).to_contain_text(words, timeout=JUDGED_MS)
+
+
+def test_three_people_finish_a_language(
+    open_page: OpenPage,
+    phone: Callable[..., Page],
+    client: httpx.Client,
+    language: str,
+    clips: Path,
+    picture: Callable[[Page, str], Path],
+) -> None:
+    page = open_page({"view": "health", "language": language}, scene=False)
+    expected = page.get_by_role("region", name="What to expect")
+    expect(expected).to_contain_text("Ask two more people")
+    expected.get_by_role("button", name="Invite people").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_label("People")).to_have_value("2")
+    dialog.get_by_role("button", name="Make the link").click()
+    expect(dialog.get_by_role("img", name="QR code of the link")).to_be_visible()
+    expect(dialog).to_contain_text("Phones do not reach this address")
+    link = dialog.locator(".link-text").inner_text()
+    assert faults(page) == []
+    dialog.get_by_role("button", name="Close").click()
+    invitation = page.get_by_role("list", name="Invitations").get_by_role("listitem")
+    expect(invitation).to_contain_text("0 of 12 takes sent")
+
+    # Bo shows every gesture hands-free before the camera of the phone.
+    bo = phone(link, CAMERA.replace("LABELS", json.dumps(GESTURES)))
+    bo.route(
+        "**/recorded/*",
+        lambda route: route.fulfill(
+            path=clips / f"{Path(route.request.url).stem}-test-1.mp4", content_type="video/mp4"
+        ),
+    )
+    expect(bo.get_by_role("heading", name="Show the gestures of deck")).to_be_visible()
+    assert faults(bo) == []
+    begin(bo, "Bo")
+    assert faults(bo) == []
+    bo.get_by_role("button", name="Show hands-free").click()
+    expect(bo.get_by_text("Next: circle. Step back.")).to_be_visible()
+    expect(bo.locator(".picture.recording")).to_be_visible()
+    picture(bo, "invitation")
+    expect(bo.get_by_text("This is sent in a moment.")).to_be_visible()
+    expect(bo.get_by_text("All gestures are added. Thank you!")).to_be_visible(timeout=JUDGED_MS)
+
+    # Cy has no live camera: first a clip without a take, then the right ones.
+    cy = phone(link, "delete MediaDevices.prototype.getUserMedia;")
+    begin(cy, "Cy")
+    expect(cy.get_by_role("button", name="Show hands-free")).to_have_count(0)
+    chosen = cy.get_by_label("Choose a clip")
+    chosen.set_input_files(clips / "ordinary-movement.mp4")
+    shows(cy, "circle", "show it again")
+    shows(cy, "circle", "The salute was not seen twice. Hold it longer, before and after.")
+    cy.get_by_role("button", name="circle").click()
+    expect(cy.get_by_role("alert")).to_contain_text("salute was not seen twice")
+    expect(cy.get_by_role("heading", name="circle", exact=True)).to_be_visible()
+    assert faults(cy) == []
+    for label in GESTURES:
+        expect(cy.get_by_role("heading", name=label, exact=True)).to_be_visible()
+        cy.get_by_label("Record with the phone").set_input_files(clips / f"{label}-test-2.mp4")
+    expect(cy.get_by_text("All gestures are added. Thank you!")).to_be_visible(timeout=JUDGED_MS)
+
+    for label in GESTURES:
+        place = f"/api/v1/languages/{language}/demonstrations"
+        shown = client.get(place, params={"label": label}).json()
+        assert [each["diver"] for each in shown] == ["Ana", "Bo", "Cy"]
+        assert not any(each["source"]["faults"] for each in shown[1:])
+    expect(expected).to_contain_text("Of 6 demonstrations", timeout=JUDGED_MS)
+    expect(page.get_by_role("img", name=re.compile("^Read right of people"))).to_be_visible()
+    expect(invitation).to_contain_text("Bo: circle added, line added.")
+    expect(invitation).to_contain_text("Cy: circle returned")
+    assert faults(page) == []
+
+    # The link does nothing any more once it is withdrawn.
+    invitation.get_by_role("button", name="Withdraw").click()
+    expect(invitation).to_contain_text("withdrawn")
+    late = phone(link)
+    expect(late.get_by_role("heading", name="Invitation closed")).to_be_visible()
+    expect(late.get_by_text("This invitation was withdrawn; ask")).to_be_visible()
