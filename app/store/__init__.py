@@ -8,7 +8,6 @@ from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, InvitationClosed, NotFound, StoreError, StoreUnavailable
 from app.store.invitations import InvitationState, InvitationStore, require_open
 from app.store.jobs import JobStore
-from app.store.labelled_takes import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.languages import Draft, LanguageState, LanguageStore
 from app.store.models import (
     AuditEntry,
@@ -29,6 +28,7 @@ from app.store.practice import PracticeStore
 from app.store.quotas import NO_QUOTA, Quota, QuotaExceeded, QuotaStore, Usage
 from app.store.recognitions import RecognitionStore
 from app.store.sign_ins import SignInStore
+from app.store.test_sets import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
 

@@ -67,7 +67,7 @@ class Explanation:
         By label the number of voters with weight that voted for it.
     support
         By label the total weight of these voters.
-    verdicts
+    breakdown
         The breakdown by voter, those most against the expected gesture first.
     facing
         Degrees by which the diver is turned from the camera, positive to the diver's own left; None
@@ -102,7 +102,7 @@ class Explanation:
     fault: str | None
     votes: Mapping[str, int]
     support: Mapping[str, float]
-    verdicts: tuple[VoterBreakdown, ...]
+    breakdown: tuple[VoterBreakdown, ...]
     facing: float | None
     turned: float
     alignments: tuple[Alignment, ...]
@@ -180,6 +180,7 @@ class Explanation:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values become None."""
+        breakdown = [each.to_dict() for each in self.breakdown]
         return {
             "profile": self.profile,
             "expected": self.expected,
@@ -197,7 +198,8 @@ class Explanation:
             "fault": self.fault,
             "votes": dict(self.votes),
             "support": dict(self.support),
-            "verdicts": [verdict.to_dict() for verdict in self.verdicts],
+            "breakdown": breakdown,
+            "verdicts": breakdown,  # as version 0.2 called it
             "turned": _finite(self.turned),
             "facing": self.facing,
             "alignments": [alignment.to_dict() for alignment in self.alignments],
@@ -259,7 +261,7 @@ def explain(
         fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
         support=result.support,
-        verdicts=break_down_votes(table, result, at, other),
+        breakdown=break_down_votes(table, result, at, other),
         facing=table.facing,
         turned=_difference(table, at, other),
         alignments=tuple(

@@ -91,4 +91,4 @@ def break_down_votes(
                 against=0.0 if math.isnan(against) else against,
             )
         )
-    return tuple(sorted(given, key=lambda verdict: -verdict.against))
+    return tuple(sorted(given, key=lambda each: -each.against))

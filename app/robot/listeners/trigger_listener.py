@@ -169,9 +169,9 @@ class TriggerListener:
         changed = (*left, *self._set_state(time, sight.state))
         if sight.take is None:
             return changed
-        verdict = judge_take(self._language, sight.take, time, explain_unclosed(trigger))
-        self._doubtful = isinstance(verdict, TakeRejected) and verdict.pair is None
-        return (*changed, verdict)
+        judged = judge_take(self._language, sight.take, time, explain_unclosed(trigger))
+        self._doubtful = isinstance(judged, TakeRejected) and judged.pair is None
+        return (*changed, judged)
 
     def _recognize_gap(self, time: float) -> TakeRecognized | None:
         """Recognise the gap before the salute that begins a take; None where it is no gesture."""
@@ -179,12 +179,12 @@ class TriggerListener:
         gap = self._takes.cut_gap() if self._doubtful else None
         if gap is None:
             return None
-        verdict = judge_take(self._language, gap, time, explain_unclosed(self._language.trigger))
-        if not isinstance(verdict, TakeRecognized):
+        judged = judge_take(self._language, gap, time, explain_unclosed(self._language.trigger))
+        if not isinstance(judged, TakeRecognized):
             return None
         self._takes.end_gap()
         self._doubtful = False
-        return verdict
+        return judged
 
     def _reject_open(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory and reject an open take for `reason`."""

@@ -394,8 +394,15 @@ export interface components {
                 [key: string]: number;
             };
             /**
-             * Verdicts
+             * Breakdown
              * @description Per voter, the most against it first
+             */
+            breakdown: {
+                [key: string]: unknown;
+            }[];
+            /**
+             * Verdicts
+             * @description `breakdown`, as version 0.2 called it
              */
             verdicts: {
                 [key: string]: unknown;

@@ -38,7 +38,7 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
     assert explanation.other is not None
     difference = scores[drawn_language().labels.index(expected)]
     difference -= scores[drawn_language().labels.index(explanation.other)]
-    told = sum(verdict.against for verdict in explanation.verdicts) + explanation.turned
+    told = sum(voter.against for voter in explanation.breakdown) + explanation.turned
     assert told == pytest.approx(difference, abs=1e-9)
     assert explanation.margin == pytest.approx(-difference, abs=1e-9)
 
@@ -46,12 +46,12 @@ def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
 @pytest.mark.parametrize("profile", PROFILES)
 def test_the_alignments_cost_what_the_path_voter_measures_and_their_ends(profile: str) -> None:
     explanation = why(recording(wedge, jitter=0.02), "circle", profile)
-    measured = {verdict.voter: verdict for verdict in explanation.verdicts}
+    measured = {each.voter: each for each in explanation.breakdown}
     for alignment in explanation.alignments:
         if profile == "full" and alignment.voter == "path":
-            verdict = measured[alignment.voter]
+            of = measured[alignment.voter]
             expected = alignment.label == "circle"
-            distance = verdict.distance if expected else verdict.other_distance
+            distance = of.distance if expected else of.other_distance
             assert distance is not None
             assert distance - 1e-5 <= alignment.distance < 2 * distance
         assert alignment.costs.min() >= 0.0
@@ -149,7 +149,7 @@ def test_gestures_without_demonstration_are_explained_by_their_images() -> None:
         explanation = explain(context(query, Recognizer(language, profile)), "circle")
         assert explanation.alignments == ()
         assert explanation.causes == ()
-        assert explanation.verdicts[0].against > 0
+        assert explanation.breakdown[0].against > 0
 
 
 def test_who_expects_what_the_language_lacks_is_told_what_it_has() -> None:
@@ -167,7 +167,7 @@ def test_who_was_rejected_is_told_by_how_much() -> None:
     assert explanation.novelty > 1.0
     allowed = f"The take is {explanation.novelty:.1f} times as far as the limit allows."
     assert allowed in explanation.details
-    assert sum(verdict.share for verdict in explanation.verdicts) == pytest.approx(1.0)
+    assert sum(voter.share for voter in explanation.breakdown) == pytest.approx(1.0)
 
 
 def between(*, asked: bool) -> RecognitionContext:

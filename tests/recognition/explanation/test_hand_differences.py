@@ -31,7 +31,7 @@ def language() -> Language:
 def explained(language: Language, poses: PoseSequence, expected: str) -> str:
     context = RecognitionContext(recognizer=Recognizer(language), poses=poses, whole=poses)
     explanation = explain(context, expected)
-    against = sum(verdict.against for verdict in explanation.verdicts) + explanation.turned
+    against = sum(voter.against for voter in explanation.breakdown) + explanation.turned
     if explanation.margin == explanation.margin and abs(explanation.margin) < float("inf"):
         assert against + explanation.margin == pytest.approx(0, abs=1e-9)
     return explanation.sentence[0].lower() + explanation.sentence[1:]

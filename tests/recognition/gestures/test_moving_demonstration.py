@@ -61,7 +61,7 @@ def test_the_finger_is_named_that_makes_the_difference(recognizer: Recognizer) -
     explanation = explain(context, "fist")
     assert "finger is bent" in explanation.sentence
     assert "less than in 'fist'" in explanation.sentence
-    against = sum(verdict.against for verdict in explanation.verdicts) + explanation.turned
+    against = sum(voter.against for voter in explanation.breakdown) + explanation.turned
     assert against == pytest.approx(-explanation.margin)
 
 

@@ -104,7 +104,8 @@ class ExplanationView(BaseModel):
     sentence: str = Field(description="Why and what the diver can do, in at most fifteen words")
     details: list[str] = Field(description="The numbers behind the sentence")
     votes: dict[str, int]
-    verdicts: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
+    breakdown: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
+    verdicts: list[dict[str, Any]] = Field(description="`breakdown`, as version 0.2 called it")
     alignments: list[dict[str, Any]]
     causes: list[dict[str, Any]] = Field(
         description="Why, the cause first, each with its evidence; empty: none is known"

@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BaseModel, Field
 
 from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
-from app.store.labelled_takes import MOST_TAKES
+from app.store.test_sets import MOST_TAKES
 
 
 class LabelledTakeDraft(Body):

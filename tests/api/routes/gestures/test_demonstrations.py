@@ -145,20 +145,20 @@ def test_what_cannot_be_added_changes_nothing(
     assert len(listed(client, place)) == 1
 
 
-def test_a_sixth_demonstration_is_refused(
+def test_a_ninth_demonstration_is_refused(
     client: httpx.Client, place: str, backwards_clip: str
 ) -> None:
-    for _ in range(4):
+    for _ in range(7):
         assert add(client, place, backwards_clip).status_code == 201
     refused = assert_problem(add(client, place, backwards_clip), 422, "gesture_unusable")
-    assert "the limit is 5" in str(refused["detail"])
+    assert "the limit is 8" in str(refused["detail"])
 
 
 @pytest.mark.parametrize(
     ("index", "label", "status", "code"),
     [
         (1, "circle", 404, "not_found"),
-        (5, "circle", 422, "request_invalid"),
+        (8, "circle", 422, "request_invalid"),
         (-1, "circle", 422, "request_invalid"),
         (0, "wave", 404, "not_found"),
     ],

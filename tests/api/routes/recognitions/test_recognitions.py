@@ -110,7 +110,7 @@ def test_a_recognition_is_explained_by_what_was_meant(
     why = answer.json()
     assert (why["id"], why["expected"], why["label"]) == (kept["id"], "circle", "line")
     assert (why["right"], why["other"]) == (False, "line")
-    assert {verdict["voter"] for verdict in why["verdicts"]} == set(kept["voters"])
+    assert {each["voter"] for each in why["breakdown"]} == set(kept["voters"])
     assert why["tried"] > 0
     assert all(each["effect"]["lost"] == [] for each in why["counterfactuals"] if each["effect"])
     assert (why["nearest"], why["runner_up"]) == ("line", "circle")
@@ -159,7 +159,7 @@ def test_a_tuning_changes_this_recognition_alone_and_is_told_with_it(
     assert tuned["tuning"]["weights"] == {"velocity": 0.0}
     assert tuned["weights"]["velocity"] == 0.0 < plain["weights"]["velocity"]
     why = client.get(f"{RECOGNITIONS}/{tuned['id']}/explanation").json()
-    (velocity,) = [verdict for verdict in why["verdicts"] if verdict["voter"] == "velocity"]
+    (velocity,) = [each for each in why["breakdown"] if each["voter"] == "velocity"]
     assert velocity["weight"] == 0.0
     unknown = client.post(RECOGNITIONS, json=body | {"tuning": {"weights": {"magic": 1.0}}})
     assert unknown.status_code == 422

@@ -19,7 +19,7 @@ from app.store import (
     TestSetFull,
 )
 from app.store.database import MIGRATIONS
-from app.store.labelled_takes import KEPT_RESULTS
+from app.store.test_sets import KEPT_RESULTS
 from tests.store.conftest import add_clip
 from tests.store.test_languages import draft
 
@@ -112,7 +112,7 @@ def test_takes_of_deleted_clips_are_hidden_and_come_back(
 def test_a_set_that_is_full_takes_none_of_the_new_ones(
     store: LabelledTakeStore, take: LabelledTake, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.store.labelled_takes.MOST_TAKES", 2)
+    monkeypatch.setattr("app.store.test_sets.MOST_TAKES", 2)
     store.add([take])
     with pytest.raises(TestSetFull, match="at most 2"):
         store.add([again(take, start=3.0), again(take, start=4.0)])
