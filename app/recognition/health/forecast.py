@@ -148,8 +148,8 @@ class Forecast:
                 few = (
                     " The last person raised the lower end by two points or more: ask one more."
                     if self.asks_more
-                    else " The last person raised the lower end by less than two points: nobody "
-                    "else is needed."
+                    else " The last person raised the lower end by less than two points: more "
+                    "people would help little."
                 )
             return f"Other people's demonstrations are read right in {right}.{few}"
         if not self.people:

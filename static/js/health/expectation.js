@@ -42,7 +42,7 @@ export function forecastWords({ people, words, asks_more: more, right, asked, re
       ? "Two people are few: ask a third to show the language."
       : more
         ? "The last person raised the lower end by two points or more: ask one more."
-        : "The last person raised the lower end by less than two points: nobody else is needed.",
+        : "The last person raised the lower end by less than two points: more people would help little.",
   ];
 }
 

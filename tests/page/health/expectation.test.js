@@ -21,7 +21,7 @@ test("what is measured among people is told with every outcome", () => {
   assert.deepEqual(forecastWords(measured), [
     "Of 12 demonstrations 75 % (38 to 88) are read right by those of other people.",
     "10 % (5 to 55) are asked back with the right gesture, 10 % (5 to 55) refused, 5 % (2 to 52) read as another.",
-    "The last person raised the lower end by less than two points: nobody else is needed.",
+    "The last person raised the lower end by less than two points: more people would help little.",
   ]);
 });
 

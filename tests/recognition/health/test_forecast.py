@@ -240,7 +240,7 @@ def test_the_words_of_three_people_say_whether_to_ask_one_more() -> None:
         return Forecast(3, readings, points).words
 
     assert words(20, 24).endswith("by two points or more: ask one more.")
-    assert words(24, 24).endswith("by less than two points: nobody else is needed.")
+    assert words(24, 24).endswith("by less than two points: more people would help little.")
 
 
 def test_a_gain_below_two_points_is_none() -> None:
