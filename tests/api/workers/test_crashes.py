@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -94,7 +95,14 @@ def test_a_stop_in_the_middle_of_work_is_told_and_leaves_no_traceback(
     with (tmp_path / "errors").open("w+") as errors, ThreadPoolExecutor(1) as other:
         with served(tmp_path / "data", errors) as (process, client):
             video = f"{CLIPS}/{upload(client, clip).json()['id']}/video"
-            document = pool(circle=circle, line=line, wedge=wedge, square=square).to_json()
+            few = pool(circle=circle, line=line, wedge=wedge, square=square)
+            # So many that the check is still at work when the server is stopped.
+            many = [
+                replace(gesture, label=f"{gesture.label} {number}")
+                for number in range(60)
+                for gesture in few.gestures
+            ]
+            document = replace(few, gestures=many).to_json()
             language = client.post("/api/v1/languages/import", content=document).json()["id"]
             with (
                 client.stream("GET", video),
