@@ -4,11 +4,10 @@ from app.store.audit import AuditStore
 from app.store.clips import ClipPage, ClipQuery, ClipStore, ClipWithJob
 from app.store.data_folder import FolderLock, identity_of
 from app.store.database import Database
-from app.store.demonstration_sources import SourceStore
 from app.store.errors import Conflict, InvitationClosed, NotFound, StoreError, StoreUnavailable
 from app.store.invitations import InvitationState, InvitationStore, require_open
 from app.store.jobs import JobStore
-from app.store.languages import Draft, LanguageState, LanguageStore
+from app.store.languages import Draft, LanguageState, LanguageStore, SourceStore
 from app.store.models import (
     AuditEntry,
     Clip,

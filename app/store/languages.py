@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -12,7 +12,14 @@ from sqlmodel import Session, col, func, select
 
 from app.store.database import Database
 from app.store.errors import Conflict, NotFound, StoreUnavailable
-from app.store.models import LanguageRecord, LanguageRevision, SeededSample, now
+from app.store.models import (
+    Clip,
+    DemonstrationSource,
+    LanguageRecord,
+    LanguageRevision,
+    SeededSample,
+    now,
+)
 from app.store.quotas import NO_QUOTA, Quota, Usage
 
 MOST_RACES = 20
@@ -310,3 +317,28 @@ def _load(
     if row is None:
         raise NotFound(f"language {language_id!r} has no revision {number}")
     return LanguageState(record, row)
+
+
+class SourceStore:
+    """Keeps the sources of demonstrations in `database`.
+
+    A source is stored by demonstration and not by language, revision or label, so it stays known
+    after a rename or revert, in a copy, and in an exported file that is imported again.
+    """
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    def keep(self, source: DemonstrationSource) -> None:
+        """Store the source of a demonstration, in place of an earlier one."""
+        with self._database.writing() as session:
+            session.merge(source)
+
+    def of(self, trajectories: Collection[str]) -> dict[str, DemonstrationSource]:
+        """Return the known sources of demonstrations, without those whose clip is deleted."""
+        with self._database.reading() as session:
+            query = select(DemonstrationSource).join(Clip)
+            query = query.where(
+                col(DemonstrationSource.trajectory).in_(trajectories), col(Clip.deleted).is_(None)
+            )
+            return {source.trajectory: source for source in session.exec(query)}

@@ -284,12 +284,13 @@ class FusedVote:
         self, trajectory: Trajectory, references: References, rows: npt.NDArray[np.intp]
     ) -> FloatArray:
         """Return the hand voters' distances ``(3, M)`` of a movement to M rows."""
-        either = [
-            self._moving.distances(trajectory.moving_hands, exchanged=exchanged)
-            for exchanged in (False, True)
-        ]
-        exchanged = [references.traversals[row].exchanged for row in rows.tolist()]
-        return np.where(exchanged, *(each[:, references.rows[rows]] for each in either[::-1]))
+        hands, shown = trajectory.moving_hands, references.rows[rows]
+        found = self._moving.distances(hands, exchanged=False)[:, shown]
+        exchanged = np.array([references.traversals[row].exchanged for row in rows.tolist()])
+        if exchanged.any():
+            other = self._moving.distances(hands, exchanged=True)[:, shown]
+            found = np.where(exchanged, other, found)
+        return found
 
     def _tabulate(
         self, found: _Candidates, references: References, facing: float | None

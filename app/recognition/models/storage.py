@@ -34,6 +34,9 @@ DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 PACKAGED: Final = Path(__file__).parent / "files"
 """The package's own folder: a wheel has the models there, a checkout after `make models`."""
 
+Progress = Callable[[str, int, int], None]
+"""Called with a file's name, the files done and their number; may raise to cancel."""
+
 
 @dataclass(frozen=True)
 class InstalledModel:
@@ -205,10 +208,6 @@ def _sha256(path: Path, size: int, changed: int) -> str:
     return hash_file(path)
 
 
-Progress = Callable[[str, int, int], None]
-"""Called with a file's name, the files done and their number; may raise to cancel."""
-
-
 def install_models(
     progress: Progress | None = None, directory: Path | None = None, source: Path | None = None
 ) -> None:
@@ -233,12 +232,12 @@ def install_models(
         says what to do.
 
     """
-    directory, source = directory or models_dir(), source or PACKAGED
-    if not source.is_dir():
+    if source is not None and not source.is_dir():
         raise ModelError(
             f"{source} is no folder: give one made by `osg-studio models export DIR`, or that of "
             f"a release"
         )
+    directory, source = directory or models_dir(), source or PACKAGED
     missing = [file for file in INSTALLED_FILES if file_state(file, directory) != "ok"]
     wanted = [
         file for file in missing if file in PACKAGED_FILES or (source / file.filename).exists()

@@ -164,7 +164,7 @@ def test_without_a_source_the_packages_own_models_are_copied(
 def test_a_checkout_without_models_says_how_to_obtain_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("app.recognition.models.storage.PACKAGED", tmp_path)
+    monkeypatch.setattr("app.recognition.models.storage.PACKAGED", tmp_path / "files")
     with pytest.raises(ModelError, match=r"cannot read .*pose_detection\.onnx.*`make models`"):
         install_models(directory=tmp_path / "robot")
 
