@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
-from app.recognition.decision.references import SMALLER, References, describe_movement
+from app.recognition.decision.references import SMALLER, Described, References, describe_movement
 from app.recognition.features.motion import (
     SHARES,
     SIZE,
@@ -135,6 +135,16 @@ class Comparison:
         return starts[0] if self.traversal.backward else self.traversal
 
     @cached_property
+    def _references(self) -> References:
+        """The demonstration as references, which most changes of the take are compared with."""
+        return References.of_movements(self.shown, self._landmarks)
+
+    @cached_property
+    def _described(self) -> Described:
+        """The take's descriptors, with which most changes of the demonstration are compared."""
+        return describe_movement(self.query)
+
+    @cached_property
     def base(self) -> float:
         """Novelty of the two as they are; a gesture that is nearest backwards has its penalty."""
         return self.measure(self.query, self.shown)
@@ -160,8 +170,9 @@ class Comparison:
 
     def _measure_all(self, query: Movement, shown: Sequence[Movement]) -> FloatArray:
         """Return the novelties ``(M,)`` of a movement for M others."""
-        references = References.of_movements(shown, self._landmarks)
-        described = describe_movement(query)
+        known = shown is self.shown
+        references = self._references if known else References.of_movements(shown, self._landmarks)
+        described = self._described if query is self.query else describe_movement(query)
         scores = fuse(references.measure(described), self._weights, self._between)
         scores *= references.correct(described[SHARES])
         smallness = references.measure_smallness(described[SIZE])
