@@ -36,7 +36,7 @@ from app.api.middleware.audit import Audit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
 from app.api.middleware.identities import Identities, check_tokens
-from app.api.middleware.request_bodies import BodyLimit, BodyPace, StrictBodies
+from app.api.middleware.request_bodies import AnswerAfterBody, BodyLimit, BodyPace, StrictBodies
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
@@ -325,6 +325,7 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     app.add_middleware(RoleRequired)
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)
+    app.add_middleware(AnswerAfterBody)
     app.add_middleware(EndsInTime, requests=app.state.requests)
     app.add_middleware(SecurityHeaders)
     app.add_middleware(RequestLog, metrics=metrics)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
@@ -12,6 +13,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.http.problems import Fault, ProblemError
 from app.recognition.text.strict_json import StrictJSONError, read_json
+
+SMALL_BYTES = 16 * 1024
+"""A body up to this size is awaited before an answer, and parsed on the event loop."""
 
 
 class BodyLimit:
@@ -116,8 +120,49 @@ def too_slow() -> ProblemError:
     return ProblemError(408, "upload_too_slow", detail, headers={"Connection": "close"})
 
 
-SMALL_BYTES = 16 * 1024
-"""Bodies up to this size are parsed on the event loop, in a millisecond."""
+REST_SECONDS = 1.0
+"""How long an answer waits for the rest of a small body."""
+
+
+class AnswerAfterBody:
+    """Receives the rest of a small body before an answer, for instance before a refusal.
+
+    Caddy, like every proxy on Go's HTTP client, may lose an answer that begins while it is still
+    sending the request.
+
+    Parameters
+    ----------
+    app
+        App that may answer before it has read the body.
+
+    """
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Pass on the request, and the answer once a small body is complete."""
+        length = Headers(scope=scope).get("content-length", "") if scope["type"] == "http" else ""
+        if not (length.isdecimal() and 0 < int(length) <= SMALL_BYTES):
+            return await self._app(scope, receive, send)
+        complete = False
+
+        async def receive_until_complete() -> Message:
+            nonlocal complete
+            message = await receive()
+            complete = not message.get("more_body", False)
+            return message
+
+        async def send_after_body(message: Message) -> None:
+            nonlocal complete
+            with suppress(TimeoutError):
+                async with asyncio.timeout(REST_SECONDS):
+                    while not complete:
+                        await receive_until_complete()
+            complete = True
+            await send(message)
+
+        return await self._app(scope, receive_until_complete, send_after_body)
 
 
 class StrictBodies:

@@ -1,5 +1,7 @@
 """Request bodies: too large, too slow or ambiguous ones are refused."""
 
+import select
+import socket
 from collections.abc import Iterator
 
 import httpx
@@ -43,6 +45,35 @@ def test_a_language_file_may_be_larger_than_other_bodies(narrow: httpx.Client) -
 
 
 LANGUAGES = "/api/v1/languages"
+FOREIGN = (
+    b"POST /api/v1/languages HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+    b"Origin: http://evil.example\r\nContent-Length: 12\r\n\r\n"
+)
+"""Header of a request that is refused whatever its body says."""
+
+
+def connection_to(client: httpx.Client) -> socket.socket:
+    return socket.create_connection((client.base_url.host, client.base_url.port), timeout=30)
+
+
+def test_a_refusal_comes_after_a_small_body_and_keeps_the_connection(client: httpx.Client) -> None:
+    with connection_to(client) as connection:
+        for _ in range(2):
+            connection.sendall(FOREIGN)
+            assert not select.select([connection], [], [], 0.3)[0]
+            connection.sendall(b'{"name":"x"}')
+            answer = b""
+            while not answer.endswith(b"}"):
+                answer += connection.recv(10_000)
+            assert answer.startswith(b"HTTP/1.1 403")
+
+
+def test_a_refusal_does_not_wait_long_for_a_body_that_never_comes(client: httpx.Client) -> None:
+    with connection_to(client) as connection:
+        connection.sendall(FOREIGN)
+        assert connection.recv(10_000).startswith(b"HTTP/1.1 403")
+
+
 JSON = {"Content-Type": "application/json"}
 
 
