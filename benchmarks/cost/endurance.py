@@ -27,7 +27,7 @@ from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks, Image
-from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.recognition.recording.video import FrameReader
 from app.resources import samples_dir
@@ -42,7 +42,7 @@ from app.robot import (
     TriggerListener,
 )
 
-SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_SALUTE)
+SETTLING: Final = 2 * (LONGEST_TAKE + LONGEST_TRIGGER)
 """Seconds left out of the slope, until caches are filled."""
 
 SAME: Final = 0.02

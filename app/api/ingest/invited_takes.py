@@ -18,12 +18,12 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
 from app.api.middleware.identities import Identities
+from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
 from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
-from app.api.services.salute_ranges import faults_of_source
 from app.recognition import Gesture, Language, OsgError
 from app.recognition.explanation.demonstration_faults import (
     FEW_HANDS,

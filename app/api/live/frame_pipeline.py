@@ -220,7 +220,7 @@ class FramePipeline:
             time=frame.time,
             pose=pose_in(found.body.xy, width, height) if found.body else None,
             hands=tuple(pose_in(hand.xy, width, height) for hand in found.hands),
-            salute=round(sight.salute, 3),
+            salute=round(sight.score, 3),
             held=sight.held,
             state=sight.state,
             frames_per_second=self._rate(),

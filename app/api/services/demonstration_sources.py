@@ -6,8 +6,8 @@ import hashlib
 import json
 
 from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
+from app.api.services.demonstration_faults import count_triggers_in_clip, faults_of_source
 from app.api.services.running_studio import Studio
-from app.api.services.salute_ranges import count_salutes_in_clip, faults_of_source
 from app.recognition import Gesture, Language
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import Demonstration
@@ -78,7 +78,7 @@ def _view(
     faults = view_faults(studio, source, shown, trigger)
     return SourceView(
         **source.model_dump(exclude={"trajectory"}),
-        salutes=count_salutes_in_clip(studio, source.clip_id, source.start, source.end, trigger),
+        salutes=count_triggers_in_clip(studio, source.clip_id, source.start, source.end, trigger),
         fault=faults[0].words if faults else None,
         faults=faults,
     )

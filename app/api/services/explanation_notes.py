@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from app.api.services.demonstration_faults import count_triggers_in_clip
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.running_studio import Studio
-from app.api.services.salute_ranges import count_salutes_in_clip
 from app.recognition import Language
 from app.recognition.explanation.demonstration_faults import describe_count
 from app.recognition.triggers.trigger import Trigger
@@ -37,7 +37,7 @@ def write_notes(
 
 
 def _describe_range(studio: Studio, record: RecognitionRecord, trigger: Trigger) -> Iterator[str]:
-    count = count_salutes_in_clip(studio, record.clip_id, record.start, record.end, trigger)
+    count = count_triggers_in_clip(studio, record.clip_id, record.start, record.end, trigger)
     if count:
         between = "salutes" if trigger.start is None else "poses"
         contained = describe_count(trigger, count)

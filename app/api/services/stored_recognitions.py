@@ -11,10 +11,10 @@ from app.api.http.problems import ProblemError
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
+from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
-from app.api.services.salute_ranges import faults_of_language
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import KnownTake, RecognitionContext
 from app.recognition.language.file_schema import TuningEntry

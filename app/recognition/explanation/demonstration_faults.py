@@ -34,8 +34,8 @@ Remedy = Literal["set_range", "show_again", "arm_trigger"]
 """What mends a fault: another range of the clip, another take, or a trigger of the arms."""
 
 LEAST_OVERLAP = 0.1
-"""Least seconds of a salute in a range for it to count as contained, because the ends of a take
-touch its salutes."""
+"""Least seconds of a trigger in a range for it to count as contained, because the ends of a take
+touch its triggers."""
 
 WINDOW_SECONDS = 0.2
 """Step at which a wrist's speed is measured to find rests: longer than jitter of the pose model,
@@ -156,8 +156,8 @@ class ClipOutline:
 
     Attributes
     ----------
-    salutes
-        The held salutes, or other triggers.
+    triggers
+        The held triggers.
     strokes
         The gesture of each take, without transit.
     start, end
@@ -167,7 +167,7 @@ class ClipOutline:
 
     """
 
-    salutes: tuple[tuple[float, float], ...]
+    triggers: tuple[tuple[float, float], ...]
     strokes: tuple[tuple[float, float], ...]
     start: float
     end: float
@@ -178,7 +178,7 @@ class ClipOutline:
         """Return the parts of a recording."""
         time = recording.poses.time
         return cls(
-            salutes=find_salutes(recording, trigger),
+            triggers=find_triggers(recording, trigger),
             strokes=tuple(
                 (take.stroke_start, take.stroke_end)
                 for take in takes_in(recording, trigger=trigger)
@@ -188,15 +188,15 @@ class ClipOutline:
             moving=_find_movement(recording.poses),
         )
 
-    def count_salutes(self, start: float, end: float) -> int:
-        """Return how many salutes a range of seconds contains, wholly or in part."""
-        return sum(min(b, end) - max(a, start) >= LEAST_OVERLAP for a, b in self.salutes)
+    def count_triggers(self, start: float, end: float) -> int:
+        """Return how many triggers a range of seconds contains, wholly or in part."""
+        return sum(min(b, end) - max(a, start) >= LEAST_OVERLAP for a, b in self.triggers)
 
 
-def find_salutes(
+def find_triggers(
     recording: Recording, trigger: Trigger = SALUTE
 ) -> tuple[tuple[float, float], ...]:
-    """Return start and end, in seconds, of every salute, or other trigger, held long enough."""
+    """Return start and end, in seconds, of every trigger held long enough."""
     scores = np.maximum(*trigger.score(recording.poses, recording.salute))
     held, hold = scores >= ENTER_SCORE, POSE_SECONDS if trigger.start else HOLD_SECONDS
     steps = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]])))
@@ -265,10 +265,10 @@ def find_demonstration_faults(
 def find_range_faults(
     outline: ClipOutline, start: float, end: float, trigger: Trigger = SALUTE
 ) -> Iterator[DemonstrationFault]:
-    """Yield the fault of a range of a clip with these parts: salutes, a part missing, or rest."""
+    """Yield the fault of a range of a clip with these parts: triggers, a part missing, or rest."""
     better = _propose_range(outline, start, end)
-    if salutes := outline.count_salutes(start, end):
-        contained = describe_count(trigger, salutes)
+    if triggers := outline.count_triggers(start, end):
+        contained = describe_count(trigger, triggers)
         whole = start <= outline.start + LEAST_REST and end >= outline.end - LEAST_REST
         kind = FaultKind.whole_clip if whole else FaultKind.contains_salute
         words = f"is the whole clip, with {contained}" if whole else f"contains {contained}"

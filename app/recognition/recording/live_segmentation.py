@@ -21,9 +21,9 @@ from app.recognition.recording.segmentation import (
 )
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
-LONGEST_SALUTE = 10.0
-"""Seconds of a start salute kept in addition to the longest take: the transit takes one, and a
-camera that stalls may need some until the salute counts."""
+LONGEST_TRIGGER = 10.0
+"""Seconds of a start trigger kept in addition to the longest take: the transit takes one, and a
+camera that stalls may need some until the trigger counts."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,19 +32,19 @@ class Sight:
 
     Attributes
     ----------
-    salute
-        Score in [0, 1] of the best salute, or of the trigger that the language has instead.
+    score
+        Score in [0, 1] of the trigger; of a salute, that of the best hand.
     held
         Whether it has been held long enough to count, and still is.
     state
-        Whether the machine waits for a salute, is in a take, or waits for the end of the salute
+        Whether the machine waits for a trigger, is in a take, or waits for the end of the trigger
         that ended it.
     take
         The take that this frame ends, if it ends one.
 
     """
 
-    salute: float
+    score: float
     held: bool
     state: TakeState
     take: Take | None
@@ -53,7 +53,7 @@ class Sight:
 class LiveTakes:
     """Finds the takes of a camera's frames, one frame at a time.
 
-    Memory is bounded: only the landmarks of the longest take and its start salute are kept.
+    Memory is bounded: only the landmarks of the longest take and its start trigger are kept.
 
     Parameters
     ----------
@@ -112,16 +112,16 @@ class LiveTakes:
         if self._gap is None:
             self._drop_old_frames(time)
         return Sight(
-            salute=max(begin, end),
+            score=max(begin, end),
             held=self._machine.held,
             state=self._machine.state,
             take=take,
         )
 
     def cut_gap(self) -> Take | None:
-        """Cut out the gap before the salute with which the last frame began a take.
+        """Cut out the gap before the trigger with which the last frame began a take.
 
-        The gap lies between that salute and the one that ended the previous take. Where a salute
+        The gap lies between that trigger and the one that ended the previous take. Where a trigger
         was missed, all later ones are paired wrongly, and the gap is the take.
 
         Returns
@@ -132,7 +132,7 @@ class LiveTakes:
         return self._cut(self._gap)
 
     def end_gap(self) -> None:
-        """Let the salute that began a take with the last frame end the gap before it instead."""
+        """Let the trigger that began a take with the last frame end the gap before it instead."""
         self._machine.end_gap()
 
     def finish(self) -> Take | None:
@@ -149,6 +149,6 @@ class LiveTakes:
     def _drop_old_frames(self, time: float) -> None:
         machine = self._machine
         short = machine.state is TakeState.idle and not machine.remembers(time)
-        memory = LONGEST_SALUTE if short else LONGEST_TAKE + LONGEST_SALUTE
+        memory = LONGEST_TRIGGER if short else LONGEST_TAKE + LONGEST_TRIGGER
         while time - self._moments[0].time[0] > memory:
             self._moments.popleft()

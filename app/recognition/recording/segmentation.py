@@ -1,7 +1,6 @@
 """Segmentation: finds the takes of a recording or a stream, each between two triggers.
 
-A trigger is a salute unless a language names another one (`app.recognition.triggers`); what is said
-of salutes here holds for poses of the arms as well.
+A trigger is a salute unless a language names a pose of the arms (`app.recognition.triggers`).
 """
 
 from __future__ import annotations
@@ -30,11 +29,11 @@ class TakeState(str, Enum):
     """State of a `TakeMachine`."""
 
     idle = "idle"
-    """Waits for a salute."""
+    """Waits for a trigger."""
     recording = "recording"
-    """A salute was held; the gesture is shown, or about to be."""
+    """A trigger was held; the gesture is shown, or about to be."""
     done = "done"
-    """A second salute ended the take and is still held."""
+    """A second trigger ended the take and is still held."""
 
 
 @dataclass(frozen=True)
@@ -70,12 +69,12 @@ class Bracket:
 
 @dataclass
 class TakeMachine:
-    """Turns a stream of salute scores into takes.
+    """Turns a stream of trigger scores into takes.
 
-    Idle until a salute is held; then recording. The take begins when this salute is released and
-    ends where the next one begins. Then done, until that salute is released too: one salute never
+    Idle until a trigger is held; then recording. The take begins when this trigger is released and
+    ends where the next one begins. Then done, until that trigger is released too: one trigger never
     ends one take and begins the next.
-    A salute that returns within `shortest` seconds of its release continues. A take longer than
+    A trigger that returns within `shortest` seconds of its release continues. A take longer than
     `longest` seconds ends unclosed.
 
     Where start and stop triggers differ, each has its own effect: a start trigger during a take
@@ -84,7 +83,7 @@ class TakeMachine:
     Attributes
     ----------
     trigger
-        Detects held salutes.
+        Detects held triggers.
     stop
         Detects the stop trigger; None: the start trigger also ends a take.
     shortest, longest
@@ -92,8 +91,8 @@ class TakeMachine:
     state
         Current state.
     gap
-        What lies between the salute that ended the last take and the one that begins a take with
-        this frame; None with every other frame. Where a salute was missed, the gap is the take.
+        What lies between the trigger that ended the last take and the one that begins a take with
+        this frame; None with every other frame. Where a trigger was missed, the gap is the take.
 
     """
 
@@ -129,7 +128,7 @@ class TakeMachine:
         time
             Seconds, later than in every call before.
         score
-            Score in [0, 1] of the best salute (`best_salute`), or of the start trigger.
+            Score in [0, 1] of the start trigger; of a salute, of the best hand (`best_salute`).
         stop_score
             Score in [0, 1] of the stop trigger, for a machine with a `stop`.
 
@@ -157,7 +156,7 @@ class TakeMachine:
         return None
 
     def end_gap(self) -> None:
-        """Let the salute that began a take with this frame end the gap instead."""
+        """Let the trigger that began a take with this frame end the gap instead."""
         self.state, self._closing = TakeState.done, self._began
 
     def remembers(self, time: float) -> bool:
@@ -251,20 +250,20 @@ def create_held_pose() -> HeldTrigger:
 
 @dataclass(frozen=True)
 class Take:
-    """One take: what lies between two salutes.
+    """One take: what lies between two triggers.
 
     Attributes
     ----------
     start, end
-        Seconds in the clip: the release of the start salute, the beginning of the stop salute.
+        Seconds in the clip: the release of the start trigger, the beginning of the stop trigger.
     closed
-        Whether a stop salute ended it; else `end` is where the clip (or the time allowed) ends.
+        Whether a stop trigger ended it; else `end` is where the clip (or the time allowed) ends.
     poses
-        The stroke, without the transits from and to the salutes.
+        The stroke, without the transits from and to the triggers.
     stroke_start, stroke_end
         Seconds in the clip between which `poses` lies.
     untrimmed
-        Everything between the salutes.
+        Everything between the triggers.
 
     """
 
@@ -287,7 +286,7 @@ class Take:
         Raises
         ------
         PoseError
-            When they do not lie in order between the salutes.
+            When they do not lie in order between the triggers.
 
         """
         if not self.start <= start < end <= self.end:
@@ -309,14 +308,14 @@ def takes_in(
     recording
         The recording of a clip.
     trim
-        Whether to trim the transits from and to the salutes (`app.recognition.recording.trimming`).
+        Whether to trim the transits from and to the triggers (`recording.trimming`).
     trigger
         What begins and ends a take, as the language says (`Language.trigger`).
 
     Returns
     -------
-    The takes in order; none without salutes, and none for a language without trigger, whose
-    gestures a `Spotter` finds. Only the last one can be unclosed, unless a stop salute was
+    The takes in order; none without triggers, and none for a language without trigger, whose
+    gestures a `Spotter` finds. Only the last one can be unclosed, unless a stop trigger was
     forgotten for `LONGEST_TAKE` seconds, or start and stop triggers differ.
 
     """
@@ -327,7 +326,7 @@ def takes_in(
 
 
 def find_brackets(recording: Recording, trigger: Trigger = SALUTE) -> list[Bracket]:
-    """Find the salutes around each take of a recording; parameters and order as in `takes_in`."""
+    """Find the triggers around each take of a recording; parameters and order as in `takes_in`."""
     machine = TakeMachine.of(trigger)
     times = recording.poses.time.tolist()
     begin, end = trigger.score(recording.poses, recording.salute)
@@ -362,9 +361,9 @@ def cut_take(
     Parameters
     ----------
     poses
-        Poses that cover the bracket with its salutes.
+        Poses that cover the bracket with its triggers.
     bracket
-        The salutes around the take.
+        The triggers around the take.
     trim, trigger
         As in `takes_in`.
 

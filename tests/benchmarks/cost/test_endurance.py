@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.recognition.estimation import FrameLandmarks, Image
-from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE
 from app.robot import Frame, Notice, TriggerListener
 from benchmarks.cost.endurance import LoopedClip, allocated_bytes, endure, slope_of
@@ -69,7 +69,7 @@ def test_every_loop_says_the_same_in_the_same_memory() -> None:
             # confidence from 1.00 to 0.94.
             assert one.confidence == pytest.approx(first.confidence, abs=0.1)
         # Plus the frame whose stamp ends the longest take.
-        assert lap.remembered <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE + 1
+        assert lap.remembered <= (LONGEST_TAKE + LONGEST_TRIGGER) * RATE + 1
     settled = laps[len(laps) // 2 :]
     assert settled[-1].memory - settled[0].memory < 4e6
 

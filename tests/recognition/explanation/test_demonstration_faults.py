@@ -11,7 +11,7 @@ from app.recognition.explanation.demonstration_faults import (
     FaultKind,
     find_demonstration_faults,
     find_range_faults,
-    find_salutes,
+    find_triggers,
 )
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.segmentation import takes_in
@@ -20,9 +20,9 @@ from tests.recognition.explanation.test_causes import HOOK, change_body, corners
 from tests.recognition.strategies import recording
 
 CLIP = ClipOutline(
-    salutes=((0.5, 1.0), (4.0, 4.5)), strokes=((1.5, 3.5),), start=0.0, end=5.0, moving=(1.4, 3.6)
+    triggers=((0.5, 1.0), (4.0, 4.5)), strokes=((1.5, 3.5),), start=0.0, end=5.0, moving=(1.4, 3.6)
 )
-WITHOUT_SALUTES = ClipOutline(salutes=(), strokes=(), start=0.0, end=6.0, moving=(2.0, 4.0))
+WITHOUT_SALUTES = ClipOutline(triggers=(), strokes=(), start=0.0, end=6.0, moving=(2.0, 4.0))
 SALUTE = (-0.35, -0.9)
 
 
@@ -59,14 +59,14 @@ def test_rest_before_and_after_the_movement_is_a_fault() -> None:
     ("start", "end", "count"), [(0.0, 10.0, 2), (0.0, 1.0, 1), (0.7, 2.5, 0), (2.55, 3.0, 1)]
 )
 def test_salutes_that_a_range_contains_are_counted(start: float, end: float, count: int) -> None:
-    assert ClipOutline.of(recording_of("circle")).count_salutes(start, end) == count
+    assert ClipOutline.of(recording_of("circle")).count_triggers(start, end) == count
 
 
 def test_a_take_contains_none_of_its_salutes() -> None:
     made = recording_of("circle", "line")
     outline = ClipOutline.of(made)
-    assert len(find_salutes(made)) == 4
-    counts = [outline.count_salutes(take.start, take.end) for take in takes_in(made)]
+    assert len(find_triggers(made)) == 4
+    counts = [outline.count_triggers(take.start, take.end) for take in takes_in(made)]
     assert counts == [0, 0]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand
 from app.recognition.poses.sequence import join_sequences
 from app.recognition.recording.extraction import build_frame_sequence
-from app.recognition.recording.live_segmentation import LONGEST_SALUTE, LiveTakes, Sight
+from app.recognition.recording.live_segmentation import LONGEST_TRIGGER, LiveTakes, Sight
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState, takes_in
@@ -56,7 +56,7 @@ def test_what_goes_on_is_told_with_every_frame() -> None:
     states = [sight.state for sight in sights]
     assert states[0] is TakeState.idle
     assert {sight.state for sight in sights if sight.held} == {TakeState.recording, TakeState.done}
-    assert sights[states.index(TakeState.done)].salute > 0.9
+    assert sights[states.index(TakeState.done)].score > 0.9
 
 
 def test_a_salute_held_for_minutes_is_not_remembered_whole() -> None:
@@ -65,12 +65,12 @@ def test_a_salute_held_for_minutes_is_not_remembered_whole() -> None:
     rate = 10
     for frame in range(rate * 200):
         takes.feed(frame / rate, FrameLandmarks(body, (SALUTING,)))
-    assert len(takes) <= rate * (LONGEST_TAKE + LONGEST_SALUTE) + 1
+    assert len(takes) <= rate * (LONGEST_TAKE + LONGEST_TRIGGER) + 1
 
 
 def test_a_frame_without_anybody_is_a_frame() -> None:
     sight = LiveTakes(FRAME_SIZE).feed(3.0, FrameLandmarks(None, ()))
-    assert (sight.salute, sight.held, sight.state, sight.take) == (0.0, False, TakeState.idle, None)
+    assert (sight.score, sight.held, sight.state, sight.take) == (0.0, False, TakeState.idle, None)
 
 
 def test_a_take_that_was_begun_is_what_a_recording_cut_there_says() -> None:
@@ -101,4 +101,4 @@ def test_who_waits_for_a_salute_remembers_no_more_than_a_salute() -> None:
     takes = LiveTakes(FRAME_SIZE)
     for frame in range(300):
         takes.feed(frame / 10, FrameLandmarks(None, ()))
-    assert len(takes) <= 10 * LONGEST_SALUTE + 1
+    assert len(takes) <= 10 * LONGEST_TRIGGER + 1

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.recognition import PoseSequence, Recording, takes_in
-from app.recognition.recording.live_segmentation import LONGEST_SALUTE
+from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot import (
     ActiveLanguage,
@@ -139,7 +139,7 @@ def test_a_take_that_nobody_ends_is_rejected_after_a_minute_and_memory_stays_bou
     emitted: list[Event] = []
     for frame in range(1, round(100 * RATE)):
         emitted += listener.feed(moved(last, frame / RATE), 0.0)
-        assert len(listener) <= (LONGEST_TAKE + LONGEST_SALUTE) * RATE + 2
+        assert len(listener) <= (LONGEST_TAKE + LONGEST_TRIGGER) * RATE + 2
     (rejected,) = [event for event in emitted if isinstance(event, TakeRejected)]
     assert "no salute ended it within 60 s" in rejected.reason
     assert rejected.end - rejected.start == pytest.approx(LONGEST_TAKE)

@@ -16,9 +16,9 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.jobs.job import Job, JobCancelled, events_about, task_job
 from app.api.middleware.shutdown import stopping
+from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.api.services.salute_ranges import faults_of_language
 from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished

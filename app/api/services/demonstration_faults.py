@@ -1,4 +1,4 @@
-"""Salute ranges: the outline of a clip and the faults of its ranges as demonstrations, cached."""
+"""Demonstration faults: what is wrong with ranges of clips as demonstrations, cached."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ CACHED_CLIPS = 512
 languages."""
 
 
-def count_salutes_in_clip(
+def count_triggers_in_clip(
     studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
 ) -> int:
-    """Return how many salutes a range of a clip contains; 0 while its poses are not extracted."""
+    """Return how many triggers a range of a clip contains; 0 while its poses are not extracted."""
     path = _find_recording(studio, clip_id)
-    return 0 if path is None else _outline_of(path, trigger).count_salutes(start, end)
+    return 0 if path is None else _outline_of(path, trigger).count_triggers(start, end)
 
 
 def faults_of_source(
