@@ -7,6 +7,7 @@ landmarks into takes and recognitions.
 
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import (
+    AnswerGiven,
     Event,
     FrameRateChanged,
     FramesDropped,
@@ -39,6 +40,7 @@ Listener = TriggerListener
 
 __all__ = [
     "ActiveLanguage",
+    "AnswerGiven",
     "Event",
     "Frame",
     "FrameRateChanged",

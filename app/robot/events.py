@@ -18,6 +18,7 @@ from app.recognition import Recognition
 from app.recognition.language.file import short_code
 from app.recognition.phrases.parser import PhraseEvent
 from app.recognition.recording.segmentation import TakeState
+from app.robot.commands.answers import Answer
 
 JSON_TYPE: Final = "json_type"
 """Metadata key of a field whose type in JSON is another one; None: the field is not in JSON."""
@@ -168,6 +169,24 @@ class VehicleReported:
     """A line about the vehicle: what was asked of it, and what it did."""
 
     time: Seconds
+    text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
+
+
+@dataclass(frozen=True)
+class AnswerGiven:
+    """The robot answers the diver, by the pulses that the vehicle table lets him see."""
+
+    time: Seconds
+    answer: Annotated[
+        Answer,
+        Field(
+            description="listening: a gesture, or the next one of a message, is awaited. repeat: "
+            "the same again confirms. one_of_two: showing the one that was meant confirms it. "
+            "done: the vehicle has done it, or it is cancelled. refused: not understood, refused "
+            "or failed."
+        ),
+    ]
+    pulses: Annotated[int, Field(ge=1, description="Blinks of the lights, nods of the camera.")]
     text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
 
 
@@ -339,6 +358,7 @@ Event = (
     | FrameRateChanged
     | OutputFailed
     | VehicleReported
+    | AnswerGiven
     | StateChanged
     | LanguageChanged
     | LanguageRefused

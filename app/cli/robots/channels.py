@@ -15,6 +15,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
 from app.robot import (
     ActiveLanguage,
+    AnswerGiven,
     Event,
     Frame,
     FrameRateChanged,
@@ -32,6 +33,7 @@ from app.robot import (
     TakeRejected,
     VehicleReported,
 )
+from app.robot.commands.answers import Answer
 from app.robot.event_messages import format_line
 
 Handler = Callable[[Event], None]
@@ -111,12 +113,17 @@ class Channels:
                 for handler in self._handlers:
                     handler(current)
             # Outside the lock: the vehicle's own thread reports through `emit`.
-            if self.vehicle is not None and not isinstance(current, VehicleReported):
+            is_report = isinstance(current, VehicleReported | AnswerGiven)
+            if self.vehicle is not None and not is_report:
                 self.vehicle(current)
 
     def report_vehicle(self, text: str) -> None:
         """Pass a line about the vehicle to all channels."""
         self.emit(VehicleReported(self._time, text))
+
+    def report_answer(self, answer: Answer, pulses: int, text: str) -> None:
+        """Pass an answer to the diver to all channels."""
+        self.emit(AnswerGiven(self._time, answer, pulses, text))
 
     def _write(self, event: Event) -> list[OutputFailed]:
         """Write an event to the streams; return the failures."""

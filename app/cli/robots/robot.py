@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 import typer
 
@@ -22,6 +22,7 @@ from app.cli.robots.run import (
     profile_until_stopped,
     run_robot,
     run_with_uploads,
+    try_answers,
 )
 from app.recognition.errors import PublishError
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
@@ -101,6 +102,13 @@ def robot(
             "the language if there is none. Everybody who reaches the page can replace them.",
         ),
     ] = False,
+    answers: Annotated[
+        Literal["try"] | None,
+        typer.Option(
+            help="Only show each answer to the diver once, on the vehicle of --mavlink, as the "
+            "table of --vehicle says."
+        ),
+    ] = None,
     profile_stages: Annotated[
         bool,
         typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
@@ -111,12 +119,15 @@ def robot(
     A clip ends by itself, with exit code 1 when nothing was recognised in it; a camera runs until
     Ctrl-C or SIGTERM. SIGHUP reads the language file again.
     """
-    if context.obj and not ros2:
-        raise typer.BadParameter(f"{BEGIN} needs --ros2: add that option", context)
-    if (mavlink is None) != (vehicle is None):
-        raise typer.BadParameter("--mavlink and --vehicle need each other: give both", context)
-    if upload and not page:
-        raise typer.BadParameter("--upload needs --page: give both", context)
+    lacking = {
+        f"{BEGIN} needs --ros2: add that option": bool(context.obj) and not ros2,
+        "--mavlink and --vehicle need each other: give both": (mavlink is None)
+        != (vehicle is None),
+        "--upload needs --page: give both": upload and not page,
+        "--answers needs --mavlink and --vehicle: give all three": bool(answers) and not mavlink,
+    }
+    for fault in (words for words, lacks in lacking.items() if lacks):
+        raise typer.BadParameter(fault, context)
     options = RobotOptions(
         language=language,
         source=source,
@@ -133,6 +144,9 @@ def robot(
     )
     if profile_stages:
         profile_until_stopped(options)
+        return
+    if answers:
+        try_answers(options)
         return
     channels = Channels(ends_with_reader=mavlink is None)
     channels.add(partial(report_event, ServiceManager()))

@@ -36,6 +36,7 @@ from app.robot import (
     create_listener,
     open_source,
 )
+from app.robot.commands.answers import Answer
 from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import Network, open_publisher
 from app.robot.runtime import Observer
@@ -225,6 +226,7 @@ def run_robot(
                 listener,
                 frames,
                 channels.report_vehicle,
+                channels.report_answer,
                 without_salutes=options.without_salutes,
             )
             channels.vehicle = opened.enter_context(closing(bridge)).publish
@@ -255,6 +257,51 @@ def emit_all(events: Iterable[Event], channels: Channels) -> int:
             recognised += isinstance(event, TakeRecognized)
             channels.emit(event)
     return recognised
+
+
+def try_answers(options: RobotOptions) -> None:
+    """Show every answer to the diver once, and say which.
+
+    Raises
+    ------
+    VehicleError
+        When the table has no answers, or one could not be shown.
+
+    """
+    assert options.mavlink is not None
+    assert options.vehicle is not None
+    from app.robot.mavlink.answers import NOT_SHOWN
+    from app.robot.mavlink.table import read_vehicle_table
+
+    if read_vehicle_table(options.vehicle).answers is None:
+        raise VehicleError(f"{options.vehicle} has no [answers]; see docs/robots/mavlink.md")
+    missing: list[str] = []
+
+    def tell(text: str) -> None:
+        people.print(text, markup=False, highlight=False, soft_wrap=True)
+        missing.extend([text] if text.startswith(NOT_SHOWN) else [])
+
+    with ExitStack() as opened:
+        watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
+        listener = options.open_listener(watcher.first)
+        bridge = open_bridge(
+            options.mavlink,
+            options.vehicle,
+            listener,
+            None,
+            tell,
+            lambda answer, pulses, text: tell(f"{pulses} {text}"),
+            without_salutes=options.without_salutes,
+        )
+        opened.enter_context(closing(bridge))
+        stops: list[bool] = []
+        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
+        for answer in Answer:
+            bridge.answer(answer, f"{answer.value}: {answer.words}")
+            while not (bridge.has_answered or stops):
+                clock.sleep(WAIT_STEP)
+    if missing:
+        raise VehicleError(missing[0])
 
 
 def profile_until_stopped(options: RobotOptions) -> None:
@@ -306,8 +353,9 @@ def open_bridge(
     address: str,
     table_file: Path,
     listener: LandmarkListener,
-    source: Source,
+    source: Source | None,
     tell: Callable[[str], None],
+    tell_answer: Callable[[Answer, int, str], None],
     *,
     without_salutes: bool,
 ) -> MavlinkBridge:
@@ -320,9 +368,10 @@ def open_bridge(
     table_file
         Vehicle table.
     listener, source
-        What recognises gestures, and where its frames come from.
-    tell
-        Called with every line about the vehicle, from any thread.
+        What recognises gestures, and where its frames come from; None: from nowhere.
+    tell, tell_answer
+        Called with every line about the vehicle, and with every answer to the diver, its pulses and
+        its words; from any thread.
     without_salutes
         Whether gestures are spotted without triggers, whatever the language's.
 
@@ -362,7 +411,13 @@ def open_bridge(
     link = open_link(address, table.vehicle.system, table.vehicle.component, key)
     now = source.now if isinstance(source, LiveSource) else None
     return MavlinkBridge(
-        table, link, lambda: listener.language, tell, now, without_salutes=without_salutes
+        table,
+        link,
+        lambda: listener.language,
+        tell,
+        now,
+        tell_answer,
+        without_salutes=without_salutes,
     )
 
 

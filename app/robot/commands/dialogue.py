@@ -16,7 +16,8 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-# Relative, because ROS 2's package has links to both files and no `app`.
+# Relative, because ROS 2's package has links to these files and no `app`.
+from .answers import Answer, find_phrase_answer
 from .rules import EMERGENCY_LIMIT, Rules
 
 MOST_BODIES = 32
@@ -143,6 +144,8 @@ class Decision:
         One line for the diver's display and the log.
     cancels
         Whether the diver takes back what was asked before, also a command in progress.
+    answer
+        What the diver should see; None: nothing, or not before the command is carried out.
 
     """
 
@@ -151,6 +154,7 @@ class Decision:
     label: str | None = None
     emergency: bool = False
     cancels: bool = False
+    answer: Answer | None = None
 
 
 @dataclass(frozen=True)
@@ -240,7 +244,8 @@ class CommandDialogue:
         if self.pending is None or table == before:
             return None
         label, self.pending = self.pending.label, None
-        return Decision(f"{label!r} is forgotten: another language was loaded; show it again")
+        words = f"{label!r} is forgotten: another language was loaded; show it again"
+        return Decision(words, answer=Answer.refused)
 
     def decide(self, gesture: RecognizedGesture, now: float) -> Decision:
         """Decide about a gesture.
@@ -278,7 +283,7 @@ class CommandDialogue:
             return self._decide_label(label, gesture)
         if pair is not None:
             return self._decide_pair(pair, gesture)
-        return Decision("not understood; show the gesture again")
+        return Decision("not understood; show the gesture again", answer=Answer.refused)
 
     def decide_phrase(self, phrase: RecognizedPhrase, now: float) -> Decision:
         """Decide about a phrase event, which follows a gesture or a pause.
@@ -313,11 +318,13 @@ class CommandDialogue:
             self.pending = replace(pending, deadline=phrase.stamp + self.rules.confirm_seconds)
         stays = phrase.kind in ("continues", "repeat")
         stays |= phrase.kind == "outside" and phrase.label is None
+        answer = find_phrase_answer(phrase.kind, phrase.label, phrase.pair)
         if pending is None or stays:
-            urgent = phrase.pair is not None and self.rules.emergency.intersection(phrase.pair)
-            return Decision(self._ask(phrase.pair) if urgent and phrase.pair else phrase.text)
+            if phrase.pair is not None and self.rules.emergency.intersection(phrase.pair):
+                return self._ask(phrase.pair)
+            return Decision(phrase.text, answer=answer)
         self.pending = None
-        return Decision(f"{phrase.text}; {pending.label!r} is forgotten")
+        return Decision(f"{phrase.text}; {pending.label!r} is forgotten", answer=answer)
 
     def check_deadline(self, now: float) -> Decision | None:
         """Clear the pending gesture or message after its deadline.
@@ -338,7 +345,8 @@ class CommandDialogue:
         if pending is None or now <= pending.deadline + self.rules.stale_seconds:
             return None
         self.pending = None
-        return Decision(f"{pending.label!r} was not repeated in time; show it twice")
+        words = f"{pending.label!r} was not repeated in time; show it twice"
+        return Decision(words, answer=Answer.refused)
 
     def _follow_clock(self, now: float) -> None:
         """Store the time; when the clock was set back, shift all stored times with it."""
@@ -420,9 +428,9 @@ class CommandDialogue:
             return Decision(f"{label!r} counts within a phrase only", label=label)
         if label in self.rules.cancel:
             what = f"{pending.label!r} is cancelled" if pending else "nothing to cancel"
-            return Decision(what, label=label, cancels=True)
+            return Decision(what, label=label, cancels=True, answer=Answer.done)
         if command is None:
-            return Decision(f"{label!r} has no command", label=label)
+            return Decision(f"{label!r} has no command", label=label, answer=Answer.refused)
         if label in self.rules.emergency:
             return Decision(f"emergency {label!r}: {command}", command, label, emergency=True)
         repeated = self._is_repetition(pending, gesture) and pending and label in pending.labels
@@ -430,17 +438,18 @@ class CommandDialogue:
             return Decision(f"{label!r}: {command}", command, label)
         deadline = gesture.stamp + self.rules.confirm_seconds
         self.pending = Pending(label, deadline, body_id=gesture.body_id, labels=(label,))
-        return Decision(f"repeat {label!r} to confirm: {command}", label=label)
+        words = f"repeat {label!r} to confirm: {command}"
+        return Decision(words, label=label, answer=Answer.repeat)
 
     def _decide_pair(self, pair: tuple[str, str], gesture: RecognizedGesture) -> Decision:
         """Ask which of two gestures was meant; the next showing decides, and confirms."""
         pending = self.pending
         if (pending and pending.mission) or self._phrase_only.issuperset(pair):
-            return Decision(self._ask(pair))
+            return self._ask(pair)
         self.pending = None
         in_time = pending if self._is_repetition(pending, gesture) else None
         if in_time and in_time.asked:
-            return Decision("not understood; begin again")
+            return Decision("not understood; begin again", answer=Answer.refused)
         # What was shown alone before is confirmed by itself only.
         before = () if in_time is None else in_time.labels
         labels = tuple(each for each in pair if each in before) or pair
@@ -452,12 +461,12 @@ class CommandDialogue:
             labels=labels,
             asked=True,
         )
-        return Decision(self._ask(pair))
+        return self._ask(pair)
 
-    def _ask(self, pair: tuple[str, str]) -> str:
-        """Return the question which gesture was meant, with an emergency first."""
+    def _ask(self, pair: tuple[str, str]) -> Decision:
+        """Ask which gesture was meant, with an emergency first."""
         named = sorted(pair, key=lambda each: each not in self.rules.emergency)
-        return f"{' or '.join(named)}? show it again"
+        return Decision(f"{' or '.join(named)}? show it again", answer=Answer.one_of_two)
 
     @property
     def _phrase_only(self) -> frozenset[str]:
@@ -468,13 +477,14 @@ class CommandDialogue:
         """Decide about a complete message, which may confirm `pending`."""
         # True for NaN too: what is no share of 1 is no confidence.
         if not self.rules.least_confidence <= phrase.confidence <= 1:
-            return Decision("not understood; show the message again")
+            return Decision("not understood; show the message again", answer=Answer.refused)
         self.pending = None
         if not self.rules.confirmed or (pending and pending.mission == phrase.mission):
             return Decision(phrase.text, phrase.mission, phrase.text)
         deadline = phrase.stamp + self.rules.confirm_seconds
         self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
-        return Decision(f"repeat the message to confirm: {phrase.text}", label=phrase.text)
+        words = f"repeat the message to confirm: {phrase.text}"
+        return Decision(words, label=phrase.text, answer=Answer.repeat)
 
 
 def _name(input_: RecognizedGesture | RecognizedPhrase) -> str:

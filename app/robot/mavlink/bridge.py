@@ -6,14 +6,16 @@ import json
 import math
 import threading
 import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import OsgError, VehicleError
+from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
+from app.robot.commands.answers import Answer
 from app.robot.commands.dialogue import (
     CommandDialogue,
     CommandTable,
@@ -29,6 +31,7 @@ from app.robot.events import (
     PhraseHeard,
     RecognitionReady,
     SourceEnded,
+    StateChanged,
     TakeRecognized,
     TakeRejected,
 )
@@ -36,7 +39,10 @@ from app.robot.mavlink.actions import Message, Step, build_steps
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
 from app.robot.mavlink.peer import VehiclePeer
-from app.robot.mavlink.table import Action, VehicleTable
+from app.robot.mavlink.table import Action, Answers, Vehicle, VehicleTable
+
+if TYPE_CHECKING:
+    from app.robot.mavlink.answers import AnswerDesk
 
 TEXT_BYTES: Final = 50
 """Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
@@ -62,6 +68,16 @@ SEVERITIES: Final = {
 }
 
 
+ANSWERS: Final = {
+    "done": Answer.done,
+    "cancelled": Answer.done,
+    "refused": Answer.refused,
+    "unanswered": Answer.refused,
+    "stopped": Answer.refused,
+}
+"""Answers to the diver about an order that ended; the others go on, or are told by the next one."""
+
+
 class MavlinkBridge:
     """Bridge from a robot's events to a vehicle; a `Publisher`.
 
@@ -81,6 +97,9 @@ class MavlinkBridge:
     now
         Returns the current time in seconds of the source's clock; None takes the time of the last
         event, for recordings.
+    tell_answer
+        Called with every answer that the table lets the diver see, its number of pulses, and its
+        words.
     without_salutes
         Whether gestures are spotted without triggers, whatever the language's.
 
@@ -93,6 +112,7 @@ class MavlinkBridge:
         language: Callable[[], ActiveLanguage],
         tell: Callable[[str], None],
         now: Callable[[], float] | None = None,
+        tell_answer: Callable[[Answer, int, str], None] = lambda answer, pulses, text: None,
         *,
         without_salutes: bool = False,
     ) -> None:
@@ -101,11 +121,17 @@ class MavlinkBridge:
         self._language = language
         self._tell_people = tell
         self._now = now
+        self._tell_answer = tell_answer
+        self._answers = (
+            None if table.answers is None else open_answers(table.answers, table.vehicle)
+        )
+        self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
         self._dialogue = CommandDialogue(table.rules)
         self._desk = OrderDesk(table.vehicle)
         self._texts: list[Message] = []
+        self._handed: list[Message] = []
         self._pictures = 0
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
@@ -150,12 +176,28 @@ class MavlinkBridge:
                     self._say(event.words, mavlink.MAV_SEVERITY_WARNING)
                 case RecognitionReady():
                     self._say("ready for gestures", mavlink.MAV_SEVERITY_NOTICE)
+                    self.answer(Answer.listening, "ready for gestures")
+                case StateChanged(state=state) if self._answers is not None:
+                    self._answers.is_take_open = state is TakeState.recording
                 case OutputFailed(output=output):
                     self._say(f"{output} cannot be written", mavlink.MAV_SEVERITY_WARNING)
                 case SourceEnded(stopped=True):
                     self._report(self._desk.stop("robot is stopped"))
                 case _:
                     pass
+
+    @property
+    def has_answered(self) -> bool:
+        """Whether nothing is shown to the diver, or waits to be shown."""
+        return self._answers is None or self._answers.is_idle
+
+    def answer(self, answer: Answer | None, text: str, *, emergency: bool = False) -> None:
+        """Show an answer to the diver, if the table says how; None: there is none."""
+        if answer is None or self._answers is None or self._table.answers is None:
+            return
+        with self._lock:
+            self._answers.give(answer, clock.monotonic(), emergency=emergency)
+        self._tell_answer(answer, self._table.answers.count_pulses(answer), text)
 
     def close(self) -> None:
         """Wait for the active order, at most `CLOSE_SECONDS`, and disconnect.
@@ -234,11 +276,17 @@ class MavlinkBridge:
 
     def _act(self, decision: Decision, actions: Sequence[Action]) -> None:
         """Announce the decision and send its actions to the vehicle."""
+        # One gesture may be decided about twice, alone and as a part of a message.
+        is_first = self._time > self._answered
+        if actions or decision.answer is not None:
+            self._answered = self._time
         if decision.cancels and (outcome := self._desk.cancel()):
             self._report(outcome)
             return
         if not actions:
             self._say(decision.reason)
+            if is_first:
+                self.answer(decision.answer, decision.reason)
             return
         words = ", ".join(action.words for action in actions)
         steps: list[Step] = []
@@ -251,8 +299,10 @@ class MavlinkBridge:
         now = clock.monotonic()
         if fault := self._peer.find_fault(now):
             self._report(Outcome(order, "stopped", fault))
-        else:
-            self._report(self._desk.give(order, now))
+            return
+        if self._answers is not None:
+            self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
+        self._report(self._desk.give(order, now))
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -299,28 +349,47 @@ class MavlinkBridge:
             with self._lock:
                 self._report(self._desk.stop("robot has ended"))
             return False
-        return self._desk.order is not None or bool(self._texts)
+        shows = self._answers is not None and self._answers.is_active
+        return self._desk.order is not None or bool(self._texts) or shows
 
     def _step(self, packets: Sequence[Packet]) -> list[Message]:
         """Process the received messages and return the messages to send."""
         now = clock.monotonic()
         self._peer.expect(self._link.expected)
         for message, sender in packets:
-            if self._peer.admit(message, sender, now, busy=self._desk.order is not None):
+            if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
+                continue
+            if self._answers is None or not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now))
         self._report(self._desk.check_deadline(now))
         decision = self._dialogue.check_deadline(self._source_time())
         if decision is not None:
             self._say(decision.reason)
+            self.answer(decision.answer, decision.reason)
         self._watch_vehicle(now)
         # Orders first: an emergency does not wait for texts, of which each may take its time.
-        due = [*self._desk.list_due(now)] if self._peer.is_proven(now) else []
+        due = [*self._handed, *self._desk.list_due(now)] if self._peer.is_proven(now) else []
+        self._handed.clear()
         due += self._texts
         self._texts.clear()
+        due += self._list_answers(now)
         if now - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = now
             due.append(build_heartbeat())
         return due
+
+    def _list_answers(self, now: float) -> Iterator[Message]:
+        """Yield the messages that show answers to the diver."""
+        if self._answers is None:
+            return
+        is_proven = self._peer.is_proven(now)
+        if self._closing.is_set() or not is_proven:
+            self._answers.stop(now)
+        if is_proven:
+            yield from self._answers.list_due(now, may_begin=not self._closing.is_set())
+        for notice in self._answers.notices:
+            self._tell_people(notice)
+        self._answers.notices.clear()
 
     def _watch_vehicle(self, now: float) -> None:
         """Announce that the vehicle is silent, is back, has restarted, or must not be commanded."""
@@ -337,6 +406,8 @@ class MavlinkBridge:
         if self._desk.reboots != self._reboots:
             self._reboots = self._desk.reboots
             self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
+            if self._answers is not None:
+                self._answers.forget()
 
     def _report(self, outcome: Outcome | None) -> None:
         """Announce what became of an order; None: nothing new."""
@@ -353,6 +424,7 @@ class MavlinkBridge:
             "waits": f"{outcome.answer}: {words}",
         }[outcome.kind]
         self._say(text, SEVERITIES[outcome.kind])
+        self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
 
     def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         """Announce a text here and on the displays of the vehicle's network."""
@@ -363,6 +435,13 @@ class MavlinkBridge:
         if not self._broken:
             self._broken = True
             self._tell_people(f"no connection to the vehicle: {reason}")
+
+
+def open_answers(answers: Answers, vehicle: Vehicle) -> AnswerDesk:
+    """Open the answers of a table."""
+    from app.robot.mavlink.answers import AnswerDesk
+
+    return AnswerDesk(answers, vehicle)
 
 
 def build_heartbeat() -> Message:

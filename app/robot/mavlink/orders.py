@@ -197,7 +197,7 @@ class OrderDesk:
         that the vehicle is disarmed.
 
         """
-        if not self._is_from_vehicle(message):
+        if not is_from_vehicle(message, self._vehicle):
             return None
         self._note_state(message, now)
         if self.order is None:
@@ -248,18 +248,6 @@ class OrderDesk:
             return self._end("refused", answer)
         told, self._refused = self._refused, True
         return None if told else Outcome(self.order, "refused", answer)
-
-    def _is_from_vehicle(self, message: Message) -> bool:
-        vehicle = self._vehicle
-        sender = (message.get_srcSystem(), message.get_srcComponent())
-        if message.get_type() != "COMMAND_ACK":
-            return sender == (vehicle.system, vehicle.component)
-        # Answers to a ground station arrive here too; older vehicles send no address.
-        ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
-        answering = (
-            (vehicle.system, part) for part in (vehicle.component, vehicle.camera_component)
-        )
-        return sender in answering and (message.target_system, message.target_component) in ours
 
     def _note_uptime(self, uptime: int, now: float) -> None:
         """Detect a restart of the vehicle, which has then lost its orders."""
@@ -377,6 +365,17 @@ class ModeWatch:
         self._overrides += 1
         if self._overrides >= MOST_OVERRIDES:
             self.contradiction = f"stays in {name_mode(mode)}"
+
+
+def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
+    """Return whether a message is the vehicle's own report, or its answer to us."""
+    sender = (message.get_srcSystem(), message.get_srcComponent())
+    if message.get_type() != "COMMAND_ACK":
+        return sender == (vehicle.system, vehicle.component)
+    # Answers to a ground station arrive here too; older vehicles send no address.
+    ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
+    answering = ((vehicle.system, part) for part in (vehicle.component, vehicle.camera_component))
+    return sender in answering and (message.target_system, message.target_component) in ours
 
 
 def name_mode(mode: int) -> str:

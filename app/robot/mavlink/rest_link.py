@@ -24,7 +24,8 @@ POLL_SECONDS: Final = 0.1
 """Seconds between two polls: well below the vehicle's heartbeat period of one second."""
 
 WANTED: Final = ("HEARTBEAT", "COMMAND_ACK", "SYSTEM_TIME", "VFR_HUD", "NAV_CONTROLLER_OUTPUT")
-"""Messages that report the state of the vehicle."""
+"""Messages that report the state of the vehicle; further ones are polled once they are requested
+(``SET_MESSAGE_INTERVAL``)."""
 
 RENAMED: Final = {"type": "mavtype"}
 """Fields with another name in mavlink2rest, where ``type`` names the message."""
@@ -69,11 +70,17 @@ class RestLink:
         self.dropped = 0
         # Messages from before the connection answer no request of ours.
         self._counters: dict[str, int] = {}
+        self._wanted: dict[str, None] = {}
         for name in WANTED:
-            self._fetch(name)
+            self._poll(name)
 
     def send(self, message: Message, to: Sender | None) -> None:
         """Send a message; `to` is the server."""
+        requests = message.get_type() == "COMMAND_LONG" and (
+            message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+        )
+        if requests:
+            self._poll(mavlink.mavlink_map[int(message.param1)].msgname)
         header = {"system_id": self._system, "component_id": OUR_COMPONENT, "sequence": 0}
         body = json.dumps({"header": header, "message": to_json(message)}, allow_nan=False)
         self._request("POST", self._path, body)
@@ -81,12 +88,18 @@ class RestLink:
     def receive(self, seconds: float) -> list[tuple[Message, Sender]]:
         """Return the new messages."""
         clock.sleep(min(seconds, POLL_SECONDS))
-        news = (self._fetch(name) for name in WANTED)
+        news = (self._fetch(name) for name in self._wanted)
         return [(message, ()) for message in news if message is not None]
 
     def close(self) -> None:
         """Close the connection."""
         self._connection.close()
+
+    def _poll(self, name: str) -> None:
+        """Poll a message from now on."""
+        if name not in self._wanted:
+            self._wanted[name] = None
+            self._fetch(name)
 
     def _fetch(self, name: str) -> Message | None:
         """Return the last message of a kind if it is new."""
@@ -164,7 +177,7 @@ def from_json(content: Mapping[str, Any]) -> Message:
             value = math.nan
         if isinstance(value, Mapping):
             value = value["bits"] if "bits" in value else getattr(mavlink, value["type"])
-        elif isinstance(value, list):
+        elif isinstance(value, list) and all(isinstance(each, str) for each in value):
             value = "".join(value).rstrip("\0").encode()
         values[name] = value
     return kind(**values)

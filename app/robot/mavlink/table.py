@@ -18,6 +18,7 @@ from typing_extensions import Self
 
 from app.recognition import Language
 from app.recognition.errors import VehicleError
+from app.robot.commands.answers import PULSES, Answer
 from app.robot.commands.rules import (
     CONFIRM_SECONDS,
     EMERGENCY_AGE_SECONDS,
@@ -181,6 +182,44 @@ class Vehicle(_Entry):
     key_file: Annotated[str, Field(min_length=1)] | None = None
 
 
+Pulses = Annotated[int, Field(ge=1, le=9)]
+
+
+class Answers(_Entry):
+    """How the vehicle answers the diver; see `app.robot.commands.answers`.
+
+    Attributes
+    ----------
+    show
+        What shows the pulses: ``lights`` blink, ``tilt`` nods the camera. The camera that films the
+        diver must be another one, because its picture would move.
+    listening, repeat, one_of_two, done, refused
+        Number of pulses of each answer, all different.
+
+    """
+
+    show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1)]
+    listening: Pulses = PULSES[Answer.listening]
+    repeat: Pulses = PULSES[Answer.repeat]
+    one_of_two: Pulses = PULSES[Answer.one_of_two]
+    done: Pulses = PULSES[Answer.done]
+    refused: Pulses = PULSES[Answer.refused]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        """Refuse what a diver could not tell apart."""
+        counts = [self.count_pulses(answer) for answer in Answer]
+        if twice := sorted({each for each in counts if counts.count(each) > 1}):
+            raise ValueError(f"two answers have {twice[0]} pulses; give each its own number")
+        if len(set(self.show)) < len(self.show):
+            raise ValueError(f"show names {self.show[0]!r} twice; name it once")
+        return self
+
+    def count_pulses(self, answer: Answer) -> int:
+        """Return the number of blinks or nods of an answer."""
+        return int(getattr(self, answer.value))
+
+
 class VehicleTable(_Entry):
     """Table of the actions that gestures and phrases have, read from a file.
 
@@ -198,6 +237,8 @@ class VehicleTable(_Entry):
         As in `app.robot.commands.rules.Rules`.
     vehicle
         Address of the vehicle, and its limits.
+    answers
+        How it answers the diver; None: it does not.
 
     """
 
@@ -213,6 +254,7 @@ class VehicleTable(_Entry):
     emergency_seconds: Annotated[float, Field(ge=0.1, le=60)] = EMERGENCY_AGE_SECONDS
     emergency_confidence: Annotated[float, Field(ge=0, le=1)] = EMERGENCY_CONFIDENCE
     vehicle: Vehicle = Vehicle()
+    answers: Answers | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:

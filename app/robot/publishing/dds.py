@@ -20,8 +20,10 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
+from app.robot.commands.answers import PULSE_SECONDS
 from app.robot.event_messages import format_line
 from app.robot.events import (
+    AnswerGiven,
     Event,
     LanguageChanged,
     PhraseHeard,
@@ -29,7 +31,14 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.publishing.dds_messages import GestureRecognition, Header, Phrase, String, Time
+from app.robot.publishing.dds_messages import (
+    Answer,
+    GestureRecognition,
+    Header,
+    Phrase,
+    String,
+    Time,
+)
 
 NAMESPACE: Final = "osg"
 """First part of the topic names, such as ``/osg/events``."""
@@ -73,8 +82,9 @@ class DdsPublisher:
     ``/osg/events`` (``std_msgs/String``) carries the JSON line of every event,
     ``/osg/recognition`` (``osg_interfaces/GestureRecognition``) every take,
     ``/osg/recognized_gesture`` (``std_msgs/String``, the topic of the published ROS port) the label
-    of every recognised take, and ``/osg/phrase`` (``osg_interfaces/Phrase``) the phrase event of
-    each take or pause in a language with phrases.
+    of every recognised take, ``/osg/phrase`` (``osg_interfaces/Phrase``) the phrase event of each
+    take or pause in a language with phrases, and ``/osg/answer`` (``osg_interfaces/Answer``) every
+    answer to the diver.
 
     Parameters
     ----------
@@ -100,6 +110,7 @@ class DdsPublisher:
             self._labels = self._writer("recognized_gesture", String)
             self._takes = self._writer("recognition", GestureRecognition)
             self._phrases = self._writer("phrase", Phrase)
+            self._answers = self._writer("answer", Answer)
         except DDSException as error:
             raise PublishError(
                 f"DDS domain {number} cannot be joined ({error}); is there a network? For this "
@@ -126,10 +137,20 @@ class DdsPublisher:
             self._labels.write(String(event.label))
         if isinstance(event, PhraseHeard):
             self._phrases.write(self._phrase(event))
+        if isinstance(event, AnswerGiven):
+            self._answers.write(
+                Answer(
+                    header=Header(self._stamp(event.time)),
+                    answer=event.answer.value,
+                    pulses=event.pulses,
+                    pulse_seconds=PULSE_SECONDS,
+                    text=event.text,
+                )
+            )
 
     def close(self) -> None:
         """Leave the domain."""
-        del self._events, self._labels, self._takes, self._phrases
+        del self._events, self._labels, self._takes, self._phrases, self._answers
         del self._participant, self._domain
 
     def _writer(self, name: str, kind: type[Sample]) -> DataWriter[Sample]:

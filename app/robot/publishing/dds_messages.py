@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import float64, int32, sequence, uint32
+from cyclonedds.idl.types import float32, float64, int32, sequence, uint8, uint32
 
 
 @dataclass
@@ -51,6 +51,17 @@ class GestureRecognition(IdlStruct, typename="osg_interfaces::msg::dds_::Gesture
     report: str = ""
     pair: sequence[str] = field(default_factory=list)
     novelty: float64 = 0.0
+
+
+@dataclass
+class Answer(IdlStruct, typename="osg_interfaces::msg::dds_::Answer_"):
+    """``osg_interfaces/Answer``; its ``.msg`` file describes the fields."""
+
+    header: Header = field(default_factory=Header)
+    answer: str = ""
+    pulses: uint8 = 0
+    pulse_seconds: float32 = 0.0
+    text: str = ""
 
 
 @dataclass

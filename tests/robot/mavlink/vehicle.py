@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import random
 import threading
@@ -50,8 +51,14 @@ class Ardusub:
         Whether it accepts modes, and stays in the old one until this is False.
     pilot
         Mode that a pilot sets again before every heartbeat; None: there is no pilot.
+    lights
+        Pulse length of its lights at the start, in microseconds.
     key
         Key of its signatures; None: it signs nothing.
+    reports
+        Messages that it was asked to report, by number: the lights' output, the gimbal's attitude.
+    shown
+        Every change of lights or tilt, with its time: what a diver sees.
 
     """
 
@@ -68,7 +75,10 @@ class Ardusub:
     armed: bool = True
     is_slow: bool = False
     pilot: int | None = None
+    lights: float = 1100.0
     key: bytes | None = None
+    reports: set[int] = field(default_factory=set)
+    shown: list[tuple[float, str, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self._chance = random.Random(self.seed)
@@ -100,7 +110,8 @@ class Ardusub:
     def _boot(self) -> None:
         self.mode: int = mavlink.SUB_MODE_MANUAL
         self.target = -DEPTH
-        self.pulse = 0.0
+        self.pulse = self.lights
+        self.pitch = 0.0
         self._picture = 0.0
         self._began = clock.monotonic() - 10
 
@@ -138,6 +149,24 @@ class Ardusub:
         self._send(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -DEPTH, 0))
         error = self.target + DEPTH
         self._send(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, error, 0, 0))
+
+        if mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW in self.reports:
+            outputs = [*[1500] * 12, round(self.pulse), *[1500] * 3]
+            self._send(mavlink.MAVLink_servo_output_raw_message(0, 0, *outputs))
+        if mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS in self.reports:
+            half = math.radians(self.pitch) / 2
+            attitude = [math.cos(half), 0.0, math.sin(half), 0.0]
+            self._send(
+                mavlink.MAVLink_gimbal_device_attitude_status_message(
+                    0, 0, uptime, 0, attitude, 0, 0, 0, 0
+                )
+            )
+
+    def turn_lights(self, pulse: float) -> None:
+        """Set the lights, as a pilot does too."""
+        if self.pulse != pulse:
+            self.pulse = pulse
+            self.shown.append((clock.monotonic(), "lights", pulse))
 
     def _hear(self, message: Any) -> None:
         match message.get_type():
@@ -178,7 +207,14 @@ class Ardusub:
                 self._take_mode(self._accepted)
         elif message.command == mavlink.MAV_CMD_DO_SET_SERVO:
             done = f"servo {message.param1:g} {message.param2:g}"
-            done, self.pulse = "" if self.pulse == message.param2 else done, message.param2
+            done = "" if self.pulse == message.param2 else done
+            self.turn_lights(message.param2)
+        elif message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
+            if self.pitch != message.param1:
+                self.pitch = message.param1
+                self.shown.append((clock.monotonic(), "tilt", message.param1))
+        elif message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+            self.reports.add(int(message.param1))
         elif message.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
             done = "" if self._picture == message.param4 else "picture"
             self._picture = message.param4

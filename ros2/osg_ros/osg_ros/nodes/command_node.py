@@ -11,9 +11,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from osg_interfaces.msg import ActiveLanguage as LanguageMessage
-from osg_interfaces.msg import Command, CommandState, GestureRecognition, Phrase
+from osg_interfaces.msg import Answer, Command, CommandState, GestureRecognition, Phrase
 from std_msgs.msg import Header
 
+from osg_ros.commands.answers import PULSE_SECONDS, PULSES
 from osg_ros.commands.dialogue import (
     CommandDialogue,
     CommandTable,
@@ -131,6 +132,8 @@ class CommandNode(ManagedNode):
         self._dialogue = CommandDialogue(rules)
         self._commands = self.add_publisher(Command, "command", RESULTS)
         self._state = self.add_publisher(CommandState, "command_state", LATCHED)
+        self._answers = self.add_publisher(Answer, "answer", RESULTS)
+        self._answered = 0
 
     def begin(self) -> None:
         """Subscribe, with an empty dialogue."""
@@ -238,6 +241,19 @@ class CommandNode(ManagedNode):
             state.label = pending.label
             state.deadline = to_stamp(round(pending.deadline * NANOSECONDS))
         self._state.publish(state)
+        # One gesture may be decided about twice, alone and as a part of a message.
+        if decision.answer is None or stamp == self._answered:
+            return
+        self._answered = stamp
+        self._answers.publish(
+            Answer(
+                header=state.header,
+                answer=decision.answer.value,
+                pulses=PULSES[decision.answer],
+                pulse_seconds=PULSE_SECONDS,
+                text=decision.reason,
+            )
+        )
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)

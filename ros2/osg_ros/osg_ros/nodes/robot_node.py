@@ -8,13 +8,15 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
+from osg_interfaces.msg import Answer
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Header
 
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
-from app.robot import ActiveLanguage, Event, Frame, SourceOpened
-from osg_ros.nodes.managed_node import ManagedNode
+from app.robot import ActiveLanguage, AnswerGiven, Event, Frame, SourceOpened
+from osg_ros.commands.answers import PULSE_SECONDS
+from osg_ros.nodes.managed_node import RESULTS, ManagedNode
 from osg_ros.nodes.process import LONGEST_WAIT, run_nodes, start_node
 from osg_ros.topics.gesture_topics import GestureTopics
 from osg_ros.topics.stamps import NANOSECONDS, Stopwatch
@@ -29,11 +31,13 @@ class RobotNode(ManagedNode):
     def __init__(self, **options: Any) -> None:
         super().__init__("robot_node", (), "the camera", **options)
         self._topics: GestureTopics | None = None
+        self._answers: Any = None
         self._stopwatch: Stopwatch | None = None
 
     def prepare(self) -> None:
         """Create the publishers."""
         self._topics = GestureTopics(self)
+        self._answers = self.add_publisher(Answer, "answer", RESULTS)
 
     def begin(self) -> None:
         """Publish that recognition is active."""
@@ -48,7 +52,7 @@ class RobotNode(ManagedNode):
 
     def release(self) -> None:
         """Drop the publishers."""
-        self._topics = None
+        self._topics = self._answers = None
 
     def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
         """Publish the landmarks of a frame."""
@@ -66,8 +70,20 @@ class RobotNode(ManagedNode):
             began = event.began
             now = self.get_clock().now().nanoseconds
             self._stopwatch = Stopwatch(round(began.timestamp() * NANOSECONDS) if began else now)
-        if self._topics is not None:
-            self._topics.publish_event(event, language, self._stopwatch, FRAME_ID)
+        if self._topics is None:
+            return
+        if isinstance(event, AnswerGiven) and self._stopwatch is not None:
+            stamp = self._stopwatch.stamp(event.time)
+            self._answers.publish(
+                Answer(
+                    header=Header(stamp=stamp, frame_id=FRAME_ID),
+                    answer=event.answer.value,
+                    pulses=event.pulses,
+                    pulse_seconds=PULSE_SECONDS,
+                    text=event.text,
+                )
+            )
+        self._topics.publish_event(event, language, self._stopwatch, FRAME_ID)
 
 
 @contextmanager

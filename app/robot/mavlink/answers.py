@@ -1,0 +1,431 @@
+"""Answers by lights and camera tilt: plays a number of pulses, and restores what was before.
+
+Lights are set as the table's lights action sets them (``DO_SET_SERVO``), the tilt as a gimbal
+manager's (``DO_GIMBAL_MANAGER_PITCHYAW``), never by ``MANUAL_CONTROL``, which would take the sticks
+from the pilot. A pattern begins only when the vehicle reports the present value, and the pilot did
+not change it a moment ago. A value that is neither ours nor the one before is the pilot's: the
+pattern ends, and that value stays.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Iterator, Sequence
+from typing import Final, Protocol
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.robot.commands.answers import PULSE_SECONDS, Answer
+from app.robot.mavlink.actions import LEAST_PWM, MOST_PWM, CommandStep, Message, Step
+from app.robot.mavlink.orders import is_from_vehicle
+from app.robot.mavlink.table import Answers, Vehicle
+
+REPORT_SECONDS: Final = 0.1
+"""Period at which the vehicle is asked to report the value: less than half a pulse."""
+
+FRESH_SECONDS: Final = 2.0
+"""Age after which a reported value is not known to be the present one."""
+
+ASK_SECONDS: Final = 5.0
+"""Seconds between two requests for reports that do not come."""
+
+PILOT_SECONDS: Final = 5.0
+"""Seconds without answers after the pilot has changed the value."""
+
+AGAIN_SECONDS: Final = 0.2
+"""Seconds after which a value that is not reported is sent again: twice the reports' period."""
+
+LONGEST_LEVEL: Final = 1.5
+"""Seconds after which the next value is sent though the present one was never reported."""
+
+LONGEST_RESTORE: Final = 30.0
+"""Seconds, while the vehicle is heard, after which the value before is given up: the vehicle does
+not do what it is asked."""
+
+PAUSE_SECONDS: Final = 1.0
+"""Seconds between two patterns, twice the time between two pulses, so that they are counted
+apart."""
+
+LATEST_SECONDS: Final = 6.0
+"""Age at which an answer that could not begin is dropped: the diver has gone on."""
+
+BLINK_PULSE: Final = 1660
+"""Pulse length in microseconds of a blink from low lights: 70 % of their brightness."""
+
+NOD_DEGREES: Final = 12.0
+"""Angle of a nod: seen from some metres, and done within half a second by slow servos."""
+
+NOT_SHOWN: Final = "not shown to the diver"
+"""Beginning of the line about an answer that could not be shown."""
+
+NOD_SECONDS: Final = 1.0
+"""Seconds from one nod to the next."""
+
+FAILURES: Final = (
+    mavlink.MAV_RESULT_DENIED,
+    mavlink.MAV_RESULT_UNSUPPORTED,
+    mavlink.MAV_RESULT_FAILED,
+)
+
+
+class Output(Protocol):
+    """Protocol of what shows pulses.
+
+    Attributes
+    ----------
+    name
+        For people.
+    vehicle
+        Whose it is.
+    pulse_seconds
+        Seconds from one pulse to the next.
+    command
+        Number of the command that sets it.
+    reported_by
+        Number of the message that reports its value.
+    tolerance
+        Largest difference of two values that count as equal.
+    travels
+        Whether it takes time to reach a value, so that those between are no pilot's.
+
+    """
+
+    name: str
+    vehicle: Vehicle
+    pulse_seconds: float
+    command: int
+    reported_by: int
+    tolerance: float
+    travels: bool
+
+    def read(self, message: Message) -> float | None:
+        """Return the value that a message of the vehicle reports; None for another message."""
+        ...
+
+    def find_peak(self, before: float) -> float:
+        """Return the value of a pulse, clearly different from the one before."""
+        ...
+
+    def build(self, value: float) -> Message:
+        """Build the message that sets a value."""
+        ...
+
+
+class LightsOutput:
+    """Lights, dimmed by a servo output; values are pulse lengths in microseconds; an `Output`."""
+
+    name = "lights"
+    pulse_seconds = PULSE_SECONDS
+    command: int = mavlink.MAV_CMD_DO_SET_SERVO
+    reported_by: int = mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW
+    tolerance = 10.0
+    travels = False
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self.vehicle = vehicle
+        # A message reports sixteen outputs.
+        self._port, self._index = divmod(vehicle.lights_servo - 1, 16)
+
+    def read(self, message: Message) -> float | None:
+        """Return the pulse length; see `Output`. An output that does nothing reports 0."""
+        if message.get_type() != "SERVO_OUTPUT_RAW" or message.port != self._port:
+            return None
+        return float(getattr(message, f"servo{self._index + 1}_raw")) or None
+
+    def find_peak(self, before: float) -> float:
+        """Return bright for lights below a third of their brightness, off for others."""
+        return BLINK_PULSE if before < LEAST_PWM + (MOST_PWM - LEAST_PWM) / 3 else LEAST_PWM
+
+    def build(self, value: float) -> Message:
+        """Build the message that sets a pulse length."""
+        vehicle = self.vehicle
+        parameters = (vehicle.lights_servo, value)
+        return CommandStep(self.command, parameters, vehicle.system, vehicle.component).build(0)
+
+
+class TiltOutput:
+    """Camera tilt, by the autopilot's gimbal manager; values are degrees, up is positive."""
+
+    name = "tilt"
+    pulse_seconds = NOD_SECONDS
+    command: int = mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW
+    reported_by: int = mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS
+    tolerance = 2.0
+    travels = True
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self.vehicle = vehicle
+
+    def read(self, message: Message) -> float | None:
+        """Return the pitch of the reported attitude, a quaternion w, x, y, z."""
+        if message.get_type() != "GIMBAL_DEVICE_ATTITUDE_STATUS":
+            return None
+        w, x, y, z = message.q
+        sine = 2 * (w * y - z * x)
+        return math.degrees(math.asin(sine)) if -1 <= sine <= 1 else None
+
+    def find_peak(self, before: float) -> float:
+        """Return an angle further down, or up where the camera looks down already."""
+        return before + (NOD_DEGREES if before < -30 else -NOD_DEGREES)
+
+    def build(self, value: float) -> Message:
+        """Build the message that sets an angle and leaves the yaw as it is."""
+        rest = (math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
+        vehicle = self.vehicle
+        return CommandStep(self.command, (value, *rest), vehicle.system, vehicle.component).build(0)
+
+
+class PatternPlayer:
+    """State of one output; every method takes the time in seconds of a steady clock.
+
+    Parameters
+    ----------
+    output
+        What shows the pulses.
+
+    """
+
+    def __init__(self, output: Output) -> None:
+        self.output = output
+        self._is_refused = False
+        self._value = self._before = self._peak = self._expected = math.nan
+        self._heard = self._changed = self._asked = self._rested = self._handed = -math.inf
+        self._target: float | None = None
+        self._begun = self._sent = -math.inf
+        self._following: deque[float] = deque()
+        self._unanswered = 0
+
+    @property
+    def is_active(self) -> bool:
+        """Whether a pattern is played, or the value before is not restored yet."""
+        return self._target is not None
+
+    def find_obstacle(self, now: float) -> str:
+        """Return, in few words, why no pattern can begin now; empty if one can."""
+        if self._is_refused:
+            return f"vehicle refuses to set {self.output.name}"
+        if now - self._heard > FRESH_SECONDS:
+            return f"vehicle does not report {self.output.name}"
+        if now - self._changed < PILOT_SECONDS:
+            return f"pilot has changed {self.output.name}"
+        return ""
+
+    def is_free(self, now: float) -> bool:
+        """Return whether the pattern before and the pause after it are over."""
+        return not self.is_active and now - max(self._rested, self._handed) >= PAUSE_SECONDS
+
+    def begin(self, pulses: int, now: float) -> None:
+        """Begin a pattern of so many pulses; nothing may be in its way."""
+        self._before, self._peak = self._value, self.output.find_peak(self._value)
+        self._following = deque([self._peak, self._before] * pulses)
+        self._aim(self._following.popleft(), now)
+
+    def stop(self, now: float) -> None:
+        """End the pattern and restore the value before it."""
+        if self._following:
+            self._following.clear()
+            self._aim(self._before, now)
+
+    def hand_over(self, value: float, now: float) -> Sequence[Message]:
+        """Leave the output to an order that sets `value`; return what restores the value before."""
+        restored = [self._set(self._before)] if self.is_active else []
+        self._drop()
+        self._expected, self._handed = value, now
+        return restored
+
+    def forget(self) -> None:
+        """Forget pattern and value, of a vehicle that has started again."""
+        self._drop()
+        self._value, self._heard = math.nan, -math.inf
+
+    def hear(self, message: Message, now: float) -> bool:
+        """Process a message of the vehicle; return whether it answers a pattern."""
+        if not is_from_vehicle(message, self.output.vehicle):
+            return False
+        if message.get_type() == "COMMAND_ACK" and message.command == self.output.command:
+            return self._hear_answer(message.result, now)
+        value = self.output.read(message)
+        if value is not None:
+            self._hear_value(value, now)
+        return False
+
+    def _hear_answer(self, result: int, now: float) -> bool:
+        # A lost answer must not make a later one, to an order, count as a pattern's.
+        if not self._unanswered or now - self._sent > PAUSE_SECONDS:
+            self._unanswered = 0
+            return False
+        self._unanswered -= 1
+        if result in FAILURES:
+            self._is_refused = True
+            self._drop()
+        return True
+
+    def _hear_value(self, value: float, now: float) -> None:
+        last, self._value, self._heard = self._value, value, now
+        if self.is_active:
+            if not self._is_ours(value):
+                self._drop()
+                self._changed = self._rested = now
+        elif self._equals(value, self._expected):
+            self._expected = math.nan
+        elif not (
+            math.isnan(last)
+            or self._equals(value, last)
+            # Reports from before the order are on their way.
+            or now - self._handed < PAUSE_SECONDS
+        ):
+            self._changed = now
+
+    def _is_ours(self, value: float) -> bool:
+        low, high = sorted((self._before, self._peak))
+        if self.output.travels:
+            return low - self.output.tolerance <= value <= high + self.output.tolerance
+        return self._equals(value, low) or self._equals(value, high)
+
+    @property
+    def _is_reached(self) -> bool:
+        """Whether the present value was sent, and is reported since."""
+        return (
+            self._target is not None
+            and -math.inf < self._sent < self._heard
+            and self._equals(self._value, self._target)
+        )
+
+    def _equals(self, value: float, other: float) -> bool:
+        return abs(value - other) <= self.output.tolerance
+
+    def list_due(self, now: float) -> Iterator[Message]:
+        """Yield the messages to send now: a value again until it is reported, then the next."""
+        is_fresh = now - self._heard <= FRESH_SECONDS
+        if not is_fresh:
+            self.stop(now)
+            if now - self._asked > ASK_SECONDS:
+                self._asked = now
+                yield self._ask_for_reports()
+        if self._target is None:
+            return
+        if is_fresh:
+            self._advance(now)
+        # A value that is reached is not set again, so that a pilot may change it.
+        if self._target is not None and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
+            self._sent = now
+            yield self._set(self._target)
+
+    def _advance(self, now: float) -> None:
+        """Go on to the next value when the present one has been shown long enough."""
+        assert self._target is not None
+        if not self._following:
+            # A report on its way before the last message proves nothing.
+            restored = self._is_reached and now - self._sent > REPORT_SECONDS
+            if restored or now - self._begun > LONGEST_RESTORE:
+                self._drop()
+                self._rested = now
+        elif now - self._begun > LONGEST_LEVEL or (
+            self._is_reached and now - self._sent >= self.output.pulse_seconds / 2
+        ):
+            self._aim(self._following.popleft(), now)
+
+    def _aim(self, value: float, now: float) -> None:
+        self._target, self._begun, self._sent = value, now, -math.inf
+
+    def _drop(self) -> None:
+        self._following.clear()
+        self._target = None
+
+    def _set(self, value: float) -> Message:
+        self._unanswered += 1
+        return self.output.build(value)
+
+    def _ask_for_reports(self) -> Message:
+        vehicle, command = self.output.vehicle, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+        parameters = (float(self.output.reported_by), REPORT_SECONDS * 1e6)
+        return CommandStep(command, parameters, vehicle.system, vehicle.component).build(0)
+
+
+class AnswerDesk:
+    """State of the answers to the diver: the newest that waits, and the patterns.
+
+    A newer answer replaces one that waits, but none replaces that of an emergency, which also ends
+    the pattern that is played. No pattern is played while a take is open.
+
+    Parameters
+    ----------
+    answers, vehicle
+        The table's.
+
+    Attributes
+    ----------
+    is_take_open
+        Whether the diver is showing a gesture.
+    notices
+        Lines for people, to be taken by the caller: answers that could not be shown.
+
+    """
+
+    def __init__(self, answers: Answers, vehicle: Vehicle) -> None:
+        outputs: dict[str, Output] = {"lights": LightsOutput(vehicle), "tilt": TiltOutput(vehicle)}
+        self._answers = answers
+        self._players = [PatternPlayer(outputs[name]) for name in answers.show]
+        self._waiting: tuple[Answer, float, bool] | None = None
+        self.is_take_open = False
+        self.notices: list[str] = []
+
+    @property
+    def is_active(self) -> bool:
+        """Whether something is shown, or not restored yet."""
+        return any(player.is_active for player in self._players)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is shown and nothing waits to be shown."""
+        return self._waiting is None and not self.is_active
+
+    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> None:
+        """Show an answer as soon as it may be shown."""
+        if self._waiting is not None and self._waiting[2] and not emergency:
+            return
+        self._waiting = (answer, now, emergency)
+        if emergency:
+            self.stop(now)
+
+    def stop(self, now: float) -> None:
+        """End the patterns, and restore what was before."""
+        for player in self._players:
+            player.stop(now)
+
+    def hand_over(self, step: Step, now: float) -> Iterator[Message]:
+        """Leave the output that a step of an order sets to it; yield what restores it before."""
+        for player in self._players:
+            if isinstance(step, CommandStep) and step.command == player.output.command:
+                yield from player.hand_over(step.parameters[1], now)
+
+    def forget(self) -> None:
+        """Forget what a vehicle showed that has started again."""
+        for player in self._players:
+            player.forget()
+
+    def hear(self, message: Message, now: float) -> bool:
+        """Process a message of the vehicle; return whether it answers a pattern, and no order."""
+        return any([player.hear(message, now) for player in self._players])
+
+    def list_due(self, now: float, *, may_begin: bool) -> Iterator[Message]:
+        """Yield the messages to send now; `may_begin`: whether a pattern may begin."""
+        if self.is_take_open:
+            self.stop(now)
+        elif self._waiting is not None and may_begin:
+            self._begin(*self._waiting[:2], now)
+        for player in self._players:
+            yield from player.list_due(now)
+
+    def _begin(self, answer: Answer, given: float, now: float) -> None:
+        obstacles = [player.find_obstacle(now) for player in self._players]
+        able = [player for player, found in zip(self._players, obstacles, strict=True) if not found]
+        if able and all(player.is_free(now) for player in able):
+            for player in able:
+                player.begin(self._answers.count_pulses(answer), now)
+            self._waiting = None
+        elif now - given > LATEST_SECONDS:
+            self._waiting = None
+            why = ", ".join(filter(None, obstacles)) or "another is shown"
+            self.notices.append(f"{NOT_SHOWN}, {why}: {answer.value}")
