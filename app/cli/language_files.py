@@ -31,6 +31,10 @@ def code(
 def slate(
     language: Annotated[Path, typer.Argument(help="Language file (.json)")],
     output: Annotated[Path, typer.Option(help="File to write, .pdf or .svg")],
+    vehicle: Annotated[
+        Path | None,
+        typer.Option(help="Vehicle table whose answers to the diver are printed as well."),
+    ] = None,
 ) -> None:
     """Write a language as one printable page for divers: strokes, meanings, and the salute."""
     # Imported here, because a robot's installation has the other commands, but cannot draw pages.
@@ -41,13 +45,36 @@ def slate(
     kind = output.suffix.lower()
     if kind not in (".pdf", ".svg"):
         raise OsgError(f"a slate is written as .pdf or .svg, not as {output.name!r}")
-    page = lay_out(Language.load(language))
+    page = lay_out(Language.load(language), () if vehicle is None else list_answers(vehicle))
     content = to_pdf(page) if kind == ".pdf" else to_svg(page).encode("utf-8")
     try:
         output.write_bytes(content)
     except OSError as error:
         raise OsgError(f"cannot write {output}: {error.strerror}") from error
     people.print(f"wrote {output}", markup=False)
+
+
+def list_answers(vehicle: Path) -> list[tuple[int, str]]:
+    """Return the answers of a vehicle table, each as its number of pulses and its words.
+
+    Raises
+    ------
+    OsgError
+        When the table has none, is not valid, or its library is missing.
+
+    """
+    try:
+        from app.robot.commands.answers import Answer
+        from app.robot.mavlink.table import read_vehicle_table
+    except ModuleNotFoundError as error:  # reads TOML before Python 3.11
+        raise OsgError(
+            f"--vehicle needs {error.name}, which is not installed; install it with: "
+            'pip install "osg-studio[mavlink]"'
+        ) from error
+    answers = read_vehicle_table(vehicle).answers
+    if answers is None:
+        raise OsgError(f"{vehicle} has no [answers]; leave --vehicle out, or add them")
+    return sorted((answers.count_pulses(answer), answer.words) for answer in Answer)
 
 
 def samples(

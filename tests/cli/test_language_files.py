@@ -47,6 +47,23 @@ def test_the_ending_chooses_the_format(osg_studio: OsgStudio, tmp_path: Path) ->
         assert file.read_bytes().startswith(begins)
 
 
+def test_a_slate_has_the_answers_of_a_vehicle_table(osg_studio: OsgStudio, tmp_path: Path) -> None:
+    table, file = tmp_path / "vehicle.toml", tmp_path / "slate.svg"
+    head = (
+        'format = "osg-studio/vehicle-table"\nversion = 1\n[gestures]\ncircle = { do = "hold" }\n'
+    )
+    table.write_text(head)
+    command = ("slate", LANGUAGE, "--output", file, "--vehicle", table)
+    assert "has no [answers]" in osg_studio(*command).error
+    table.write_text(head + '[answers]\nshow = ["tilt"]\ndone = 7\n')
+    assert osg_studio(*command).code == 0
+    words = ["listening", "show it again", "which of two?", "not understood, not done", "done"]
+    text = file.read_text("utf-8")
+    assert [text.index(f">{each}<") for each in words] == sorted(
+        text.index(f">{each}<") for each in words
+    )
+
+
 def test_other_endings_and_folders_that_are_not_there_are_refused(
     osg_studio: OsgStudio, tmp_path: Path
 ) -> None:

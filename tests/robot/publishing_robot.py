@@ -11,7 +11,15 @@ from dataclasses import replace
 
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
-from app.robot import ActiveLanguage, Event, PhraseListener, TakeRejected, TriggerListener
+from app.robot import (
+    ActiveLanguage,
+    AnswerGiven,
+    Event,
+    PhraseListener,
+    TakeRejected,
+    TriggerListener,
+)
+from app.robot.commands.answers import Answer
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
@@ -27,7 +35,7 @@ PHOTO = Phrase("photo", (OneOf(("circle",)),), {"do": "photo"}, "take a photo")
 
 
 def list_round_events() -> list[Event]:
-    """Return the events of a round: a phrase, an unknown gesture, and one between two."""
+    """Return the events of a round: a phrase, an unknown gesture, one between two, its answer."""
     made = replace(language_of("circle"), grammar=Grammar((PHOTO,)))
     language = ActiveLanguage.from_json(made.to_json())
     shown = recording_of("circle", "line")
@@ -40,6 +48,7 @@ def list_round_events() -> list[Event]:
             for event in between
             if isinstance(event, TakeRejected)
         ),
+        AnswerGiven(LATER, Answer.one_of_two, 3, "circle or line? show it again"),
     ]
 
 

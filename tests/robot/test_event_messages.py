@@ -13,6 +13,7 @@ import pytest
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
+    AnswerGiven,
     Event,
     FrameRateChanged,
     FramesDropped,
@@ -33,6 +34,7 @@ from app.robot import (
     TriggerListener,
     VehicleReported,
 )
+from app.robot.commands.answers import Answer
 from app.robot.event_messages import (
     MESSAGES,
     SCHEMA_FILE,
@@ -91,6 +93,7 @@ EVENTS: list[Event] = [
     FrameRateChanged(18.0, 4.0, sufficient=True),
     OutputFailed(19.0, "stdout", "No space left on device"),
     VehicleReported(20.0, "done: hold"),
+    AnswerGiven(20.0, Answer.repeat, 2, "repeat 'circle' to confirm: hold"),
     StateChanged(1.0, TakeState.recording),
     LanguageChanged(0.0, "Rïff", SEAL, 3, ("circle", "⟲"), "full", "as the profile does"),
     LanguageRefused(5.0, "/format: not a language file", SEAL, 3),

@@ -30,13 +30,13 @@ class Answer(str, Enum):
 
     @property
     def words(self) -> str:
-        """What the answer tells the diver."""
+        """What the answer tells the diver, in few words."""
         return {
             Answer.listening: "listening",
-            Answer.repeat: "understood, show it again",
-            Answer.one_of_two: "one of two, show it again",
+            Answer.repeat: "show it again",
+            Answer.one_of_two: "which of two?",
             Answer.done: "done",
-            Answer.refused: "not understood, or refused",
+            Answer.refused: "not understood, not done",
         }[self]
 
 

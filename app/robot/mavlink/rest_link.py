@@ -143,7 +143,10 @@ class RestLink:
 
 
 def to_json(message: Message) -> dict[str, Any]:
-    """Return a message as mavlink2rest writes it: enumerations by name, bit masks as ``bits``."""
+    """Return a message as mavlink2rest writes it.
+
+    Enumerations are written by name, bit masks as ``bits``, and NaN as null.
+    """
     content: dict[str, Any] = {"type": message.get_type()}
     lengths = dict(zip(message.ordered_fieldnames, message.array_lengths, strict=True))
     for name in message.fieldnames:
@@ -154,6 +157,8 @@ def to_json(message: Message) -> dict[str, Any]:
             value = [*text.ljust(lengths[name], "\0")]
         elif message.fielddisplays_by_name.get(name) == "bitmask":
             value = {"bits": value}
+        elif isinstance(value, float) and math.isnan(value):
+            value = None
         elif enum := message.fieldenums_by_name.get(name):
             value = {"type": mavlink.enums[enum][value].name}
         content[RENAMED.get(name, name)] = value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil
 from typing import Final
 
@@ -27,6 +27,7 @@ MARGIN = 12.0
 
 HEAD = 34.0
 FOOT = 12.0
+ANSWER_ROW = 14.0
 GAP = 6.0
 """Millimetres between two gestures, a finger's nail, so that nobody reads the neighbour's name."""
 
@@ -77,11 +78,42 @@ PALM_OUTLINE: Final = tuple(
 """Landmarks around the palm, the wrist first."""
 
 
-def lay_out(language: Language) -> Page:
-    """Return a language as one printable page."""
+def lay_out(language: Language, answers: Sequence[tuple[int, str]] = ()) -> Page:
+    """Return a language as one printable page.
+
+    Parameters
+    ----------
+    language
+        The language.
+    answers
+        The robot's answers to the diver: number of blinks or nods, and meaning.
+
+    """
     width, height = A4
-    parts = [*_head(language), *_gestures(language), *_foot(language)]
+    room = height - MARGIN - FOOT - (ANSWER_ROW if answers else 0.0)
+    parts = [
+        *_head(language),
+        *_gestures(language, room),
+        *_answers(answers, room),
+        *_foot(language),
+    ]
     return Page(language.name, width, height, tuple(parts))
+
+
+def _answers(answers: Sequence[tuple[int, str]], top: float) -> Iterator[Part]:
+    """Yield a row with the robot's answers, each a number of dots above its meaning."""
+    if not answers:
+        return
+    width = A4[0] - 2 * MARGIN
+    lead = "The robot blinks or nods:"
+    yield Words(lead, (MARGIN, top + 4), fit_size(lead, 3.2, width), bold=True)
+    column = width / len(answers)
+    size = min(fit_size(words, 3.2, column - 2) for _, words in answers)
+    for place, (pulses, words) in enumerate(answers):
+        left = MARGIN + place * column
+        for dot in range(pulses):
+            yield Disc((left + 1.2 + 3.2 * dot, top + 7.5), 1.1)
+        yield Words(words, (left, top + 12), size)
 
 
 def _head(language: Language) -> Iterator[Part]:
@@ -182,13 +214,13 @@ def _foot(language: Language) -> Iterator[Part]:
         yield Words(hands, (MARGIN, height - MARGIN - 4), 3.2, grey=True)
 
 
-def _gestures(language: Language) -> Iterator[Part]:
+def _gestures(language: Language, bottom: float) -> Iterator[Part]:
     gestures = language.gestures
     if not gestures:
         return
     width = A4[0] - 2 * MARGIN
     top = MARGIN + HEAD
-    height = A4[1] - MARGIN - FOOT - top
+    height = bottom - top
     columns = max(range(1, MOST_COLUMNS + 1), key=lambda n: _side(n, len(gestures), width, height))
     rows = ceil(len(gestures) / columns)
     cell = (width - GAP * (columns - 1)) / columns

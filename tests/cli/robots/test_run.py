@@ -19,6 +19,7 @@ from tests.command_line import OsgStudio
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of
 from tests.robot.mavlink.test_bridge import diving
+from tests.robot.mavlink.vehicle import sailing
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
@@ -172,8 +173,6 @@ def test_a_gesture_in_a_clip_commands_a_vehicle(
     thin_clip: Callable[[str], Path],
 ) -> None:
     pytest.importorskip("pymavlink", reason="needs the extra mavlink")
-    from tests.robot.mavlink.vehicle import sailing
-
     table = tmp_path / "vehicle.toml"
     table.write_text(
         'format = "osg-studio/vehicle-table"\nversion = 1\n[emergency]\nline = "surface"\n'
@@ -186,3 +185,41 @@ def test_a_gesture_in_a_clip_commands_a_vehicle(
     assert ended.code == 0
     assert "vehicle: done: surface" in ended.error
     assert vehicle.obeyed == ["SURFACE"]
+
+
+ANSWERS = """
+format = "osg-studio/vehicle-table"
+version = 1
+[gestures]
+circle = { do = "hold" }
+[answers]
+show = ["lights"]
+"""
+
+
+@pytest.mark.slow
+def test_the_answers_are_tried_on_the_bench(
+    osg_studio: OsgStudio, tmp_path: Path, command: list[str]
+) -> None:
+    table = tmp_path / "vehicle.toml"
+    table.write_text(ANSWERS)
+    with sailing() as vehicle:
+        link = ("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table)
+        ended = osg_studio(*command, *link, "--answers", "try")
+    assert (ended.code, ended.out) == (0, "")
+    assert [line[0] for line in ended.error.splitlines()] == ["1", "2", "3", "4", "5"]
+    assert len(vehicle.shown) == 2 * (1 + 2 + 3 + 4 + 5)
+    assert vehicle.pulse == vehicle.lights
+
+
+def test_answers_that_cannot_be_tried_are_one_line(
+    osg_studio: OsgStudio, tmp_path: Path, command: list[str]
+) -> None:
+    table = tmp_path / "vehicle.toml"
+    table.write_text(TABLE.format(label="circle"))
+    ended = osg_studio(*command, "--answers", "try")
+    assert "--answers needs --mavlink and --vehicle" in " ".join(ended.error.split())
+    link = ("--mavlink", "udpout:127.0.0.1:14550", "--vehicle", table)
+    ended = osg_studio(*command, *link, "--answers", "try")
+    assert (ended.code, ended.error.count("\n")) == (2, 1)
+    assert "has no [answers]" in ended.error

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.robot.commands.answers import Answer, find_phrase_answer
 from app.robot.commands.dialogue import (
     CommandDialogue,
     CommandTable,
@@ -50,6 +51,51 @@ def between(one: str, other: str, stamp: float, **of: Any) -> RecognizedGesture:
 def commands_of(*gestures: RecognizedGesture, rules: Rules = RULES) -> list[str | None]:
     made = dialogue(rules)
     return [made.decide(gesture, gesture.stamp).command for gesture in gestures]
+
+
+@pytest.mark.parametrize(
+    ("gestures", "answers"),
+    [
+        ([shown("circle", 1), shown("circle", 6)], [Answer.repeat, None]),
+        ([shown("line", 1)], [None]),
+        ([shown("circle", 1), shown("cross", 6)], [Answer.repeat, Answer.done]),
+        ([between("circle", "peak", 1)], [Answer.one_of_two]),
+        (
+            [between("circle", "peak", 1), between("circle", "peak", 6)],
+            [Answer.one_of_two, Answer.refused],
+        ),
+        ([shown(None, 1), shown("wave", 6), shown("circle", 9, 0.1)], [Answer.refused] * 3),
+        # What is the same take again, or of somebody else, is no answer to this diver.
+        (
+            [shown("circle", 6), shown("circle", 6), shown("line", 7, language="other")],
+            [Answer.repeat, None, None],
+        ),
+    ],
+)
+def test_what_a_diver_sees_of_a_gesture(
+    gestures: list[RecognizedGesture], answers: list[Answer | None]
+) -> None:
+    made = dialogue()
+    assert [made.decide(gesture, gesture.stamp).answer for gesture in gestures] == answers
+
+
+@pytest.mark.parametrize(
+    ("kind", "label", "pair", "answer"),
+    [
+        ("continues", "circle", None, Answer.listening),
+        ("repeat", None, None, Answer.refused),
+        ("repeat", None, ("circle", "peak"), Answer.one_of_two),
+        ("cancelled", "cross", None, Answer.done),
+        ("unexpected", "peak", None, Answer.refused),
+        ("timed_out", None, None, Answer.refused),
+        ("outside", "peak", None, Answer.refused),
+        ("outside", None, None, None),
+    ],
+)
+def test_what_a_diver_sees_of_a_part_of_a_message(
+    kind: str, label: str | None, pair: tuple[str, str] | None, answer: Answer | None
+) -> None:
+    assert find_phrase_answer(kind, label, pair) is answer
 
 
 def test_a_gesture_is_confirmed_by_showing_it_again() -> None:

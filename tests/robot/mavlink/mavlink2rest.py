@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -39,6 +40,8 @@ def as_message(content: dict[str, Any]) -> Any:
             (value,) = [number for number, entry in enum.items() if entry.name == value["type"]]
         elif isinstance(value, list):
             value = "".join(value).encode()
+        elif value is None:
+            value = math.nan
         values[name] = value
     return kind(**values)
 

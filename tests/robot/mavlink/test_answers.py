@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
@@ -26,7 +27,7 @@ LOW, BRIGHT = 1100, 1660
 
 
 @contextmanager
-def answering(changes: Mapping[str, object] = LIGHTS, **settings: object) -> Iterator[Diver]:
+def answering(changes: Mapping[str, object] = LIGHTS, **settings: Any) -> Iterator[Diver]:
     """Put a diver into the water whose vehicle answers, and reports its lights already."""
     with diving(changes=changes, **settings) as diver:
         wait_until(lambda: bool(diver.vehicle.reports))

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -158,7 +159,7 @@ def wait_until(happens: Callable[[], bool]) -> None:
 
 @contextmanager
 def diving(
-    kind: str = "udpin", changes: Mapping[str, object] = TABLE, **settings: object
+    kind: str = "udpin", changes: Mapping[str, object] = TABLE, **settings: Any
 ) -> Iterator[Diver]:
     """Put a diver and a vehicle into the water, with a bridge between them."""
     table = VehicleTable.model_validate({**TABLE, **changes})

@@ -17,6 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.recognition.errors import VehicleError
 from app.robot.mavlink import rest_link
 from app.robot.mavlink.actions import DepthStep, ModeStep, build_steps
+from app.robot.mavlink.answers import LightsOutput, TiltOutput
 from app.robot.mavlink.bridge import build_heartbeat
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
@@ -30,6 +31,8 @@ SENT = [
     ModeStep(mavlink.SUB_MODE_SURFACE, 1, 1).build(2),
     DepthStep(5, 1, 1).build(0),
     mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_INFO, b"hold"),
+    LightsOutput(Vehicle()).build(1660),
+    TiltOutput(Vehicle()).build(-12.0),
     *(
         step.build(0)
         for action in (Lights(do="lights", percent=10), Camera(do="camera"))
@@ -39,6 +42,10 @@ SENT = [
 HEARD = [
     mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_RESULT_DENIED),
     mavlink.MAVLink_vfr_hud_message(0, 0, 10, 0, -3.5, 0),
+    mavlink.MAVLink_servo_output_raw_message(0, 0, *[1500] * 12, 1660, 0, 0, 0),
+    mavlink.MAVLink_gimbal_device_attitude_status_message(
+        0, 0, 5, 0, [0.5, 0.0, 0.5, 0.0], 0, 0, 0, 0
+    ),
 ]
 
 
@@ -70,6 +77,20 @@ def test_a_vehicle_obeys_over_http(monkeypatch: pytest.MonkeyPatch) -> None:
                 assert diver.wait_for("done", "refused", "NOT DONE").startswith("done")
                 assert DOES[label](vehicle)
     assert [text for text in vehicle.texts if text.startswith("confirmed: ")]
+
+
+@pytest.mark.parametrize("show", ["lights", "tilt"])
+def test_a_vehicle_answers_the_diver_over_http(monkeypatch: pytest.MonkeyPatch, show: str) -> None:
+    monkeypatch.setattr(rest_link, "POLL_SECONDS", 0.005)
+    table = VehicleTable.model_validate({**TABLE, "answers": {"show": [show]}})
+    with sailing() as vehicle, serving(vehicle.port) as address:
+        diver = Diver(vehicle, address, table)
+        with closing(diver.bridge):
+            diver.show("stop")
+            wait_until(lambda: len(vehicle.shown) == 4)
+            wait_until(lambda: diver.bridge.has_answered)
+    before, peak = (1100, 1660) if show == "lights" else (0, -12)
+    assert [value for _, _, value in vehicle.shown] == [peak, before] * 2
 
 
 def test_the_robot_goes_on_when_the_server_falls_silent_and_says_so() -> None:

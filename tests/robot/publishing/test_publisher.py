@@ -35,7 +35,7 @@ def test_a_domain_that_there_is_not_is_refused(
         open_publisher("dds")
 
 
-@pytest.mark.parametrize("name", ["GestureRecognition", "Phrase"])
+@pytest.mark.parametrize("name", ["Answer", "GestureRecognition", "Phrase"])
 def test_a_message_has_the_fields_of_its_definition_in_order(name: str) -> None:
     pytest.importorskip("cyclonedds", reason="needs the extra dds")
     from cyclonedds.idl import types
@@ -48,7 +48,9 @@ def test_a_message_has_the_fields_of_its_definition_in_order(name: str) -> None:
         "string": str,
         "string[]": types.sequence[str],
         "bool": bool,
+        "uint8": types.uint8,
         "uint32": types.uint32,
+        "float32": types.float32,
         "float64": types.float64,
     }
     definition = (DEFINITIONS / f"{name}.msg").read_text("utf-8")

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from osg_interfaces.msg import ActiveLanguage as LanguageMessage
-from osg_interfaces.msg import Command, CommandState, GestureRecognition
+from osg_interfaces.msg import Answer, Command, CommandState, GestureRecognition
 from std_msgs.msg import Header
 
 from app.robot import ActiveLanguage
@@ -28,6 +28,7 @@ class Robot:
     def __init__(self, bench: Bench, **rules: Any) -> None:
         self.bench = bench
         self.commands = bench.subscribe(Command, "command")
+        self.answers = bench.subscribe(Answer, "answer")
         self.states = bench.subscribe(CommandState, "command_state", LATCHED)
         self._languages = bench.probe.create_publisher(LanguageMessage, "language", LATCHED)
         self._languages.publish(
@@ -97,6 +98,19 @@ def test_a_pair_is_asked_and_the_next_gesture_decides(bench: Bench) -> None:
     assert robot.show("circle") == "'circle': photo"
     bench.wait(lambda: bool(robot.commands), "command")
     assert [command.label for command in robot.commands] == ["circle"]
+
+
+def test_each_answer_to_the_diver_comes_once_with_its_pattern(bench: Bench) -> None:
+    robot = Robot(bench, cancel=["wave"])
+    pair: dict[str, Any] = {"pair": ["circle", "line"], "rejected": True}
+    for label, other in (("circle", {}), ("circle", {}), ("", pair), ("wave", {}), ("", {})):
+        robot.show(label, **other)
+    bench.wait(lambda: len(robot.answers) >= 4, "answers")
+    shown = [(each.answer, each.pulses) for each in robot.answers]
+    # Who carries out the command answers that it is done.
+    assert shown == [("repeat", 2), ("one_of_two", 3), ("done", 4), ("refused", 5)]
+    assert {each.pulse_seconds for each in robot.answers} == {0.5}
+    assert robot.answers[0].text == "repeat 'circle' to confirm: photo"
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 import pytest
 import rclpy
-from osg_interfaces.msg import GestureRecognition, Phrase
+from osg_interfaces.msg import Answer, GestureRecognition, Phrase
 from std_msgs.msg import String
 
 from app.robot import PhraseHeard, TakeRecognized, TakeRejected
@@ -37,11 +37,13 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
     takes: list[GestureRecognition] = []
     labels: list[String] = []
     phrases: list[Phrase] = []
+    answers: list[Answer] = []
     lines: list[String] = []
     for kind, topic, seen in (
         (GestureRecognition, "recognition", takes),
         (String, "recognized_gesture", labels),
         (Phrase, "phrase", phrases),
+        (Answer, "answer", answers),
         (String, "events", lines),
     ):
         bench.probe.create_subscription(kind, f"/osg/{topic}", seen.append, RELIABLE)
@@ -51,6 +53,7 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
             len(takes) >= ROUNDS * len(emitted_takes)
             and len(labels) >= ROUNDS * len(emitted_labels)
             and len(phrases) >= ROUNDS * len(emitted_phrases)
+            and len(answers) >= ROUNDS
             and len(lines) >= ROUNDS * len(events)
         )
 
@@ -65,6 +68,7 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
     assert all_received()
     compare_takes(takes, emitted_takes)
     compare_phrases(phrases, emitted_phrases)
+    assert {(each.answer, each.pulses) for each in answers} == {("one_of_two", 3)}
     assert {label.data for label in labels} == set(emitted_labels)
     assert {line.data for line in lines} == {format_line(event) for event in events}
     assert {MESSAGES.validate_json(line.data).event for line in lines} == {
@@ -73,6 +77,7 @@ def test_ros_receives_every_take_and_phrase_as_the_robot_emitted_it(
         "take_recognized",
         "take_rejected",
         "phrase_heard",
+        "answer_given",
     }
 
 

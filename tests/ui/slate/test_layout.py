@@ -207,3 +207,11 @@ def test_arabic_letters_are_joined_in_a_pdf() -> None:
     assert len({glyph for glyph, _ in glyphs}) == 3
     apart = drawn("\u0628\u200c\u0628")
     assert len({glyph for glyph, letter in apart if letter == "\u0628"}) == 1
+
+
+def test_the_robots_answers_are_counted_in_dots_below_the_gestures() -> None:
+    page = lay_out(TABLE_2, [(1, "listening"), (3, "which of two?")])
+    dots = [part for part in page.parts if isinstance(part, Disc)]
+    lowest = max(dot.centre[1] for dot in dots)
+    assert [dot.centre[1] for dot in dots].count(lowest) == 4
+    assert {"listening", "which of two?"} <= {*words_of(page)}
