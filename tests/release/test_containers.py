@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
+import cv2
 import pytest
-from pydantic import BaseModel, ConfigDict, HttpUrl, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field, HttpUrl, TypeAdapter
 from typer.main import get_command
 
 from app import __version__
@@ -85,7 +86,7 @@ class Author(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: str
-    email: str
+    email: Annotated[str, Field(pattern=r"^[^@ ]+@[^@ ]+$")]
 
 
 class Company(BaseModel):
@@ -94,8 +95,8 @@ class Company(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     name: str
-    about: str | None = None
-    email: str | None = None
+    about: str
+    email: Annotated[str, Field(pattern=r"^[^@ ]+@[^@ ]+$")]
 
 
 class Links(BaseModel):
@@ -122,9 +123,46 @@ class Extension(BaseModel):
     links: Links
 
 
+class Metadata(BaseModel):
+    """The card of an extension in BlueOS' store, which lies beside its logos."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str
+    website: HttpUrl
+    docker: Annotated[str, Field(pattern=r"^[a-z0-9._/-]+$")]
+    description: Annotated[str, Field(max_length=200)]
+
+
+STORE = ROOT / "release" / "containers" / "blueos"
+
+
+def test_the_stores_card_names_the_image_and_the_service() -> None:
+    text = (STORE / "metadata.json").read_text("utf-8")
+    for name, value in (("WEBSITE", "https://pages.example/"), ("IMAGE", "crew/osg-blueos")):
+        assert f"${{{name}}}" in text
+        text = text.replace(f"${{{name}}}", value)
+    card = Metadata.model_validate_json(text)
+    assert card.name == SERVICE["name"]
+    for logo in ("extension_logo.png", "company_logo.png"):
+        picture = cv2.imread(str(STORE / logo))
+        assert picture is not None
+        assert picture.shape[:2] == (256, 256)
+
+
+def test_the_stores_page_says_what_the_answers_are_and_what_was_not_tested() -> None:
+    page = " ".join((STORE / "README.md").read_text("utf-8").split())
+    assert "once listening, twice *show it again*, three times *which of two?*" in page
+    assert "not yet with ArduSub itself" in page
+
+
 def test_the_labels_are_those_of_a_blueos_extension() -> None:
     declared = " ".join(STAGES["blueos"].values("ARG"))
-    pages = {"README": "https://pages.example/README.md", "WEBSITE": "https://pages.example/"}
+    pages = {
+        "README": "https://pages.example/README.md",
+        "WEBSITE": "https://pages.example/",
+        "EMAIL": "crew@pages.example",
+    }
     assert all(f'{name}=""' in declared for name in pages)
     labels = read_labels(STAGES["blueos"], pages)
     parsed = {

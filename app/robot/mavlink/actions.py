@@ -20,6 +20,7 @@ from app.robot.mavlink.table import (
     Hold,
     Lights,
     Mode,
+    SlotName,
     Surface,
     Vehicle,
 )
@@ -201,6 +202,27 @@ class DepthStep:
             return False
         target = reported.altitude + reported.altitude_error
         return abs(target + self.metres) <= TARGET_TOLERANCE
+
+
+def describe_sent(action: Action, vehicle: Vehicle) -> str:
+    """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
+    if isinstance(action, Depth) and isinstance(action.metres, SlotName):
+        slot, deepest = action.metres.slot, vehicle.deepest
+        shown = describe_sent(Depth(do="depth", metres=deepest), vehicle)
+        return shown.replace(f"{deepest:g} m", f"{slot} m, at most {deepest:g}")
+    return ", then ".join(_describe_step(step) for step in build_steps(action, vehicle, 1))
+
+
+def _describe_step(step: Step) -> str:
+    match step:
+        case ModeStep(mode=mode):
+            return f"DO_SET_MODE {mavlink.enums['SUB_MODE'][mode].name.removeprefix('SUB_MODE_')}"
+        case DepthStep(metres=metres):
+            return f"SET_POSITION_TARGET_GLOBAL_INT depth {metres:g} m"
+        case CommandStep(command=command, parameters=parameters):
+            name = mavlink.enums["MAV_CMD"][command].name.removeprefix("MAV_CMD_")
+            return f"{name} {', '.join(f'{each:g}' for each in parameters)}"
+    raise ValueError(f"{step!r} is no step")
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:

@@ -18,7 +18,13 @@ from typing import Any, Final, Literal, get_args
 from app.recognition.errors import LanguageError, OsgError, VehicleError
 from app.recognition.language.file import short_code
 from app.robot.active_language import ActiveLanguage
-from app.robot.mavlink.table import VehicleTable, parse_vehicle_table, read_vehicle_table
+from app.robot.mavlink.table import (
+    EMERGENCIES,
+    Action,
+    VehicleTable,
+    parse_vehicle_table,
+    read_vehicle_table,
+)
 
 FileKind = Literal["language", "vehicle"]
 
@@ -91,6 +97,33 @@ class RobotFiles:
         """Return the kinds of the files that are not there."""
         return [
             kind for kind, path in self._paths.items() if path is not None and not path.is_file()
+        ]
+
+    def list_actions(self) -> list[dict[str, str]]:
+        """Return what the present vehicle table would send for each of its gestures and phrases.
+
+        Each entry has ``role`` (emergency, gesture or phrase), ``name``, ``does`` and ``sends``.
+        Nothing is sent. Empty without a valid table.
+        """
+        table = self._read_table()
+        if table is None:
+            return []
+        from app.robot.mavlink.actions import describe_sent
+
+        listed: dict[str, Mapping[str, Action]] = {
+            "emergency": {name: EMERGENCIES[does] for name, does in table.emergency.items()},
+            "gesture": table.gestures,
+            "phrase": table.phrases,
+        }
+        return [
+            {
+                "role": role,
+                "name": name,
+                "does": action.words,
+                "sends": describe_sent(action, table.vehicle),
+            }
+            for role, actions in listed.items()
+            for name, action in actions.items()
         ]
 
     def propose(self, kind: FileKind, content: bytes) -> Proposal:

@@ -66,8 +66,9 @@ class StatusPage:
 
     ``/`` is the page and ``/status.json`` its data, ``/healthz`` answers 200 or 503, and
     ``/register_service`` registers the page in BlueOS. With `files`, the page takes uploads at
-    ``/files/language`` and ``/files/vehicle``; without, it changes nothing. A host name that a
-    foreign page could have let point here is refused.
+    ``/files/language`` and ``/files/vehicle``, and the latter tells what the table would send;
+    without, it changes nothing. A host name that a foreign page could have let point here is
+    refused.
 
     Parameters
     ----------
@@ -208,6 +209,8 @@ class PageHandler(BaseHTTPRequestHandler):
             case "/healthz":
                 works = self.page.read_status()["works"]
                 self._answer_json(200 if works else 503, {"works": works})
+            case "/files/vehicle" if self.page.files is not None:
+                self._answer_json(200, {"actions": self.page.files.list_actions()})
             case "/register_service":
                 self._answer_json(200, SERVICE)
             case _:

@@ -110,6 +110,36 @@ def test_files_that_are_missing_are_taken_and_stored_as_they_came(robot: Robot) 
     ]
 
 
+def test_the_page_tells_what_the_table_would_send_and_sends_nothing(robot: Robot) -> None:
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    assert robot.files.list_actions() == []
+    robot.table.write_text(
+        NEW_TABLE + '[phrases]\ndive = { do = "depth", metres = { slot = "metres" } }\n'
+        'light = { do = "lights", percent = 50 }\n'
+    )
+    connection = http.client.HTTPConnection("127.0.0.1", robot.page.port, timeout=20)
+    with closing(connection):
+        connection.request("GET", "/files/vehicle")
+        listed = json.loads(connection.getresponse().read())["actions"]
+    assert [(each["role"], each["name"], each["does"], each["sends"]) for each in listed] == [
+        ("emergency", "circle", "hold", "DO_SET_MODE ALT_HOLD"),
+        ("emergency", "circle backwards", "surface", "DO_SET_MODE SURFACE"),
+        (
+            "gesture",
+            "line",
+            "depth 5 m",
+            "DO_SET_MODE ALT_HOLD, then SET_POSITION_TARGET_GLOBAL_INT depth 5 m",
+        ),
+        (
+            "phrase",
+            "dive",
+            "depth of 'metres'",
+            "DO_SET_MODE ALT_HOLD, then SET_POSITION_TARGET_GLOBAL_INT depth metres m, at most 30",
+        ),
+        ("phrase", "light", "lights 50 %", "DO_SET_SERVO 13, 1500"),
+    ]
+
+
 def test_nothing_is_replaced_before_its_changes_are_confirmed(robot: Robot) -> None:
     robot.table.write_text(OLD_TABLE)
     status, proposal = robot.send("vehicle", NEW_TABLE)
