@@ -2,7 +2,8 @@
 
 Our rendered test clips are mixed with the water's colour and noise, compressed again as a camera
 would, and read with and without the correction. ``--far`` shrinks the diver to half first, to
-about four metres away.
+about four metres away. ``--blink`` lets the light go twice a second, as the lights of a vehicle do
+that answers the diver.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from app.recognition.poses.frame import Image
 from app.recognition.recording.salute import ENTER_SCORE
 from app.recognition.recording.video import read_frames
 from app.resources import samples_dir
+from app.robot.commands.answers import PULSE_SECONDS
 from benchmarks.accuracy.salute import CHANGING_PHASES
 from languages.render.encode import encode
 
@@ -68,13 +70,20 @@ class Found:
     clips: int
 
 
-def degrade(images: Sequence[Image], murk: float, *, far: bool) -> Iterator[Image]:
-    """Mix each image with `murk` of the water's colour and with noise; halve it before if `far`."""
+def degrade(
+    images: Sequence[Image], murk: float, *, far: bool, blink: float = 0.0
+) -> Iterator[Image]:
+    """Mix each image with `murk` of the water's colour and with noise; halve it before if `far`.
+
+    `blink` is the share of the light that goes out and comes again, twice a second.
+    """
     generator = np.random.default_rng(0)
-    for image in images:
+    for number, image in enumerate(images):
         clear = _halve(image) if far else image
+        is_dark = number / RATE % PULSE_SECONDS >= PULSE_SECONDS / 2
+        light = 1 - blink if is_dark else 1.0
         noise = generator.normal(0, NOISE * murk, clear.shape)
-        mixed = (1 - murk) * clear + murk * np.array(WATER_COLOUR) + noise
+        mixed = (1 - murk) * light * clear + murk * np.array(WATER_COLOUR) + noise
         yield np.clip(mixed, 0, 255).astype(np.uint8)
 
 
@@ -144,6 +153,7 @@ def main() -> None:
     parser.add_argument("--murk", type=float, nargs="+", default=MURK)
     parser.add_argument("--water", nargs="+", default=get_args(WaterCorrection))
     parser.add_argument("--far", action="store_true", help="half as large, with more water around")
+    parser.add_argument("--blink", type=float, default=0.0, help="share of the light, 0 to 1")
     arguments = parser.parse_args()
     folder = samples_dir() / "clips"
     names = arguments.names or sorted(path.stem for path in folder.glob("*-test-*.mp4"))
@@ -155,7 +165,8 @@ def main() -> None:
             clips = [Path(scratch) / f"{name}.mp4" for name in names]
             for clip in clips:
                 with read_frames(folder / clip.name) as frames:
-                    images = list(degrade([one.image for one in frames], murk, far=arguments.far))
+                    seen = [one.image for one in frames]
+                images = list(degrade(seen, murk, far=arguments.far, blink=arguments.blink))
                 clip.write_bytes(encode(images, RATE, RATE_FACTOR))
             for water in arguments.water:
                 found = measure(clips, water, estimator, recognizer, phases)

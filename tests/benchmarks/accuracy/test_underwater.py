@@ -26,6 +26,11 @@ def test_murk_leaves_its_complement_of_the_contrast_and_pulls_to_the_water_s_col
     np.testing.assert_allclose(shown.mean(axis=(0, 1)), expected, atol=1)
 
 
+def test_lights_that_blink_darken_half_of_the_time() -> None:
+    shown = list(degrade([np.full((4, 4, 3), 200, np.uint8)] * 25, 0.0, far=False, blink=0.5))
+    assert [int(image[0, 0, 0]) for image in shown].count(100) == 12
+
+
 def test_far_away_the_picture_keeps_its_size() -> None:
     picture = np.zeros((48, 64, 3), np.uint8)
     picture[8:40, 8:56] = 255
