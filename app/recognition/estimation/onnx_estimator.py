@@ -99,12 +99,12 @@ class OnnxPoseEstimator:
         """
         check_image(image)
         if self._helper is None:
-            found, followed = self._body.track(image, time), self._hands.follow(image)
+            found, followed = self._body.track(image, time), self._hands.follow(image, time)
         else:
-            following = self._helper.submit(self._hands.follow, image)
+            following = self._helper.submit(self._hands.follow, image, time)
             found = self._body.track(image, time)
             followed = following.result()
-        hands = self._hands.complete(image, followed, found.bodies)
+        hands = self._hands.complete(image, followed, found.bodies, time)
         self._body.seek(find_stray_wrist(hands, found.bodies))
         return replace(found, hands=hands)
 

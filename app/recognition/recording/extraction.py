@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
 from typing import Final
@@ -264,7 +265,7 @@ def _record(
     sight.reset()
     collector = _Collector(frames.info, estimator)
     done = 0
-    for frame in frames:
+    for frame in read_ahead(frames):
         found = sight.estimate(frame.image, frame.time)
         collector.add(frame.time, found)
         if observer is not None:
@@ -275,6 +276,16 @@ def _record(
     if progress is not None:
         progress(done, done)
     return collector.recording(frames.warnings)
+
+
+def read_ahead(frames: Iterable[VideoFrame]) -> Iterator[VideoFrame]:
+    """Yield frames; the next one is decoded in another thread meanwhile."""
+    coming = iter(frames)
+    with ThreadPoolExecutor(1, "decoder") as decoder:
+        pending = decoder.submit(next, coming, None)
+        while (frame := pending.result()) is not None:
+            pending = decoder.submit(next, coming, None)
+            yield frame
 
 
 def _expected_frames(info: VideoInfo, frame: VideoFrame) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -46,6 +47,125 @@ tracked body's arms 95 % are nearer than 0.6; those of bystanders are several pa
 OWN_REACH: Final = 1.5
 """As `REACH`, for a hand that belongs to the nearest of several people: the smoothed wrist of a
 fast arm lags behind its hand by up to half a palm."""
+
+
+HELD_SECONDS: Final = 0.06
+"""Seconds between two looks at a hand that is held up: every second frame of a camera. A salute and
+a hand shape are held for half a second."""
+
+MOVING_SECONDS: Final = 0.2
+"""The same for a hand that moves: its shape is seen five times a second."""
+
+HANGING_SECONDS: Final = 0.3
+"""The same for a hand that hangs: a salute is held for longer."""
+
+MOST_MISSES: Final = 2
+"""Searches in consecutive frames for a hand that was lost, after which the pace counts again."""
+
+UNSEEN_SECONDS: Final = 0.15
+"""Least seconds between two searches from then on: each costs up to two looks."""
+
+SLOW: Final = 1.0
+"""Speed of a hand that is held, at most, in torso lengths a second."""
+
+SETTLED_SECONDS: Final = 0.4
+"""Time for which a hand has to be faster to count as moving: a salute's end is seen exactly."""
+
+RAISED: Final = 0.25
+"""Height of a raised wrist above the hips, along the body, in torso lengths."""
+
+SAME_ARM: Final = 1.0
+"""Largest movement of a wrist between two frames, in body sizes, by which it is the same arm."""
+
+Arm = tuple[Body, Side]
+"""An arm of one of the bodies in an image."""
+
+
+@dataclass(eq=False)
+class ArmPace:
+    """How often the hand of one arm is looked at.
+
+    Attributes
+    ----------
+    side
+        Which arm it is.
+    wrist
+        ``(2,)`` its wrist in the last frame, pixels.
+    period
+        Seconds between two looks.
+    shift
+        ``(2,)`` the wrist's movement from the frame before, pixels.
+    read, forearm_searched
+        Times, in seconds, of the last look at its hand, and of the last search at its forearm.
+    misses
+        Searches in vain since its hand was seen last.
+    slow
+        Time at which the wrist was slow last.
+
+    """
+
+    side: Side
+    wrist: FloatArray
+    period: float = 0.0
+    shift: FloatArray = field(default_factory=lambda: np.zeros(2))
+    read: float = -np.inf
+    forearm_searched: float = -np.inf
+    slow: float = -np.inf
+    misses: int = 0
+
+    def is_due(self, time: float) -> bool:
+        """Return whether its hand should be looked at in a frame taken at `time` seconds."""
+        if 0 < self.misses <= MOST_MISSES:
+            return True
+        pause = max(self.period, UNSEEN_SECONDS) if self.misses else self.period
+        return not 0 <= time - self.read < pause
+
+    def move(self, body: Body, seconds: float, time: float) -> None:
+        """Update by the body in the next frame, taken `seconds` after the last one."""
+        wrist = body.xy[POSE_LANDMARKS.index(f"{self.side}_wrist")]
+        self.shift, self.wrist = wrist - self.wrist, wrist
+        shoulder, hip = (
+            body.xy[[POSE_LANDMARKS.index(f"{side}_{joint}") for side in SIDES]].mean(axis=0)
+            for joint in ("shoulder", "hip")
+        )
+        size = max(measure_body(body), 1e-9)
+        if not np.linalg.norm(self.shift) >= SLOW * size * seconds:
+            self.slow = time
+        if time - self.slow > SETTLED_SECONDS:
+            self.period = MOVING_SECONDS
+        else:
+            up = (shoulder - hip) / max(float(np.linalg.norm(shoulder - hip)), 1e-9)
+            is_raised = float((wrist - hip) @ up) > RAISED * size
+            self.period = HELD_SECONDS if is_raised else HANGING_SECONDS
+
+
+class ArmPaces:
+    """The arms in the frames of one clip, told apart by side and place."""
+
+    def __init__(self) -> None:
+        self._arms: list[ArmPace] = []
+        self._time = -np.inf
+
+    def update(self, arms: Sequence[Arm], time: float) -> list[ArmPace]:
+        """Return the pace of each arm in a frame taken at `time` seconds."""
+        seconds = time - self._time
+        known = self._arms if seconds > 0 else []
+        self._time, self._arms = time, []
+        for body, side in arms:
+            wrist = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
+            near = [
+                (float(np.linalg.norm(pace.wrist - wrist)), number)
+                for number, pace in enumerate(known)
+                if pace.side == side and pace not in self._arms
+            ]
+            far, number = min(near, default=(np.inf, -1))
+            if far <= SAME_ARM * measure_body(body):
+                pace = known[number]
+                pace.move(body, seconds, time)
+            else:
+                pace = ArmPace(side, wrist)
+            self._arms.append(pace)
+        return self._arms
 
 
 def region_of_wrist(body: Body, side: Side) -> Region | None:

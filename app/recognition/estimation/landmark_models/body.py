@@ -19,7 +19,7 @@ from app.recognition.estimation.landmark_models.body_search import TORSO, WEAK_S
 from app.recognition.estimation.landmark_models.detector import LEAST_SCORE, Detector
 from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.estimation.landmark_models.smoothing import ExponentialFilter, OneEuroFilter
-from app.recognition.poses.frame import Body, FrameLandmarks, Image
+from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import FloatArray
 
@@ -51,6 +51,16 @@ HURRY: Final = 75
 """Frames for which somebody who was lost is looked for, three seconds: who swims past hides a diver
 for less."""
 
+REST_SECONDS: Final = 0.06
+"""Least seconds between two looks at a person who keeps still: every second frame of a camera."""
+
+STILL: Final = 0.5
+"""Speed of the fastest joint of a person who keeps still, at most, in torso sizes a second: what
+the model's result varies by without any movement."""
+
+STILL_SECONDS: Final = 0.3
+"""Time for which a person has kept still by then: the model's regions and results have settled."""
+
 SAME_TORSO: Final = 0.5
 """Mean distance of two torsos' corners, in the larger torso's size, below which two results show
 one person: two people so near hide each other."""
@@ -65,6 +75,12 @@ VISIBILITY_WEIGHT: Final = 0.1
 
 _WRISTS: Final = [POSE_LANDMARKS.index(name) for name in WRISTS]
 
+_ARMS: Final = [
+    POSE_LANDMARKS.index(f"{side}_{joint}")
+    for side in SIDES
+    for joint in ("shoulder", "elbow", "wrist")
+]
+
 
 @dataclass(eq=False)
 class _Person:
@@ -77,6 +93,20 @@ class _Person:
     visibility: ExponentialFilter = field(
         default_factory=lambda: ExponentialFilter(VISIBILITY_WEIGHT)
     )
+
+    looked: float = -math.inf
+    moved: float = math.inf
+
+    def rests(self, time: float) -> bool:
+        """Return whether nothing has to be looked at in a frame taken at `time` seconds."""
+        return 0 < time - self.looked < REST_SECONDS and time - self.moved > STILL_SECONDS
+
+    def note(self, seen: SeenBody, time: float) -> None:
+        """Note a new result, and whether a joint of the arms has moved since the last one."""
+        far = np.linalg.norm(seen.xy[_ARMS] - self.seen.xy[_ARMS], axis=1).max()
+        if not 0 <= far < STILL * _measure_torso(seen) * (time - self.looked) < math.inf:
+            self.moved = time
+        self.looked = time
 
     def smooth(self, time: float) -> Body:
         """Return the newest result, smoothed."""
@@ -137,7 +167,7 @@ class BodyTracker:
 
     def track(self, image: Image, time: float) -> FrameLandmarks:
         """Return the bodies in `image`, taken at `time` seconds."""
-        followed = self._follow(image)
+        followed = self._follow(image, time)
         lost = 0 < len(followed) < len(self._people)
         self._hurry = HURRY if lost else max(0, self._hurry - 1)
         # As in MediaPipe, the frame in which everybody is lost is not searched.
@@ -161,15 +191,19 @@ class BodyTracker:
         """
         self._sought = wrist
 
-    def _follow(self, image: Image) -> list[_Person]:
-        """Return the people who are still seen.
+    def _follow(self, image: Image, time: float) -> list[_Person]:
+        """Return the people who are still seen; who keeps still is looked at in every second frame.
 
         Where two results show one person, the track that came there by a jump is lost.
         """
         moved: list[tuple[float, int, SeenBody]] = []
         for place, person in enumerate(self._people):
+            if self._search is not None and person.rests(time):
+                moved.append((0.0, place, person.seen))
+                continue
             seen = self._look(image, person.seen.following)
             if seen is not None:
+                person.note(seen, time)
                 moved.append((_measure_distance(person.seen, seen), place, seen))
         kept: dict[int, SeenBody] = {}
         for _, place, seen in sorted(moved, key=lambda one: one[0]):

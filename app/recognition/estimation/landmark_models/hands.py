@@ -12,6 +12,9 @@ from typing_extensions import Self
 from app.recognition.estimation.landmark_models.arms import (
     FOREARM_REACH,
     REACH,
+    Arm,
+    ArmPace,
+    ArmPaces,
     region_of_wrist,
     regions_of_forearm,
     wrist_distance,
@@ -51,13 +54,12 @@ of MediaPipe Holistic."""
 SAME_REGION: Final = 0.5
 """Overlap above which a candidate is a hand that is tracked already (MediaPipe's default)."""
 
-PALM_PAUSE: Final = 4
+PALM_PAUSE: Final = 10
 """Frames between palm detections while a body is seen, whose arms are searched in every frame. Palm
 detection costs as much as the body model."""
 
-FOREARM_PAUSE: Final = 10
-"""Frames between searches at the ends of forearms, which cost up to four looks an arm: at most a
-tenth of a frame's time is spent on arms without a hand."""
+FOREARM_SECONDS: Final = 0.4
+"""Seconds between searches at the end of a forearm, which cost up to four looks."""
 
 SURE: Final = 0.8
 """Presence from which a hand is certain. Below it, most results at the end of a forearm, or of the
@@ -70,9 +72,6 @@ DUPLICATE_OVERLAP: Final = 0.2
 """Two hands are one if at least this number of landmarks lies within this share of the palm's size
 of each other and their boxes overlap by more than this; MediaPipe found the three values by
 experiment."""
-
-Arm = tuple[Body, Side]
-"""An arm of one of the bodies in an image."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -91,12 +90,29 @@ class SeenHand:
         Its region in the next frame.
     fresh
         Whether it was not tracked from the frame before.
+    arm
+        The arm that it is at the end of; None: none, or not known yet.
+    carried
+        Whether it was not looked at in this frame, but is where its arm carried it.
 
     """
 
     hand: Hand
     following: Region
     fresh: bool = False
+    arm: ArmPace | None = None
+    carried: bool = False
+
+    def carry(self) -> SeenHand:
+        """Return the hand where the movement of its arm in the last frame has carried it."""
+        if self.arm is None:
+            return self
+        dx, dy = self.arm.shift
+        moved = replace(self.hand, xy=self.hand.xy + self.arm.shift)
+        region = self.following
+        return replace(
+            self, hand=moved, following=replace(region, x=region.x + dx, y=region.y + dy)
+        )
 
 
 class HandModel:
@@ -149,7 +165,8 @@ class HandTracker:
     The palm detector works on the whole frame at 192 pixels a side, in which the hands of a distant
     diver are too small. With ``search="pose"`` a hand is searched in the full frame at each arm
     that has none (after MediaPipe Holistic, Grishchenko and Bazarevsky 2020), every few frames also
-    at the end of the forearm, for gloves, and no arm has two hands.
+    at the end of the forearm, for gloves, and no arm has two hands. How often a hand is looked at
+    depends on its arm (`ArmPaces`); between, it is where the arm's wrist carries it.
 
     Parameters
     ----------
@@ -173,19 +190,22 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
-        self._until_forearms = 0
+        self._paces = ArmPaces()
 
     def renew(self) -> Self:
         """Return a tracker with the same models that has seen nothing yet."""
         return type(self)(self._palms, self._model, self._search)
 
-    def follow(self, image: Image) -> tuple[SeenHand, ...]:
-        """Return the hands in `image` by tracking and palm detection.
+    def follow(self, image: Image, time: float = 0.0) -> tuple[SeenHand, ...]:
+        """Return the hands in `image`, taken at `time` seconds, by tracking and palm detection.
 
         It needs no body, so it can run in parallel with the body's models.
         """
         kept: list[SeenHand] = []
         for tracked in self._tracked:
+            if tracked.arm is not None and not tracked.arm.is_due(time):
+                kept.append(replace(tracked, carried=True, fresh=False))
+                continue
             seen = self._model.look(image, tracked.following)
             if seen is not None and not _known(seen, kept):
                 kept.append(seen)
@@ -196,7 +216,11 @@ class HandTracker:
         return tuple(kept)
 
     def complete(
-        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body]
+        self,
+        image: Image,
+        followed: tuple[SeenHand, ...],
+        bodies: Sequence[Body],
+        time: float = 0.0,
     ) -> tuple[Hand, ...]:
         """Return the hands in `image`, larger first.
 
@@ -208,13 +232,16 @@ class HandTracker:
             What `follow` returned.
         bodies
             The bodies in the image, if any are seen.
+        time
+            Seconds.
 
         """
         self._most = MOST_HANDS * max(1, len(bodies))
         if self._search == "pose" and bodies:
-            seen = self._on_arms(image, followed, bodies)
+            seen = self._on_arms(image, followed, bodies, time)
         else:
-            seen, self._until_palms = self._most_believed(followed), 0
+            alone = [replace(one, arm=None, carried=False) for one in followed]
+            seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
         return tuple(sorted((one.hand for one in seen), key=lambda hand: -hand.size))
 
@@ -236,7 +263,7 @@ class HandTracker:
         ]
 
     def _on_arms(
-        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body]
+        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body], time: float
     ) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
@@ -245,15 +272,25 @@ class HandTracker:
         score.
         """
         free = [(body, side) for body in bodies for side in SIDES]
-        arms, elsewhere = _sort_by_arm(followed, free)
-        with_forearms = self._until_forearms == 0
-        self._until_forearms = (self._until_forearms or FOREARM_PAUSE) - 1
-        for place, (body, side) in enumerate(free):
-            if place not in arms:
-                seen = self._search_arm(image, body, side, with_forearm=with_forearms)
+        paces = self._paces.update(free, time)
+        carried = [one.carry() if one.carried else one for one in followed]
+        arms, elsewhere = _sort_by_arm(carried, free)
+        for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
+            if place in arms:
+                pace.read = pace.read if arms[place].carried else time
+                pace.misses = 0
+            elif pace.is_due(time):
+                pace.read = time
+                with_forearm = time - pace.forearm_searched >= FOREARM_SECONDS
+                if with_forearm:
+                    pace.forearm_searched = time
+                seen = self._search_arm(image, body, side, with_forearm=with_forearm)
                 if seen is not None and not _known(seen, arms.values()):
                     arms[place] = seen
-        return self._most_believed((*arms.values(), *elsewhere))
+                pace.misses = 0 if place in arms else pace.misses + 1
+        at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
+        alone = [replace(one, arm=None, carried=False) for one in elsewhere]
+        return self._most_believed((*at_arms, *alone))
 
     def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
         return tuple(_by_belief(seen)[: self._most])
