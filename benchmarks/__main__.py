@@ -16,7 +16,7 @@ from benchmarks.cost import (
 )
 
 PARTS = {
-    "extraction": extraction.main,
+    "extraction": extraction.compare_bare,
     "footage": footage.main,
     "recognition": recognition.main,
     "speed": speed.main,

@@ -9,7 +9,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.estimation.water_sight import WaterSight
+from app.recognition.estimation.water_sight import Sparing, WaterSight
 from app.recognition.language.requirements import require_landmarks, require_trigger
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
@@ -44,6 +44,12 @@ RATE_SECONDS: Final = 5.0
 
 LEAST_RATE: Final = 4.0
 """Processed frames a second below which gestures are missed; see `docs/robots/on-the-boat.md`."""
+
+SPARE_BELOW: Final = 10.0
+"""Processed frames a second below which a machine that drops frames does less for each."""
+
+SPARE_UNTIL: Final = 20.0
+"""The same above which it does everything again: twice as many, for doing less raises the rate."""
 
 THE_ESTIMATOR: Final = "the pose estimator"
 """Subject of the message about a missing landmark."""
@@ -118,6 +124,7 @@ class Runtime:
         self._time = 0.0
         self._beaten = 0.0
         self._lost = False
+        self._spares = False
 
     def stop(self) -> None:
         """Stop after the current frame; any thread and any signal handler may call this."""
@@ -174,6 +181,26 @@ class Runtime:
             yield RecognitionReady(frame.time)
         yield from self._drops.count(frame)
         yield from self._rate.count(frame.time)
+        yield from self._spare()
+
+    def _spare(self) -> Iterator[SourceWarned]:
+        """Let the estimator do less for each frame of a camera that this machine cannot follow."""
+        rate = self._rate.frames_per_second
+        if rate is None or not self._source.live or not isinstance(self._estimator, Sparing):
+            return
+        if rate < SPARE_BELOW and not self._spares and self._drops.dropped:
+            self._spares = True
+            reason = (
+                f"this machine processes {rate:.1f} frames a second: hands that move or hang are "
+                "looked at once a second, and hands that are held in every second frame"
+            )
+        elif rate > SPARE_UNTIL and self._spares:
+            self._spares = False
+            reason = f"this machine processes {rate:.1f} frames a second: all is looked at again"
+        else:
+            return
+        self._estimator.spare(spares=self._spares)
+        yield SourceWarned(self._time, reason)
 
     def _handle_notice(self, notice: Notice) -> Iterator[Event]:
         match notice:
@@ -254,9 +281,16 @@ class RateWatch:
     """Watch on the rate of processed frames.
 
     The first frame does not count, because the models are loaded while it is processed.
+
+    Attributes
+    ----------
+    frames_per_second
+        The rate in the last `RATE_SECONDS`; None before.
+
     """
 
     def __init__(self) -> None:
+        self.frames_per_second: float | None = None
         self._is_first = True
         self._began: float | None = None
         self._last = 0.0
@@ -288,7 +322,7 @@ class RateWatch:
     def _judge(self, time: float) -> Iterator[FrameRateChanged]:
         assert self._began is not None
         self._judged = True
-        rate = round(self._frames / (time - self._began), 1)
+        rate = self.frames_per_second = round(self._frames / (time - self._began), 1)
         if (rate >= LEAST_RATE) != self._sufficient:
             self._sufficient = not self._sufficient
             yield FrameRateChanged(time, rate, self._sufficient)

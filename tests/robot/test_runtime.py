@@ -13,7 +13,7 @@ import pytest
 
 from app.recognition import Gesture, Language, OsgError, PoseSequence, record
 from app.recognition.errors import LandmarkError, LanguageError
-from app.recognition.estimation import PoseEstimator, create_estimator
+from app.recognition.estimation import OnnxPoseEstimator, PoseEstimator, create_estimator
 from app.recognition.recording.segmentation import TakeState
 from app.robot import (
     ActiveLanguage,
@@ -144,6 +144,32 @@ def test_the_rate_is_told_once_for_each_change() -> None:
 
 def test_the_time_in_which_the_models_are_loaded_is_no_low_rate() -> None:
     assert rates([0.0, *[8 + each / 5 for each in range(60)]]) == []
+
+
+@pytest.mark.slow
+def test_a_machine_that_drops_frames_does_less_for_each_and_says_so(
+    estimator: PoseEstimator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(runtime_module, "RATE_SECONDS", 0.2)
+    monkeypatch.setattr(runtime_module, "SPARE_BELOW", 1000.0)
+    monkeypatch.setattr(runtime_module, "SPARE_UNTIL", 2000.0)
+    assert isinstance(estimator, OnnxPoseEstimator)
+    with (
+        MjpegServer(pause=0.002) as server,
+        closing(open_source(f"http://127.0.0.1:{server.port}/")) as source,
+    ):
+        runtime = Runtime(source, estimator, TriggerListener(spoken("circle")))
+        for event in runtime:
+            if isinstance(event, SourceWarned):
+                assert "hands that move or hang are looked at once a second" in event.reason
+                monkeypatch.setattr(runtime_module, "SPARE_UNTIL", 0.0)
+                assert estimator._body.spares
+                break
+        for event in runtime:
+            if isinstance(event, SourceWarned):
+                assert event.reason.endswith("all is looked at again")
+                break
+    assert not estimator._body.spares
 
 
 def test_a_gap_in_which_the_source_is_lost_is_no_low_rate() -> None:

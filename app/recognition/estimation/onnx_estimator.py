@@ -121,6 +121,14 @@ class OnnxPoseEstimator:
         found, hands = self._body.examine(image), self._hands.renew()
         return replace(found, hands=hands.complete(image, hands.follow(image), found.bodies))
 
+    def spare(self, *, spares: bool) -> None:
+        """Look at hands and still bodies less often, on a machine that is too slow for its camera.
+
+        Hands that move or hang are then looked at once a second.
+        """
+        self._body.spares = spares
+        self._hands.spare(spares=spares)
+
     def reset(self) -> None:
         """Reset tracking and smoothing; call it before another clip."""
         self._body.reset()

@@ -26,6 +26,15 @@ class Examiner(Protocol):
         ...
 
 
+@runtime_checkable
+class Sparing(Protocol):
+    """Interface of estimators that can do less for each frame."""
+
+    def spare(self, *, spares: bool) -> None:
+        """Look at hands and still bodies less often, or as often as usual."""
+        ...
+
+
 class WaterSight:
     """Corrects the water in frames, in order, and lets an estimator find the landmarks in them.
 

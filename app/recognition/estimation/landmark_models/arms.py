@@ -59,6 +59,9 @@ MOVING_SECONDS: Final = 0.2
 HANGING_SECONDS: Final = 0.3
 """The same for a hand that hangs: a salute is held for longer."""
 
+SPARE_SECONDS: Final = 1.0
+"""The same for a hand that moves or hangs, on a machine that is too slow: salutes are held."""
+
 MOST_MISSES: Final = 2
 """Searches in consecutive frames for a hand that was lost, after which the pace counts again."""
 
@@ -120,7 +123,7 @@ class ArmPace:
         pause = max(self.period, UNSEEN_SECONDS) if self.misses else self.period
         return not 0 <= time - self.read < pause
 
-    def move(self, body: Body, seconds: float, time: float) -> None:
+    def move(self, body: Body, seconds: float, time: float, *, spares: bool = False) -> None:
         """Update by the body in the next frame, taken `seconds` after the last one."""
         wrist = body.xy[POSE_LANDMARKS.index(f"{self.side}_wrist")]
         self.shift, self.wrist = wrist - self.wrist, wrist
@@ -131,18 +134,28 @@ class ArmPace:
         size = max(measure_body(body), 1e-9)
         if not np.linalg.norm(self.shift) >= SLOW * size * seconds:
             self.slow = time
+        up = (shoulder - hip) / max(float(np.linalg.norm(shoulder - hip)), 1e-9)
         if time - self.slow > SETTLED_SECONDS:
-            self.period = MOVING_SECONDS
+            self.period = SPARE_SECONDS if spares else MOVING_SECONDS
+        elif float((wrist - hip) @ up) > RAISED * size:
+            self.period = max(HELD_SECONDS, 1.5 * seconds) if spares else HELD_SECONDS
         else:
-            up = (shoulder - hip) / max(float(np.linalg.norm(shoulder - hip)), 1e-9)
-            is_raised = float((wrist - hip) @ up) > RAISED * size
-            self.period = HELD_SECONDS if is_raised else HANGING_SECONDS
+            self.period = SPARE_SECONDS if spares else HANGING_SECONDS
 
 
 class ArmPaces:
-    """The arms in the frames of one clip, told apart by side and place."""
+    """The arms in the frames of one clip, told apart by side and place.
 
-    def __init__(self) -> None:
+    Attributes
+    ----------
+    spares
+        Whether the machine is too slow for a camera: a hand that is held is then looked at in every
+        second frame, however few there are, and any other once a second.
+
+    """
+
+    def __init__(self, *, spares: bool = False) -> None:
+        self.spares = spares
         self._arms: list[ArmPace] = []
         self._time = -np.inf
 
@@ -161,9 +174,9 @@ class ArmPaces:
             far, number = min(near, default=(np.inf, -1))
             if far <= SAME_ARM * measure_body(body):
                 pace = known[number]
-                pace.move(body, seconds, time)
+                pace.move(body, seconds, time, spares=self.spares)
             else:
-                pace = ArmPace(side, wrist)
+                pace = ArmPace(side, wrist, slow=time)
             self._arms.append(pace)
         return self._arms
 

@@ -183,6 +183,7 @@ class HandTracker:
         self._palms = palms
         self._model = model
         self._search = search
+        self._spares = False
         self.reset()
 
     def reset(self) -> None:
@@ -190,7 +191,11 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
-        self._paces = ArmPaces()
+        self._paces = ArmPaces(spares=self._spares)
+
+    def spare(self, *, spares: bool) -> None:
+        """Look at hands less often, or as often as usual; see `ArmPaces`."""
+        self._spares = self._paces.spares = spares
 
     def renew(self) -> Self:
         """Return a tracker with the same models that has seen nothing yet."""

@@ -10,7 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.estimation.landmark_models.arms import (
+    MOST_MISSES,
     REACH,
+    ArmPaces,
     measure_body,
     region_of_wrist,
     regions_of_forearm,
@@ -105,3 +107,83 @@ def test_a_forearm_that_was_not_seen_has_no_regions() -> None:
 
 def test_a_body_seen_from_the_side_is_as_long_as_its_torso() -> None:
     assert measure_body(standing()) == pytest.approx(200)
+
+
+TORSO = 200.0
+"""Pixels of the torso of a body that stands upright, its hips at y = 400."""
+
+
+def holding(height: float, across: float = 0.0) -> Body:
+    """Return a body whose right wrist is so many torso lengths above the hips, and to the side."""
+    xy: FloatArray = np.full((len(POSE_LANDMARKS), 2), np.nan)
+    for side, x in (("left", 350.0), ("right", 250.0)):
+        xy[POSE_LANDMARKS.index(f"{side}_shoulder")] = x, 400 - TORSO
+        xy[POSE_LANDMARKS.index(f"{side}_hip")] = x, 400
+    xy[POSE_LANDMARKS.index("right_wrist")] = 200 + TORSO * across, 400 - TORSO * height
+    return Body(xy, np.ones(len(POSE_LANDMARKS)), 1.0)
+
+
+def count_looks(bodies: list[Body], rate: float = 25.0, *, spares: bool = False) -> int:
+    """Return in how many frames the hand of the right arm is due, and looked at."""
+    paces, looks = ArmPaces(spares=spares), 0
+    for number, body in enumerate(bodies):
+        (pace,) = paces.update([(body, "right")], number / rate)
+        if pace.is_due(number / rate):
+            pace.read, looks = number / rate, looks + 1
+    return looks
+
+
+@pytest.mark.parametrize("rate", [24.0, 25.0, 30.0])
+def test_a_hand_that_is_held_up_is_looked_at_in_every_second_frame(rate: float) -> None:
+    assert count_looks([holding(1.2)] * 50, rate) == pytest.approx(25, abs=1)
+
+
+def test_a_hand_that_hangs_is_looked_at_three_times_a_second() -> None:
+    assert count_looks([holding(-0.3)] * 75) == pytest.approx(10, abs=1)
+
+
+def test_a_hand_that_moves_is_looked_at_five_times_a_second_once_it_has_left() -> None:
+    moving = [holding(1.2, across=0.06 * number) for number in range(60)]
+    held = 12  # frames until it counts as moving
+    assert count_looks(moving[:held]) == pytest.approx(6, abs=1)
+    assert count_looks(moving) == pytest.approx(6 + (60 - held) / 5, abs=2)
+
+
+def test_a_hand_that_comes_to_rest_is_looked_at_in_the_next_frame() -> None:
+    paces = ArmPaces()
+    path = [0.06 * number for number in range(30)] + [1.74] * 3
+    for number, across in enumerate(path):
+        (pace,) = paces.update([(holding(1.2, across), "right")], number / 25)
+        if number == 29:
+            pace.read = number / 25
+    assert pace.is_due(len(path) / 25)
+
+
+def test_a_camera_of_a_few_frames_a_second_has_each_of_them_looked_at() -> None:
+    assert count_looks([holding(1.2)] * 20, rate=8.0) == 20
+
+
+def test_a_slow_machine_looks_at_held_hands_in_every_second_frame_and_at_others_once_a_second() -> (
+    None
+):
+    assert count_looks([holding(1.2)] * 40, rate=5.0, spares=True) == pytest.approx(20, abs=1)
+    assert count_looks([holding(-0.3)] * 40, rate=5.0, spares=True) == pytest.approx(8, abs=1)
+
+
+def test_a_hand_that_was_lost_is_sought_at_once_and_then_less_often() -> None:
+    (pace,) = ArmPaces().update([(holding(1.2), "right")], 0.0)
+    due = []
+    for number in range(1, 11):
+        due.append(pace.is_due(number / 25))
+        if due[-1]:
+            pace.read, pace.misses = number / 25, pace.misses + 1
+    assert due[: MOST_MISSES + 1] == [True] * (MOST_MISSES + 1)
+    assert due[MOST_MISSES + 1 :].count(True) <= 2
+
+
+def test_arms_of_several_people_keep_their_pace_whatever_their_order() -> None:
+    paces = ArmPaces()
+    near, far = holding(1.2), holding(1.2, across=3.0)
+    first, second = paces.update([(near, "right"), (far, "right")], 0.0)
+    assert paces.update([(far, "right"), (near, "right")], 0.04) == [second, first]
+    assert paces.update([(near, "right")], 0.0)[0] not in (first, second)  # another clip

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from app.recognition.estimation import Image, OnnxPoseEstimator
-from app.recognition.estimation.landmark_models.body import SEARCH_PAUSE
+from app.recognition.estimation.landmark_models.body import SEARCH_PAUSE, STILL_SECONDS
+from app.recognition.estimation.landmark_models.body_model import BodyModel, SeenBody
+from app.recognition.estimation.landmark_models.region import Region
 from tests.recognition.estimation.clip_frames import clip_frames
 
 
@@ -47,6 +49,29 @@ def test_frames_with_somebody_start_the_pause_anew(
     some = [nobody] * (SEARCH_PAUSE - 2)
     seen = found(estimator, [*some, upright, nobody, head_down])
     assert seen == [*[False] * len(some), True, False, False]
+
+
+def test_who_keeps_still_is_looked_at_in_every_second_frame_with_the_same_result(
+    estimator: OnnxPoseEstimator, upright: Image, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looks = 0
+    original = BodyModel.look
+
+    def look(model: BodyModel, image: Image, region: Region) -> SeenBody:
+        nonlocal looks
+        looks += 1
+        return original(model, image, region)
+
+    monkeypatch.setattr(BodyModel, "look", look)
+    places = []
+    for number in range(40):
+        body = estimator.estimate(upright, number / 25).body
+        assert body is not None
+        places.append(body.xy)
+    settled = round(STILL_SECONDS * 25) + 3
+    assert looks <= settled + (40 - settled) / 2 + 5  # and some of the search for further people
+    moved = np.linalg.norm(places[-1] - places[settled], axis=1)
+    assert np.median(moved) < 0.01 * upright.shape[0]
 
 
 def test_a_single_image_is_searched_at_once(estimator: OnnxPoseEstimator, upright: Image) -> None:
