@@ -98,6 +98,8 @@ class Job(Generic[Result]):
         Does the work; cancelling its asyncio task or an exception of its argument ends it.
     resumable
         Whether the next start of the server runs it again, so that a stop need not cancel it.
+    detached
+        Whether it goes on when all who waited for it have left.
     cached
         Whether the next job of the same key has the same result, which is kept ready.
 
@@ -108,6 +110,7 @@ class Job(Generic[Result]):
     event: Callable[[Progress], Event]
     run: Callable[[Report], Coroutine[Any, Any, Result]]
     resumable: bool = False
+    detached: bool = False
     cached: bool = False
 
 
@@ -222,7 +225,7 @@ class JobRunner:
         """Run a job, or wait for the running one of the same key, and return its result.
 
         The job goes on when a caller is cancelled while others wait. When the last caller is
-        cancelled, the job ends, unless it is resumable.
+        cancelled, the job ends, unless it is resumable or detached.
 
         Raises
         ------
@@ -244,7 +247,7 @@ class JobRunner:
             await asyncio.wait([task])
         finally:
             run.waiting -= 1
-            if not (run.waiting or task.done() or job.resumable):
+            if not (run.waiting or task.done() or job.resumable or job.detached):
                 await self.cancel(job.key)
         if task.cancelled():
             raise JobCancelled

@@ -107,7 +107,7 @@ def test_run_of(studio: Studio, state: LanguageState) -> Job[Finished | Failed] 
         return await run_task(studio.workers, task, report, keep)
 
     event = events_about("tests", id=language_id, revision=revision)
-    return Job("test_run", test_run_key(language_id, revision), event, run)
+    return Job("test_run", test_run_key(language_id, revision), event, run, detached=True)
 
 
 def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:

@@ -5,6 +5,7 @@ import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { recordAction, showDone } from "../core/undo.js";
+import { queueOf } from "./batch.js";
 import { BUSY } from "./busy.js";
 import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
 import { needsTopic, reloadClip, select, statusText } from "./clip-store.js";
@@ -154,7 +155,7 @@ function draw(clip, element) {
   const job = state.jobs.get(clip.job_id);
   const busy = BUSY.has(clip.status);
   const chosen = clip.id === state.clip;
-  const signature = JSON.stringify([clip, job, chosen]);
+  const signature = JSON.stringify([clip, job, chosen, statusText(clip, job)]);
   if (element?.dataset.signature === signature) return element;
   // Progress comes ten times a second: a button must not be replaced under the pointer.
   const shape = JSON.stringify([clip, chosen, hasPoster(clip)]);
@@ -206,7 +207,10 @@ export function drawClips(state) {
     wanted ? clip.name.toLowerCase().includes(wanted) : isListed(clip, state) || clip.id === chosen,
   );
   const list = byId("clips");
-  reconcile(list, shown, (clip) => clip.id, draw);
+  // Those that are worked on come first, in the order of the work.
+  const worked = [...shown.filter(({ status }) => status === "running"), ...queueOf(shown)];
+  const inOrder = [...worked, ...shown.filter(({ status }) => !BUSY.has(status))];
+  reconcile(list, inOrder, (clip) => clip.id, draw);
   drawMore(state, wanted);
   byId("no-clip").textContent =
     clips.length && !shown.length && searched.text === wanted

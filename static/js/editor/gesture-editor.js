@@ -218,6 +218,7 @@ function build(section, about) {
     const fault = textProblem(draft(), others());
     if (fault) return showProblem(fault.text, document.getElementById(fault.id));
     saving.disabled = true;
+    isSaving = true;
     try {
       const label = draft().label.trim();
       const now = await save(about.language, gesture, draft(), saved());
@@ -227,6 +228,7 @@ function build(section, about) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.
     } finally {
+      isSaving = false;
       saving.disabled = false;
     }
     return undefined;
@@ -290,6 +292,8 @@ function build(section, about) {
   changed();
   if (gesture === null) parts.texts.focus();
 }
+
+let isSaving = false;
 
 function close() {
   editor?.take.pause();
@@ -398,6 +402,8 @@ export function open(section) {
       const edited = editor?.about;
       if (edited && !state.languages.some(({ id }) => id === edited.language.id))
         return bereft(edited);
+      // A gesture that is renamed has its new label before the draft is forgotten.
+      if (isSaving) return undefined;
       const about = subject();
       if (!about || !isKnown(about)) {
         left();

@@ -121,31 +121,41 @@ export async function leaveOut({ id, clip_id, start, end, expected }, name) {
 }
 
 let working = false;
+let alone = false; // Whether clips are put into the set one by one, because one of them is refused.
 
-/** Put the clips whose poses are there and whose label is known into the test set. */
+/**
+ * Put the clips whose poses are there and whose label is known into the test set, all at once: the
+ * server then recognises them, whether this page stays open or not.
+ */
 export async function workOff() {
   if (working) return;
   working = true;
-  for (let each = ready(); each; each = ready()) {
-    const { clip } = each;
-    const expected = meantBy(each);
+  for (let batch = ready(); batch.length; batch = ready()) {
+    if (alone) batch = batch.slice(0, 1);
+    const takes = batch.map((each) => ({ clip_id: each.clip, expected: meantBy(each) }));
     try {
-      await putIntoTestSet([{ clip_id: clip, expected }]);
-      const kept = state.pending.find(isSame(each));
-      // Before the recognition, so that the clip is never in two rows.
-      forget(clip);
-      if (!kept)
-        await removeClip(clip); // Left out in the meantime.
-      else if (meantBy(kept) !== expected)
-        await putIntoTestSet([{ clip_id: clip, expected: meantBy(kept) }]);
+      await putIntoTestSet(takes);
+      for (const [place, each] of batch.entries()) {
+        const kept = state.pending.find(isSame(each));
+        // Before the recognition, so that the clip is never in two rows.
+        forget(each.clip);
+        const expected = kept && meantBy(kept);
+        if (!kept)
+          await removeClip(each.clip); // Left out in the meantime.
+        else if (expected !== takes[place]?.expected)
+          await putIntoTestSet([{ clip_id: each.clip, expected }]);
+      }
       await runWithNews();
     } catch (error) {
-      if (api.isAway(error)) break; // It stays pending until the server is back.
+      if (api.isAway(error)) break; // They stay pending until the server is back.
+      alone = batch.length > 1;
+      if (alone) continue;
+      const [{ clip }] = batch;
       complain(error, `Testing ${state.clips.find(({ id }) => id === clip)?.name ?? "a clip"}`);
       forget(clip);
     }
   }
-  working = false;
+  working = alone = false;
 }
 
 /**
@@ -168,9 +178,9 @@ async function removeClip(clip) {
 }
 
 function ready() {
-  if (!state.gestures?.gestures.length) return null;
+  if (!state.gestures?.gestures.length) return [];
   const done = new Set(state.clips.filter(({ status }) => status === "done").map(({ id }) => id));
-  return state.pending.find(
+  return state.pending.filter(
     (each) => each.language === state.language && done.has(each.clip) && meantBy(each),
   );
 }

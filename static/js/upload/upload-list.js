@@ -14,9 +14,35 @@ import { upload as send } from "./tus-upload.js";
 
 /** @import { State, Upload } from "../core/types.d.ts" */
 
+const UNSENT = "osg-studio.unsent"; // sessionStorage: names of files that a reload has dropped.
+
 const AT_ONCE = 2; // More would share the same bandwidth, and each would finish later.
 
 let counter = 0;
+
+const unsent = () => state.uploads.filter(({ status }) => status !== "failed");
+
+addEventListener("beforeunload", (event) => {
+  if (unsent().length) event.preventDefault(); // The browser asks.
+});
+addEventListener("pagehide", () => {
+  const names = unsent().map(({ file }) => file.name);
+  if (names.length) sessionStorage.setItem(UNSENT, JSON.stringify(names));
+});
+
+/** Tell which files were not sent when this tab was left. */
+export function tellUnsent() {
+  /** @type {string[]} */
+  const names = JSON.parse(sessionStorage.getItem(UNSENT) ?? "[]");
+  sessionStorage.removeItem(UNSENT);
+  if (!names.length) return;
+  const named = names.slice(0, 3).join(", ") + (names.length > 3 ? ", \u2026" : "");
+  toast(
+    names.length === 1 ? "1 file was not sent" : `${names.length} files were not sent`,
+    `Choose again: ${named}`,
+    { kind: "error" },
+  );
+}
 
 /** An upload that has not begun. */
 /** @type {(file: File, first: boolean, uploaded: Upload["uploaded"]) => Upload} */

@@ -43,8 +43,8 @@ def add_labelled_takes(
 async def run_test_set(request: Request, language_id: str, studio: CurrentStudio) -> TestSetView:
     """Recognise the takes that the newest revision has not recognised yet.
 
-    Its progress comes as `tests` among the events; `DELETE` cancels it, which is answered here by
-    409, and keeps what is done.
+    Its progress comes as `tests` among the events. It goes on when the client leaves; `DELETE`
+    cancels it, which is answered here by 409, and keeps what is done.
     """
     state = await run_in_threadpool(studio.languages.get, language_id)
     if (job := await run_in_threadpool(test_run_of, studio, state)) is not None:

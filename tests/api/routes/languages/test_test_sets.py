@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from typing import Any
 
 import httpx
@@ -188,6 +189,18 @@ def test_a_run_is_a_process_that_is_cancelled_and_keeps_what_is_done(
     assert 0 < client.get(place).json()["waiting"] < 20
     found = run(client, place)
     assert (found["waiting"], found["overall"]["asked"]) == (0, 20)
+
+
+def test_a_run_goes_on_when_the_client_leaves(
+    client: httpx.Client, studio: Studio, language_id: str, place: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of(*["circle"] * 20), "many.mp4")
+    labelled(client, place, {"clip_id": clip, "expected": "circle"})
+    key = key_of_run(language_id, client.get(place).json()["revision"])
+    with httpx.Client(base_url=client.base_url, timeout=0.3) as leaving, suppress(httpx.ReadTimeout):
+        leaving.post(f"{place}/run")
+    until(lambda: studio.runner.progress(key) is None)
+    assert client.get(place).json()["waiting"] == 0
 
 
 @linux
