@@ -120,6 +120,21 @@ export async function leaveOut({ id, clip_id, start, end, expected }, name) {
   leftOut(name, () => addToTestSet([{ clip_id, start, end, expected }]));
 }
 
+/**
+ * Take a clip that is in the set now out of the waiting ones; what was changed meanwhile counts.
+ *
+ * @param {PendingClip} pending
+ * @param {string | undefined} sent
+ */
+async function settle(pending, sent) {
+  const kept = state.pending.find(isSame(pending));
+  // Before the recognition, so that the clip is never in two rows.
+  forget(pending.clip);
+  if (!kept) return removeClip(pending.clip); // Left out in the meantime.
+  const expected = meantBy(kept);
+  return expected === sent ? undefined : putIntoTestSet([{ clip_id: pending.clip, expected }]);
+}
+
 let working = false;
 let alone = false; // Whether clips are put into the set one by one, because one of them is refused.
 
@@ -135,16 +150,7 @@ export async function workOff() {
     const takes = batch.map((each) => ({ clip_id: each.clip, expected: meantBy(each) }));
     try {
       await putIntoTestSet(takes);
-      for (const [place, each] of batch.entries()) {
-        const kept = state.pending.find(isSame(each));
-        // Before the recognition, so that the clip is never in two rows.
-        forget(each.clip);
-        const expected = kept && meantBy(kept);
-        if (!kept)
-          await removeClip(each.clip); // Left out in the meantime.
-        else if (expected !== takes[place]?.expected)
-          await putIntoTestSet([{ clip_id: each.clip, expected }]);
-      }
+      for (const [place, each] of batch.entries()) await settle(each, takes[place]?.expected);
       await runWithNews();
     } catch (error) {
       if (api.isAway(error)) break; // They stay pending until the server is back.

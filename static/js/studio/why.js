@@ -311,9 +311,6 @@ const reasons = (why) => [
   detailsOf(why),
 ];
 
-const ASK_RECOGNITION =
-  "Choose what was shown as \u201cExpected\u201d and recognise the take: the reasons appear here.";
-
 /**
  * The question which gesture was meant; an answer shows the explanation at once.
  *
@@ -331,23 +328,35 @@ const askExpected = (labels) => [
 ];
 
 /**
- * Draw the explanation under the take.
+ * Draw the explanation beside the take, and the moments that correspond under it.
  *
  * @param {State} state
  */
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
-  const asks = result !== null && result.expected === null && !trying;
-  box.hidden = selectedClip()?.status !== "done";
-  byId("reasons").hidden = selectedClip()?.status !== "done";
-  if (box.hidden) return box.replaceChildren();
-  if (!result) return box.replaceChildren(note(ASK_RECOGNITION));
+  const done = selectedClip()?.status === "done";
+  byId("reasons").hidden = !done;
+  box.hidden = !done || !result; // Without a result the decision says what to do.
+  if (!done || !result) {
+    drawMoments(null);
+    return box.replaceChildren();
+  }
+  const asks = result.expected === null && !trying;
+  drawMoments(asks ? null : alignmentsOf(why));
   const words = asks
     ? [...askExpected(result.gestures), shares(result, null)]
     : [trying, ...(why ? reasons(why) : []), shares(result, why)];
-  const alignments = asks ? null : alignmentsOf(why);
-  return box.replaceChildren(
-    ...[h("div", { className: "why-words" }, words), alignments].filter(Boolean),
-  );
+  return box.replaceChildren(h("div", { className: "why-words" }, words));
+}
+
+/**
+ * Draw which moments correspond, under the picture.
+ *
+ * @param {ReturnType<typeof alignmentsOf>} alignments
+ */
+function drawMoments(alignments) {
+  const box = byId("correspondences");
+  box.hidden = !alignments;
+  box.replaceChildren(...(alignments ? [alignments] : []));
 }

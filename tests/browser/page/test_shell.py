@@ -85,7 +85,8 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     expect(
         page.get_by_role("img", name="Difference of the right wrist along the clip")
     ).to_be_visible()
-    drawn = why.get_by_role("figure").filter(has_text="lineexpected")
+    moments = page.get_by_role("region", name="Moments")
+    drawn = moments.get_by_role("figure").filter(has_text="lineexpected")
     beside = drawn.get_by_text(re.compile(r"s of line: [\d.]+ %"))
     # The keys work once the workspace shows the clip.
     frames = len(recording_of("circle").poses)
@@ -96,7 +97,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     at = page.locator("#clock").inner_text()
     drawn.get_by_role("img").click(position={"x": 20, "y": 20})
     expect(page.locator("#clock")).not_to_have_text(at)
-    joint = why.get_by_label("Joint whose paths are drawn")
+    joint = moments.get_by_label("Joint whose paths are drawn")
     expect(joint).to_have_value("right_wrist")
     expect(drawn.get_by_role("img", name="The right wrist in this take")).to_be_visible()
     # The explanation of the trial arrives only after the trial was discarded.

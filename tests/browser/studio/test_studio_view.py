@@ -98,7 +98,7 @@ def test_the_way_to_the_cube_is_seen_by_those_who_welcome_motion(
     until(is_square(canvas))
 
 
-def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons(
+def test_answer_remedy_picture_drawings_and_first_voters_are_in_sight_without_scrolling(
     open_page: OpenPage, library: Library
 ) -> None:
     recognition = library.recognise("line")
@@ -109,11 +109,17 @@ def test_picture_decision_and_the_whole_vote_table_are_in_sight_with_the_reasons
     assert picture is not None
     assert picture["height"] >= 480
     table = page.get_by_role("table", name="Votes")
+    for part in (
+        page.locator("#lab-box"),
+        page.locator("#outcome"),
+        page.locator(".why-sentence"),
+        page.locator(".remedies button").first,
+        page.get_by_role("img", name="Trajectory image: this take"),
+        table.locator("tbody tr").first,
+    ):
+        expect(part).to_be_in_viewport(ratio=1)
     page.get_by_role("button", name="Show the voters without weight").click()
     expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
-    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
-    for part in (page.locator("#lab-box"), page.locator("#outcome"), table):
-        expect(part).to_be_in_viewport(ratio=1)
 
 
 def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
