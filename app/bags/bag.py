@@ -298,6 +298,12 @@ def _convert_errors(place: Path, name: str) -> Iterator[None]:
     except Exception as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         reason = reason.replace(str(place), name)
+        if "rofile is not ros2" in reason:
+            raise BagError(
+                f"{name} is an MCAP file of another program, not a ROS 2 recording (of ROS 1, or "
+                "with Protobuf or JSON messages); give the video itself, or convert ROS 1 by "
+                "`rosbags-convert`"
+            ) from error
         raise BagError(
             f"{name} is damaged or cut short ({reason}); copy it again, or repair it with "
             "`ros2 bag reindex` or `mcap recover`"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -18,6 +18,9 @@ from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
+
+MOST_NAMED: Final = 10
+"""Most files named that are left out."""
 
 
 def is_folder_of_clips(path: Path) -> bool:
@@ -33,6 +36,22 @@ def is_folder_of_clips(path: Path) -> bool:
 def list_clips(folder: Path) -> list[Path]:
     """Return the clips in a folder and its subfolders, in the order of their names."""
     return list(_walk(folder))
+
+
+def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
+    """Name the files of a folder that are none of those that are read, nor in one of them."""
+    inside = set(read)
+    left = [
+        path.relative_to(folder).as_posix()
+        for path in sorted(folder.rglob("*"))
+        if path.is_file()
+        and not any(part.startswith(".") for part in path.relative_to(folder).parts)
+        and inside.isdisjoint((path, *path.parents))
+    ]
+    if left:
+        more = f" and {len(left) - MOST_NAMED} more" if len(left) > MOST_NAMED else ""
+        text = f"left out, no clip by its first bytes: {', '.join(left[:MOST_NAMED])}{more}"
+        people.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def measure_bytes(path: Path) -> int:
@@ -233,6 +252,7 @@ class FolderBatch:
         states = {clip: describe_state(clip) for clip in clips}
         done = {clip: journal.find(self._name(clip), states[clip]) for clip in clips}
         left = {clip: measure_bytes(clip) for clip in clips if done[clip] is None}
+        tell_left_out(self.folder, (*clips, *self.excluded, self.table, self._journal_file))
         if len(left) < len(clips):
             people.print(f"{len(clips) - len(left)} of {len(clips)} clips are done already")
         with batch_bar(len(left), sum(left.values())) as advance:

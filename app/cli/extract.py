@@ -13,6 +13,7 @@ import typer
 
 from app.bags.staging import is_bag_archive
 from app.cli.administration import settings_of
+from app.cli.batch import tell_left_out
 from app.cli.terminal import people, progress_bar
 from app.clip_sources import SOURCES
 from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
@@ -56,6 +57,7 @@ def extract(
     clips = list(_clips(folder.absolute()))
     if not clips:
         raise OsgError(f"{folder} holds no video and no dive recording; name the folder of clips")
+    tell_left_out(folder.absolute(), clips)
     with progress_bar("clips") as advance:
 
         def show(progress: FootageProgress) -> None:
@@ -77,7 +79,7 @@ async def _work(footage: Footage, processes: Workers, count: int) -> list[Extrac
 
 
 def _clips(folder: Path) -> Iterator[Path]:
-    """Yield the files that are clips with pictures by name and content, in order."""
+    """Yield the files that are clips with pictures, in order."""
     for place, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
@@ -87,11 +89,15 @@ def _clips(folder: Path) -> Iterator[Path]:
 
 
 def _shows_diver(path: Path) -> bool:
-    """Return whether a file is a clip with pictures; a zip may hold anything else."""
+    """Return whether a file is a clip with pictures, by its first bytes.
+
+    One that is so by its name alone is read too, and the reader then explains the fault.
+    """
     ending = path.suffix.lower()
-    if not any(ending in source.endings for source in SOURCES if source.has_pictures):
-        return False
-    return is_bag_archive(path) if ending == ".zip" else True
+    if ending == ".zip":
+        return is_bag_archive(path)
+    pictured = [source for source in SOURCES if source.has_pictures]
+    return any(ending in source.endings or source.accepts(path) for source in pictured)
 
 
 def _tell(folder: Path, ended: Sequence[Extracted], output: Path | None) -> None:

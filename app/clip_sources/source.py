@@ -327,7 +327,23 @@ def video_type(head: bytes) -> str | None:
         return "video/webm" if b"webm" in head[:64] else "video/x-matroska"
     if head[:4] == b"RIFF" and head[8:12] == b"AVI ":
         return "video/x-msvideo"
-    packets = head[::_MPEG_TS_PACKET]
-    if len(packets) >= 3 and set(packets) == {0x47}:
-        return "video/mp2t"
-    return None
+    return "video/mp2t" if _is_transport_stream(head) else None
+
+
+FEW_PACKETS, MANY_PACKETS = 3, 8
+"""Packets that tell a transport stream, where a file begins with one, and where it does not."""
+
+
+def _is_transport_stream(head: bytes) -> bool:
+    """Return whether MPEG transport packets begin within the first one, as in a broken-off start.
+
+    Camcorders (AVCHD) and Blu-ray write a time stamp of four bytes before each packet.
+    """
+    for size in (_MPEG_TS_PACKET, _MPEG_TS_PACKET + 4):
+        for first in range(min(size, len(head))):
+            packets = head[first::size]
+            # A file that begins in mid packet needs more of them: other bytes may be alike.
+            least = FEW_PACKETS if first in (0, 4) else MANY_PACKETS
+            if len(packets) >= least and set(packets) == {0x47}:
+                return True
+    return False

@@ -26,7 +26,7 @@ class VideoSource:
     name = "video"
     noun = "a video"
     formats = "MP4, MOV, WebM, MKV, AVI, MPEG-TS"
-    endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", ".webm")
+    endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".webm")
     folder: str | None = None
     has_pictures = True
     has_topics = False
@@ -61,8 +61,8 @@ class VideoSource:
         return found
 
     def is_take(self, path: Path) -> bool:
-        """Return whether a file is a video by its ending."""
-        return path.suffix.lower() in self.endings and path.is_file()
+        """Return whether a file is a video by its ending, or by its first bytes."""
+        return path.is_file() and (path.suffix.lower() in self.endings or self.accepts(path))
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the container's facts, and decode one frame."""

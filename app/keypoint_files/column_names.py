@@ -19,14 +19,33 @@ AXES: Final[Mapping[str, str]] = {
 
 SECONDS: Final = ("time", "timestamp", "seconds", "time_s", "timestamp_s", "sec", "t")
 MILLISECONDS: Final = ("timestamp_ms", "time_ms", "milliseconds", "ms")
+MICROSECONDS: Final = ("timestamp_us", "time_us", "microseconds", "us")
+NANOSECONDS: Final = ("timestamp_ns", "time_ns", "nanoseconds", "ns", "stamp_ns")
 FRAMES: Final = ("frame", "frame_number", "frame_num", "frame_idx", "frame_index", "frame_id", "")
 """Headings of frame numbers; the empty one is the first column that pandas writes."""
+
+UNITS: Final = (
+    (SECONDS, "s"),
+    (MILLISECONDS, "ms"),
+    (MICROSECONDS, "us"),
+    (NANOSECONDS, "ns"),
+    (FRAMES, "frames"),
+)
+"""Headings of times, with the unit that they mean."""
+
+TIMES: Final = frozenset(name for names, _ in UNITS for name in names)
 
 NAMES: Final = ("landmark", "landmark_name", "landmark_id", "name", "joint", "keypoint", "bodypart")
 """Headings of the landmark's name, in tables with one landmark a row."""
 
-MOST_LANDMARKS: Final = 100
-"""Most landmarks of a frame: body, hands and a few more; a file with more holds something else."""
+MOST_LANDMARKS: Final = 600
+"""Most landmarks of a frame: MediaPipe's body, hands and face have 553; a file with more holds
+something else."""
+
+FACE: Final = (468, 478)
+HANDS: Final = 42
+"""Landmarks of MediaPipe's face, without and with irises, and of two hands. In tables that number
+them all, those of the body come first."""
 
 _AXIS: Final = "|".join(AXES)
 _PATTERNS: Final = (
@@ -52,7 +71,7 @@ class Columns:
     when
         Place of the time, or None.
     unit
-        Unit of the time: ``"s"``, ``"ms"`` or ``"frames"``.
+        Unit of the time: ``"s"``, ``"ms"``, ``"us"``, ``"ns"`` or ``"frames"``.
 
     """
 
@@ -64,13 +83,13 @@ class Columns:
 def columns_of(headings: Sequence[str]) -> Columns:
     """Read the headings of a table with one frame a row; unknown columns are skipped.
 
-    33 numbered landmarks are MediaPipe's, counted from 0 or from 1; with any other count they keep
-    their numbers as names.
+    33 numbered landmarks are MediaPipe's, counted from 0 or from 1, also with its hands and face
+    after them; with any other count they keep their numbers as names.
     """
     points: dict[str, dict[str, int]] = {}
     for place, heading in enumerate(headings):
         text = heading.strip()
-        if plain(text) in (*SECONDS, *MILLISECONDS, *FRAMES):
+        if plain(text) in TIMES:
             continue
         match = next((found for each in _PATTERNS if (found := each.fullmatch(text))), None)
         if match:
@@ -83,7 +102,7 @@ def columns_of(headings: Sequence[str]) -> Columns:
 def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
     """Return the place and unit of the time in a row; seconds are preferred to frame numbers."""
     plainly = [plain(heading) for heading in headings]
-    for names, unit in ((SECONDS, "s"), (MILLISECONDS, "ms"), (FRAMES, "frames")):
+    for names, unit in UNITS:
         for name in names:
             if name in plainly:
                 return plainly.index(name), unit
@@ -103,10 +122,11 @@ def numbered_landmark(name: str, first: int = 0) -> str:
 
 
 def _number_points(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:
+    """Give numbered landmarks MediaPipe's names; those of hands and face keep their numbers."""
     numbers = {int(name) for name in points if name.isdigit()}
+    body = len(POSE_LANDMARKS)
+    counts = [body + hands + face for hands in (0, HANDS) for face in (0, *FACE)]
     for first in (0, 1):
-        if numbers == set(range(first, first + len(POSE_LANDMARKS))) and len(points) == len(
-            numbers
-        ):
+        if any(numbers == set(range(first, first + count)) for count in counts):
             return {numbered_landmark(name, first): places for name, places in points.items()}
     return points

@@ -171,8 +171,11 @@ class KeypointTable:
 
 
 def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
-    """Return keypoints ``(..., 2)`` with NaN for those below the `least` confidence."""
-    known = np.asarray(np.isfinite(xy).all(axis=-1))
+    """Return keypoints ``(..., 2)`` with NaN for those below the `least` confidence.
+
+    A keypoint at exactly 0, 0 is none: many programs write an unseen one so.
+    """
+    known = np.asarray(np.isfinite(xy).all(axis=-1)) & (xy != 0).any(axis=-1)
     if confidence is not None:
         known &= confidence >= least
         known &= confidence > 0

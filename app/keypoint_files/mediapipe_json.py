@@ -1,8 +1,13 @@
-"""MediaPipe landmarks as JSON, in the common layouts (MediaPipe itself writes no files).
+"""Landmarks as JSON, in the common layouts of MediaPipe, MMPose, AlphaPose and COCO.
 
 A list of frames, or an object with one under ``frames``. A frame is a list of landmarks, or an
 object with one under ``landmarks``, ``pose_landmarks`` or ``keypoints``. A landmark is an object
 with x and y (and a name), a list ``[x, y, z, visibility]``, or stands under its name.
+
+MMPose writes a frame's people under ``instances``, each with ``keypoints`` and
+``keypoint_scores``. COCO's results, which AlphaPose and Detectron write too, are a list of people
+with an ``image_id``, each with a flat list of x, y and score. Unnamed keypoints are COCO's where
+there are 17, or 133 of a whole body.
 """
 
 from __future__ import annotations
@@ -18,21 +23,27 @@ import numpy as np
 from app.keypoint_files.column_names import (
     AXES,
     MOST_LANDMARKS,
-    numbered_landmark,
     plain,
     time_column,
 )
 from app.keypoint_files.keypoint_table import MALFORMED, KeypointOptions, KeypointTable, Times
 from app.keypoint_files.mediapipe_table import table_of, times_of
 from app.recognition.errors import KeypointFileError, OsgError
+from app.recognition.estimation.person_tracker import PersonTracker
+from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import COCO_17
 from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
 """Largest file in bytes; a quarter of an hour of 33 landmarks with all digits takes 150 MB."""
 
-FRAMES: Final = ("frames", "poses", "data", "results")
-LANDMARKS: Final = ("landmarks", "pose_landmarks", "keypoints", "pose")
+FRAMES: Final = ("frames", "poses", "data", "results", "instance_info", "annotations")
+LANDMARKS: Final = ("landmarks", "pose_landmarks", "poseLandmarks", "keypoints", "pose")
 """Keys of the list of frames, and of a frame's landmarks."""
+
+WHOLE_BODY: Final = 133
+"""Keypoints of COCO-WholeBody, of which the first 17 are COCO's."""
 
 ORDER: Final = ("x", "y", "z", "v")
 """Order of the numbers in a landmark that is a list; three numbers are x, y and z."""
@@ -45,7 +56,7 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         raise KeypointFileError(f"{path} is larger than {LARGEST_FILE // 1_000_000} MB; cut it")
     try:
         content = json.loads(path.read_bytes())
-        frames = _frames(content)
+        frames = _follow_person(_frames(content))
         limits.require_frames(len(frames))
         rows = [_landmarks(frame) for frame in frames]
         about, times = _about(content), _times(frames)
@@ -53,8 +64,8 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         raise
     except MALFORMED as error:
         raise KeypointFileError(
-            f"{path} holds no frames of landmarks ({type(error).__name__}: {error}); expected a "
-            f"list of frames, each a list of landmarks with x and y"
+            f"{path} holds no frames of landmarks; expected a list of frames, each a list of "
+            "landmarks with x and y, or the results of MMPose, AlphaPose or COCO"
         ) from error
     names = tuple(dict.fromkeys(name for row in rows for name in row))
     if not names or len(names) > MOST_LANDMARKS:
@@ -100,10 +111,48 @@ def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
     if isinstance(frame[0], list) and frame[0] and isinstance(frame[0][0], (Mapping, list)):
         frame = frame[0]  # MediaPipe Tasks gives a list of people, the highest score first
     found = {}
+    unnamed = COCO_17 if len(frame) in (len(COCO_17), WHOLE_BODY) else POSE_LANDMARKS
     for index, point in enumerate(frame):
         named = isinstance(point, Mapping) and point.get("name")
-        found[str(named) if named else numbered_landmark(str(index))] = _point(point)
+        number = unnamed[index] if index < len(unnamed) else str(index)
+        found[str(named) if named else number] = _point(point)
     return found
+
+
+def _follow_person(frames: list[Any]) -> list[Any]:
+    """Return one person's keypoints a frame, where frames hold several people's."""
+    images: dict[str, list[Any]] = {}
+    for place, frame in enumerate(frames):
+        if not isinstance(frame, Mapping):
+            return frames
+        if "image_id" in frame:
+            images.setdefault(str(frame["image_id"]), []).append(frame)
+        elif "instances" in frame:
+            images[str(place)] = list(frame["instances"])
+        else:
+            return frames
+    tracker, followed = PersonTracker(), []
+    for place, people in enumerate(images.values()):
+        bodies = [_list_points(person) for person in people]
+        bodies = [body for body in bodies if np.isfinite(body).all(axis=1).any()]
+        boxes = [
+            (np.nanmin(body[:, :2], axis=0), np.nanmax(body[:, :2], axis=0)) for body in bodies
+        ]
+        scores = np.array([body[:, 2].mean() for body in bodies])
+        chosen = tracker.choose(np.array(boxes), scores, float(place))
+        followed.append([] if chosen is None else [(x, y, 0, v) for x, y, v in bodies[chosen]])
+    return followed
+
+
+def _list_points(person: Mapping[str, Any]) -> FloatArray:
+    """Return a person's keypoints ``(K, 3)``: x, y and score; NaN and 0: not seen."""
+    given = np.array(person["keypoints"], dtype=np.float64)
+    points = given.reshape(-1, 3) if given.ndim == 1 else given[:, :2]
+    if points.shape[1] == 2:
+        scores = np.array(person.get("keypoint_scores", np.ones(len(points))), dtype=np.float64)
+        points = np.concatenate([points, scores.reshape(-1, 1)], axis=1)
+    hidden = (points[:, 2] <= 0) | (points[:, :2] == 0).all(axis=1)
+    return np.where(hidden[:, None], (np.nan, np.nan, 0.0), points)
 
 
 def _point(point: Any) -> tuple[float, float, float]:

@@ -6,9 +6,11 @@ One frame a row, with numbered columns (``x0,y0,z0,v0,x1,...``) or named ones (`
 
 from __future__ import annotations
 
+import codecs
 import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 
@@ -33,15 +35,25 @@ from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
 
+SEPARATORS: Final = ",;\t"
+"""Separators of a table's cells; Excel writes semicolons where the comma is a decimal one."""
+
+PER_SECOND: Final = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
+"""Units of time in a second, by their names."""
+
 
 def read_mediapipe_table(
     path: Path, options: KeypointOptions, limits: VideoLimits
 ) -> KeypointTable:
     """Read a CSV file of either form; see `app.keypoint_files.read_keypoints`."""
     del options
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        lines = csv.reader(file)
-        headings = next(lines, [])
+    with path.open(newline="", encoding=find_encoding(path)) as file:
+        heading = file.readline()
+        separator = max(SEPARATORS, key=heading.count)
+        headings = next(csv.reader([heading], delimiter=separator), [])
+        # Where a comma separates nothing, it is a decimal one.
+        rows = csv.reader(file, delimiter=separator)
+        lines = rows if separator == "," else ([_point(cell) for cell in row] for row in rows)
         plainly = [plain(heading) for heading in headings]
         if any(name in plainly for name in NAMES) and {"x", "y"} <= set(plainly):
             return _long(lines, headings, path, limits)
@@ -54,17 +66,30 @@ def read_mediapipe_table(
         return _wide(lines, columns, path, limits)
 
 
-def times_of(values: FloatArray, unit: str) -> Times:
-    """Return the times of frames from a file's values in seconds, milliseconds or frames.
+def find_encoding(path: Path) -> str:
+    """Return the encoding of a table: UTF-8, or UTF-16 by its byte-order mark, as Excel writes."""
+    with path.open("rb") as file:
+        is_wide = file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+    return "utf-16" if is_wide else "utf-8-sig"
 
-    Times without a unit are milliseconds if their steps would be longer than a second: frames so
-    far apart would show no gesture.
+
+def _point(cell: str) -> str:
+    return cell.replace(",", ".")
+
+
+def times_of(values: FloatArray, unit: str) -> Times:
+    """Return the times of frames from a file's values in the unit, or as numbers of frames.
+
+    Times without a unit are those of which a step is a second or less: frames so far apart would
+    show no gesture.
     """
     if unit == "frames":
         return Times(values, counted=True)
-    if unit == "ms" or (len(values) > 1 and float(np.median(np.diff(values))) > 1):
-        return Times(values / 1000, counted=False)
-    return Times(values, counted=False)
+    step = float(np.median(np.diff(values))) if len(values) > 1 else 0.0
+    units = [PER_SECOND[unit]] if unit != "s" else [*PER_SECOND.values()]
+    scale = next((each for each in units if step <= each), units[-1])
+    # Nanoseconds since 1970 are beyond the digits of a number of seconds.
+    return Times((values - values[:1]) / scale, counted=False)
 
 
 def _wide(

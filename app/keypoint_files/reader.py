@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,9 @@ from app.recognition.poses.skeletons import find_missing_landmarks, translate_la
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.video_limits import VideoLimits
+
+MOST_NAMED: Final = 20
+"""Most keypoints named in a sentence."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,19 +153,24 @@ def _map_names(
             found[landmark] = column
     if not found:
         raise KeypointFileError(
-            f"{path} names no keypoint that is known here: {', '.join(names)}; say which they are, "
-            f"as in --landmark {names[0]}=right_wrist"
+            f"{path} names no keypoint that is known here: {_name_some(names)}; say which they "
+            f"are, as in --landmark {names[0]}=right_wrist"
         )
     notes = []
     if dropped:
         notes.append(
-            f"left out, for they mean no landmark here: {', '.join(dropped)}; keep one by "
+            f"left out, for they mean no landmark here: {_name_some(dropped)}; keep one by "
             f"--landmark {dropped[0]}=NAME"
         )
     if missing := find_missing_landmarks(found):
         source = "the folder" if path.is_dir() else "the file"
         notes.append(f"{source} gives no {', '.join(missing)}")
     return tuple(found), list(found.values()), tuple(notes)
+
+
+def _name_some(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + more
 
 
 def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> tuple[int, int]:

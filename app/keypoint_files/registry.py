@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Final, Literal, get_args
@@ -68,7 +69,8 @@ _ZIP: Final = b"PK\x03\x04"
 def keypoint_ending(head: bytes, name: str) -> Ending | None:
     """Return the ending by which a file that begins with `head` is read; None without keypoints.
 
-    Text has no mark of its kind, so its name decides; a file with zero bytes is no text.
+    Text has no mark of its kind, so its name decides; a file with zero bytes is no text, unless it
+    is a table in UTF-16.
     """
     if head.startswith(_ZIP):
         return ".zip"
@@ -76,4 +78,5 @@ def keypoint_ending(head: bytes, name: str) -> Ending | None:
     if head.startswith(_HDF5):
         return ".slp" if lower.endswith(".slp") else ".h5"
     named = next((ending for ending in get_args(Ending) if lower.endswith(ending)), None)
-    return named if named in (".csv", ".json") and b"\0" not in head else None
+    is_wide = named == ".csv" and head[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+    return named if named in (".csv", ".json") and (is_wide or b"\0" not in head) else None

@@ -192,7 +192,7 @@ class Runtime:
             self._spares = True
             reason = (
                 f"this machine processes {rate:.1f} frames a second: hands that move or hang are "
-                "looked at once a second, and hands that are held in every second frame"
+                "looked at once a second"
             )
         elif rate > SPARE_UNTIL and self._spares:
             self._spares = False

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from mcap.writer import Writer as McapWriter
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_types_from_msg
 
@@ -163,6 +164,23 @@ def test_a_recording_cut_short_is_told_in_one_line(
     with pytest.raises(BagError, match="damaged or cut short") as raised:
         record_bag(file)
     assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("profile", ["", "ros1"])
+def test_an_mcap_file_of_another_program_is_named_for_what_it_is(
+    tmp_path: Path, profile: str
+) -> None:
+    path = tmp_path / "dive.mcap"
+    with path.open("wb") as file:
+        writer = McapWriter(file)
+        writer.start(profile=profile)
+        schema = writer.register_schema("foxglove.CompressedVideo", "protobuf", b"")
+        channel = writer.register_channel("/video", "protobuf", schema)
+        writer.add_message(channel, 0, b"", 0)
+        writer.finish()  # type: ignore[no-untyped-call]
+    with pytest.raises(BagError, match="of another program, not a ROS 2 recording") as raised:
+        record_bag(path)
+    assert "damaged" not in str(raised.value)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -56,6 +56,7 @@ def test_every_clip_is_in_the_table_with_its_faults(
     assert {row["language"] for row in rows} == {"pool"}
     assert "3/3 day 2/b.csv: line" in ended.error
     assert "3 clips, 2 gestures recognised" in ended.error
+    assert "left out, no clip by its first bytes: notes.txt\n" in ended.error
 
 
 def test_a_batch_of_nothing_but_pairs_recognises_nothing(

@@ -24,11 +24,13 @@ def test_a_folder_is_extracted_for_evaluate_and_copied_by_name(
     with zipfile.ZipFile(season / "circle" / "notes.zip", "w") as archive:
         archive.writestr("notes.txt", "no dive recording")
     (season / ".trash.mp4").write_bytes(b"\0\0\0\x18ftypmp42")
+    clip.rename(clip := clip.with_name("1.LRV"))
     ended = osg_studio("extract", season, "--workers", 1, "--output", tmp_path / "copies")
     assert ended.code == 0, ended.error
-    copy = tmp_path / "copies" / "circle" / "1.mp4.npz"
+    copy = tmp_path / "copies" / "circle" / "1.LRV.npz"
     assert ended.out == f"{clip}\t{copy}\n"
     assert "1 clips extracted, 0 known" in ended.error
+    assert "left out, no clip by its first bytes: circle/notes.zip\n" in ended.error
     (recording,) = kept.iterdir()
     assert copy.read_bytes() == recording.read_bytes()
     written = recording.stat().st_mtime_ns

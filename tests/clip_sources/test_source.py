@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.clip_sources.source import HEAD_BYTES, video_type
+from app.recognition.recording.video import probe
 from tests.recognition.damaged_clips import write_clip
 
 
@@ -24,6 +25,20 @@ def test_every_container_we_open_is_known(
 ) -> None:
     path = write_clip(tmp_path / f"clip.{ending}", codec=codec)
     assert video_type(path.read_bytes()[:HEAD_BYTES]) == media_type
+
+
+@pytest.mark.parametrize("begins_at", [0, 100])
+@pytest.mark.parametrize("stamped", [False, True])
+def test_streams_of_camcorders_and_those_that_begin_in_mid_packet_are_known(
+    tmp_path: Path, stamped: bool, begins_at: int
+) -> None:
+    content = write_clip(tmp_path / "clip.ts", codec="libx264", frames=30).read_bytes()
+    packets = [content[at : at + 188] for at in range(0, len(content), 188)]
+    stream = b"".join(b"\0\1\2\3" + packet if stamped else packet for packet in packets)
+    path = tmp_path / "clip.mts"
+    path.write_bytes(stream[begins_at:])
+    assert video_type(path.read_bytes()[:HEAD_BYTES]) == "video/mp2t"
+    assert probe(path).width > 0
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 from app.keypoint_files import KeypointOptions, read_keypoints
+from app.keypoint_files.registry import keypoint_ending
 from app.recognition.errors import KeypointFileError, VideoError
 from app.recognition.poses.landmarks import POSE_LANDMARKS
-from app.recognition.poses.sequence import PoseSequence
+from app.recognition.poses.sequence import FloatArray, PoseSequence
+from app.recognition.poses.skeletons import COCO_17
 from app.recognition.recording.video_limits import VideoLimits
 from tests.keypoint_files.files import (
     fractions,
@@ -247,3 +249,107 @@ def test_too_long_a_recording_is_refused_by_its_limit(tmp_path: Path) -> None:
     ):
         with pytest.raises(VideoError, match="more than the limit of 5"):
             read_keypoints(path, OPTIONS, few)
+
+
+def rewritten(source: Path, separator: str, *, encoding: str = "utf-8") -> Path:
+    """Write a table as Excel does in many countries: other separators, and a decimal comma."""
+    rows = [line.split(",") for line in source.read_text().splitlines()]
+    cells = [[cell.replace(".", ",") if separator == ";" else cell for cell in row] for row in rows]
+    source.write_text("\n".join(separator.join(row) for row in cells), encoding=encoding)
+    return source
+
+
+@pytest.mark.parametrize(
+    ("separator", "encoding"),
+    [(";", "utf-8"), ("\t", "utf-8"), (",", "utf-8-sig"), (";", "utf-16"), ("\t", "utf-16")],
+)
+@pytest.mark.parametrize("write", [write_named, write_long])
+def test_tables_by_excel_are_read_with_their_separators_and_encodings(
+    tmp_path: Path, write: Callable[[Path, PoseSequence], Path], separator: str, encoding: str
+) -> None:
+    path = rewritten(write(tmp_path / "pose.csv", POSES), separator, encoding=encoding)
+    assert keypoint_ending(path.read_bytes()[:4096], path.name) == ".csv"
+    same(read_keypoints(path, OPTIONS).recording.poses)
+
+
+@pytest.mark.parametrize(
+    ("heading", "scale", "since"),
+    [
+        ("timestamp", 1, 1.7e9),
+        ("timestamp", 1e3, 0),
+        ("timestamp_us", 1e6, 0),
+        ("timestamp", 1e6, 0),
+        ("timestamp", 1e9, 1_700_000_000_000_000_000),
+        ("time_ns", 1e9, 0),
+    ],
+)
+def test_times_are_read_in_seconds_milli_micro_and_nanoseconds(
+    tmp_path: Path, heading: str, scale: float, since: float
+) -> None:
+    rows: list[list[object]] = [[heading, "nose_x", "nose_y"]]
+    rows += [[int(since) + round(at / 30 * scale, 6), 10 + at, 20] for at in range(10)]
+    poses = read_keypoints(write_rows(tmp_path / "pose.csv", rows)).recording.poses
+    np.testing.assert_allclose(poses.time, np.arange(10) / 30, atol=2e-4)
+
+
+def test_a_keypoint_at_0_0_is_not_seen(tmp_path: Path) -> None:
+    rows: list[list[object]] = [["time", "nose_x", "nose_y"], [0.0, 10, 20], [0.1, 0, 0.0]]
+    rows += [[0.2, 0, 20]]
+    poses = read_keypoints(write_rows(tmp_path / "pose.csv", rows)).recording.poses
+    assert poses.seen[:, 0].tolist() == [True, False, True]
+
+
+@pytest.mark.parametrize("others", [42, 468, 510, 478 + 42])
+def test_numbered_tables_of_body_hands_and_face_give_the_body(tmp_path: Path, others: int) -> None:
+    source = write_numbered(tmp_path / "pose.csv", POSES, 1)
+    lines = source.read_text().splitlines()
+    extra = [f"{axis}{34 + place}" for place in range(others) for axis in "xy"]
+    values = ["0.5"] * len(extra)
+    wide = [",".join([line, *(values if row else extra)]) for row, line in enumerate(lines)]
+    source.write_text("\n".join(wide))
+    read = read_keypoints(source, OPTIONS).recording
+    same(read.poses)
+    assert any("and " in note and "more; keep one" in note for note in read.warnings)
+
+
+def person(points: FloatArray, *, flat: bool, score: float = 0.9) -> dict[str, Any]:
+    """Return one person of MMPose (nested), or of COCO's results (flat)."""
+    if flat:
+        return {"keypoints": [value for x, y in points.tolist() for value in (x, y, score)]}
+    return {"keypoints": points.tolist(), "keypoint_scores": [score] * len(points)}
+
+
+COCO_COLUMNS = [POSE_LANDMARKS.index(name) for name in COCO_17]
+
+
+@pytest.mark.parametrize("count", [17, 133])
+@pytest.mark.parametrize("kind", ["mmpose", "mmpose_demo", "coco", "alphapose"])
+def test_results_of_mmpose_alphapose_and_coco_are_read_and_one_person_is_followed(
+    tmp_path: Path, kind: str, count: int
+) -> None:
+    body = POSES.xy[:, COCO_COLUMNS]
+    whole = np.concatenate([body, np.repeat(body[:, :1], count - 17, axis=1)], axis=1)
+    small = 5 + whole / 10
+    flat = kind in ("coco", "alphapose")
+    frames = [[person(each[at], flat=flat) for each in (small, whole)] for at in range(len(whole))]
+    content: Any
+    if flat:
+        name = "{:06d}.jpg" if kind == "alphapose" else "{}"
+        content = [
+            {"image_id": name.format(at), "score": 1.0, **one}
+            for at, people in enumerate(frames)
+            for one in people
+        ]
+    else:
+        content = [{"frame_id": at, "instances": people} for at, people in enumerate(frames)]
+        content = {"instance_info": content} if kind == "mmpose_demo" else content
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    poses = read_keypoints(tmp_path / "pose.json", OPTIONS).recording.poses
+    assert poses.landmarks == COCO_17
+    np.testing.assert_allclose(poses.xy, body, atol=1e-6)
+
+
+def test_json_of_the_browser_s_mediapipe_is_read(tmp_path: Path) -> None:
+    content = [{"poseLandmarks": frame} for frame in OBJECTS]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    same(read_keypoints(tmp_path / "pose.json", OPTIONS).recording.poses)

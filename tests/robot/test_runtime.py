@@ -163,13 +163,13 @@ def test_a_machine_that_drops_frames_does_less_for_each_and_says_so(
             if isinstance(event, SourceWarned):
                 assert "hands that move or hang are looked at once a second" in event.reason
                 monkeypatch.setattr(runtime_module, "SPARE_UNTIL", 0.0)
-                assert estimator._body.spares
+                assert estimator._hands._paces.spares
                 break
         for event in runtime:
             if isinstance(event, SourceWarned):
                 assert event.reason.endswith("all is looked at again")
                 break
-    assert not estimator._body.spares
+    assert not estimator._hands._paces.spares
 
 
 def test_a_gap_in_which_the_source_is_lost_is_no_low_rate() -> None:

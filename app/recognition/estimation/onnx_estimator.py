@@ -122,11 +122,7 @@ class OnnxPoseEstimator:
         return replace(found, hands=hands.complete(image, hands.follow(image), found.bodies))
 
     def spare(self, *, spares: bool) -> None:
-        """Look at hands and still bodies less often, on a machine that is too slow for its camera.
-
-        Hands that move or hang are then looked at once a second.
-        """
-        self._body.spares = spares
+        """Look at hands that move or hang once a second, on a machine too slow for its camera."""
         self._hands.spare(spares=spares)
 
     def reset(self) -> None:

@@ -31,7 +31,7 @@ class Sparing(Protocol):
     """Interface of estimators that can do less for each frame."""
 
     def spare(self, *, spares: bool) -> None:
-        """Look at hands and still bodies less often, or as often as usual."""
+        """Look at hands less often, or as often as usual."""
         ...
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import json
 import math
 from collections import Counter
@@ -85,10 +86,15 @@ def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any
         raise StrictJSONError([Fault("", f"nested {depth} deep, the limit is {max_depth}")])
     try:
         document = json.loads(
-            content.decode("utf-8"), object_pairs_hook=_object, parse_int=_integer
+            # Editors of Windows begin a text with a byte-order mark.
+            content.removeprefix(codecs.BOM_UTF8).decode("utf-8"),
+            object_pairs_hook=_object,
+            parse_int=_integer,
         )
     except UnicodeDecodeError as error:
-        raise StrictJSONError([Fault("", f"not UTF-8 at byte {error.start}")]) from error
+        is_wide = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+        found = "UTF-16, save it as UTF-8" if is_wide else f"not UTF-8 at byte {error.start}"
+        raise StrictJSONError([Fault("", found)]) from error
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"
         raise StrictJSONError([Fault("", f"not JSON: {error.msg} at {where}")]) from error

@@ -49,7 +49,7 @@ def test_plain_json_is_read_as_it_is(value: object) -> None:
         ("", "", "not JSON: Expecting value at line 1, column 1"),
         ("{\n'a': 1}", "", "not JSON: Expecting property name enclosed in double quotes"),
         ("[1, 2", "", "not JSON"),
-        (b"\xff\xfe", "", "not UTF-8 at byte 0"),
+        (b"\xff\xfe", "", "UTF-16, save it as UTF-8"),
         ('{"a": {"b": 1, "b": 2}}', "/a/b", "this key occurs twice"),
         ('{"a": [0, NaN]}', "/a/1", "not a number that JSON or a double can hold"),
         ('{"a": -Infinity}', "/a", "not a number"),

@@ -138,7 +138,7 @@ class ArmPace:
         if time - self.slow > SETTLED_SECONDS:
             self.period = SPARE_SECONDS if spares else MOVING_SECONDS
         elif float((wrist - hip) @ up) > RAISED * size:
-            self.period = max(HELD_SECONDS, 1.5 * seconds) if spares else HELD_SECONDS
+            self.period = HELD_SECONDS
         else:
             self.period = SPARE_SECONDS if spares else HANGING_SECONDS
 
@@ -149,8 +149,8 @@ class ArmPaces:
     Attributes
     ----------
     spares
-        Whether the machine is too slow for a camera: a hand that is held is then looked at in every
-        second frame, however few there are, and any other once a second.
+        Whether the machine is too slow for a camera: a hand that moves or hangs is then looked at
+        once a second. One that is held up may salute.
 
     """
 

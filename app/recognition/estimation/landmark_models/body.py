@@ -97,9 +97,9 @@ class _Person:
     looked: float = -math.inf
     moved: float = math.inf
 
-    def rests(self, time: float, pause: float) -> bool:
+    def rests(self, time: float) -> bool:
         """Return whether nothing has to be looked at in a frame taken at `time` seconds."""
-        return 0 < time - self.looked < pause and time - self.moved > STILL_SECONDS
+        return 0 < time - self.looked < REST_SECONDS and time - self.moved > STILL_SECONDS
 
     def note(self, seen: SeenBody, time: float) -> None:
         """Note a new result, and whether a joint of the arms has moved since the last one."""
@@ -139,20 +139,12 @@ class BodyTracker:
         Whether a search follows, and further people are tracked; MediaPipe's own library does
         neither.
 
-    Attributes
-    ----------
-    spares
-        Whether the machine is too slow for a camera: who keeps still is then looked at in every
-        second frame, however few there are.
-
     """
 
     def __init__(self, detector: Detector, model: BodyModel, *, searches: bool = True) -> None:
         self._detector = detector
         self._model = model
         self._search = BodySearch(detector, model) if searches else None
-        self._time = -math.inf
-        self.spares = False
         self.reset()
 
     def reset(self) -> None:
@@ -175,9 +167,7 @@ class BodyTracker:
 
     def track(self, image: Image, time: float) -> FrameLandmarks:
         """Return the bodies in `image`, taken at `time` seconds."""
-        pause = max(REST_SECONDS, 1.5 * (time - self._time)) if self.spares else REST_SECONDS
-        self._time = time
-        followed = self._follow(image, time, pause)
+        followed = self._follow(image, time)
         lost = 0 < len(followed) < len(self._people)
         self._hurry = HURRY if lost else max(0, self._hurry - 1)
         # As in MediaPipe, the frame in which everybody is lost is not searched.
@@ -201,14 +191,14 @@ class BodyTracker:
         """
         self._sought = wrist
 
-    def _follow(self, image: Image, time: float, pause: float) -> list[_Person]:
-        """Return the people who are still seen; `pause`: between two looks at who keeps still.
+    def _follow(self, image: Image, time: float) -> list[_Person]:
+        """Return the people who are still seen; who keeps still is looked at in every second frame.
 
         Where two results show one person, the track that came there by a jump is lost.
         """
         moved: list[tuple[float, int, SeenBody]] = []
         for place, person in enumerate(self._people):
-            if self._search is not None and person.rests(time, pause):
+            if self._search is not None and person.rests(time):
                 moved.append((0.0, place, person.seen))
                 continue
             seen = self._look(image, person.seen.following)

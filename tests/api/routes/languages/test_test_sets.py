@@ -197,7 +197,10 @@ def test_a_run_goes_on_when_the_client_leaves(
     clip = add_recorded_clip(studio, recording_of(*["circle"] * 20), "many.mp4")
     labelled(client, place, {"clip_id": clip, "expected": "circle"})
     key = key_of_run(language_id, client.get(place).json()["revision"])
-    with httpx.Client(base_url=client.base_url, timeout=0.3) as leaving, suppress(httpx.ReadTimeout):
+    with (
+        httpx.Client(base_url=client.base_url, timeout=0.3) as leaving,
+        suppress(httpx.ReadTimeout),
+    ):
         leaving.post(f"{place}/run")
     until(lambda: studio.runner.progress(key) is None)
     assert client.get(place).json()["waiting"] == 0
