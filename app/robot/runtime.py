@@ -46,7 +46,8 @@ LEAST_RATE: Final = 4.0
 """Processed frames a second below which gestures are missed; see `docs/robots/on-the-boat.md`."""
 
 SPARE_BELOW: Final = 10.0
-"""Processed frames a second below which a machine that drops frames does less for each."""
+"""Processed frames a second below which a machine that drops frames does less for each. Below
+`LEAST_RATE` that would help nobody: salutes are missed (`benchmarks/studies/speed.md`)."""
 
 SPARE_UNTIL: Final = 20.0
 """The same above which it does everything again: twice as many, for doing less raises the rate."""
@@ -188,13 +189,13 @@ class Runtime:
         rate = self._rate.frames_per_second
         if rate is None or not self._source.live or not isinstance(self._estimator, Sparing):
             return
-        if rate < SPARE_BELOW and not self._spares and self._drops.dropped:
+        if LEAST_RATE <= rate < SPARE_BELOW and not self._spares and self._drops.dropped:
             self._spares = True
             reason = (
                 f"this machine processes {rate:.1f} frames a second: hands that move or hang are "
                 "looked at once a second"
             )
-        elif rate > SPARE_UNTIL and self._spares:
+        elif self._spares and not LEAST_RATE <= rate <= SPARE_UNTIL:
             self._spares = False
             reason = f"this machine processes {rate:.1f} frames a second: all is looked at again"
         else:

@@ -189,17 +189,21 @@ class PatternPlayer:
     def __init__(self, output: Output) -> None:
         self.output = output
         self._is_refused = False
-        self._value = self._before = self._peak = self._expected = math.nan
+        self._value = self._before = self._expected = math.nan
+        # What is sent for a pulse, and what is then reported: the vehicle may have limits.
+        self._peak = self._shown_peak = math.nan
+        self._has_shown = False
         self._heard = self._changed = self._asked = self._rested = self._handed = -math.inf
-        self._target: float | None = None
+        # Whether a pulse is on, and whether the following parts of the pattern are.
+        self._is_on: bool | None = None
         self._begun = self._sent = -math.inf
-        self._following: deque[float] = deque()
+        self._following: deque[bool] = deque()
         self._unanswered = 0
 
     @property
     def is_active(self) -> bool:
         """Whether a pattern is played, or the value before is not restored yet."""
-        return self._target is not None
+        return self._is_on is not None
 
     def find_obstacle(self, now: float) -> str:
         """Return, in few words, why no pattern can begin now; empty if one can."""
@@ -217,15 +221,17 @@ class PatternPlayer:
 
     def begin(self, pulses: int, now: float) -> None:
         """Begin a pattern of so many pulses; nothing may be in its way."""
-        self._before, self._peak = self._value, self.output.find_peak(self._value)
-        self._following = deque([self._peak, self._before] * pulses)
-        self._aim(self._following.popleft(), now)
+        self._before = self._value
+        self._peak = self._shown_peak = self.output.find_peak(self._value)
+        self._has_shown = False
+        self._following = deque([True, False] * pulses)
+        self._turn(self._following.popleft(), now)
 
     def stop(self, now: float) -> None:
         """End the pattern and restore the value before it."""
         if self._following:
             self._following.clear()
-            self._aim(self._before, now)
+            self._turn(False, now)
 
     def hand_over(self, value: float, now: float) -> Sequence[Message]:
         """Leave the output to an order that sets `value`; return what restores the value before."""
@@ -278,19 +284,24 @@ class PatternPlayer:
             self._changed = now
 
     def _is_ours(self, value: float) -> bool:
+        """Return whether a value is that of a pulse, or that before, and so no pilot's."""
         low, high = sorted((self._before, self._peak))
+        lies_between = low - self.output.tolerance <= value <= high + self.output.tolerance
         if self.output.travels:
-            return low - self.output.tolerance <= value <= high + self.output.tolerance
-        return self._equals(value, low) or self._equals(value, high)
+            return lies_between
+        if self._equals(value, self._before):
+            return True
+        # The first pulse shows how far the vehicle goes.
+        if self._is_on and not self._has_shown and lies_between:
+            self._shown_peak = value
+        self._has_shown |= self._equals(value, self._shown_peak)
+        return self._equals(value, self._shown_peak)
 
     @property
     def _is_reached(self) -> bool:
         """Whether the present value was sent, and is reported since."""
-        return (
-            self._target is not None
-            and -math.inf < self._sent < self._heard
-            and self._equals(self._value, self._target)
-        )
+        wanted = self._shown_peak if self._is_on else self._before
+        return -math.inf < self._sent < self._heard and self._equals(self._value, wanted)
 
     def _equals(self, value: float, other: float) -> bool:
         return abs(value - other) <= self.output.tolerance
@@ -303,18 +314,17 @@ class PatternPlayer:
             if now - self._asked > ASK_SECONDS:
                 self._asked = now
                 yield self._ask_for_reports()
-        if self._target is None:
+        if not self.is_active:
             return
         if is_fresh:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
-        if self._target is not None and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
+        if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
             self._sent = now
-            yield self._set(self._target)
+            yield self._set(self._peak if self._is_on else self._before)
 
     def _advance(self, now: float) -> None:
         """Go on to the next value when the present one has been shown long enough."""
-        assert self._target is not None
         if not self._following:
             # A report on its way before the last message proves nothing.
             restored = self._is_reached and now - self._sent > REPORT_SECONDS
@@ -324,14 +334,14 @@ class PatternPlayer:
         elif now - self._begun > LONGEST_LEVEL or (
             self._is_reached and now - self._sent >= self.output.pulse_seconds / 2
         ):
-            self._aim(self._following.popleft(), now)
+            self._turn(self._following.popleft(), now)
 
-    def _aim(self, value: float, now: float) -> None:
-        self._target, self._begun, self._sent = value, now, -math.inf
+    def _turn(self, is_on: bool, now: float) -> None:
+        self._is_on, self._begun, self._sent = is_on, now, -math.inf
 
     def _drop(self) -> None:
         self._following.clear()
-        self._target = None
+        self._is_on = None
 
     def _set(self, value: float) -> Message:
         self._unanswered += 1

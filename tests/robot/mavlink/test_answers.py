@@ -73,6 +73,14 @@ def test_lights_that_are_on_blink_off_and_keep_their_brightness() -> None:
     assert [value for _, _, value in diver.vehicle.shown] == [LOW, 1700] * PULSES[Answer.refused]
 
 
+def test_lights_with_a_limit_of_their_own_blink_and_are_restored() -> None:
+    with answering(brightest=1500.0) as diver:
+        diver.show("stop")
+        wait_for_pattern(diver, PULSES[Answer.repeat])
+        assert diver.vehicle.pulse == LOW
+    assert [value for _, _, value in diver.vehicle.shown] == [1500, LOW] * PULSES[Answer.repeat]
+
+
 def test_a_camera_nods_and_looks_where_it_looked_before() -> None:
     with answering({"answers": {"show": ["tilt"]}}) as diver:
         diver.show("stop")

@@ -51,8 +51,8 @@ class Ardusub:
         Whether it accepts modes, and stays in the old one until this is False.
     pilot
         Mode that a pilot sets again before every heartbeat; None: there is no pilot.
-    lights
-        Pulse length of its lights at the start, in microseconds.
+    lights, brightest
+        Pulse length of its lights at the start, and the largest that it sets, in microseconds.
     key
         Key of its signatures; None: it signs nothing.
     reports
@@ -76,6 +76,7 @@ class Ardusub:
     is_slow: bool = False
     pilot: int | None = None
     lights: float = 1100.0
+    brightest: float = 1900.0
     key: bytes | None = None
     reports: set[int] = field(default_factory=set)
     shown: list[tuple[float, str, float]] = field(default_factory=list)
@@ -164,6 +165,7 @@ class Ardusub:
 
     def turn_lights(self, pulse: float) -> None:
         """Set the lights, as a pilot does too."""
+        pulse = min(pulse, self.brightest)
         if self.pulse != pulse:
             self.pulse = pulse
             self.shown.append((clock.monotonic(), "lights", pulse))
