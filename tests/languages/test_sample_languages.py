@@ -67,6 +67,19 @@ def test_a_triangle_without_its_third_side_is_misread(
     assert Recognizer(table_2, profile).recognize(take.poses).nearest == "wedge"
 
 
+def test_the_shipped_recording_of_the_misread_triangle_is_what_its_clip_shows(
+    sample_recording: Callable[[str], Recording],
+) -> None:
+    shipped = Recording.load(FOLDER / "clips" / "unfinished-triangle.npz")
+    read = sample_recording("unfinished-triangle")
+    np.testing.assert_allclose(shipped.poses.time, read.poses.time)
+    (take,), (other,) = takes_in(shipped), takes_in(read)
+    assert abs(take.stroke_start - other.stroke_start) <= 0.1
+    assert abs(take.stroke_end - other.stroke_end) <= 0.1
+    near = np.abs(shipped.poses.xy - read.poses.xy)
+    assert np.nanmedian(near) < 0.01 * read.poses.frame_size[1]
+
+
 @pytest.mark.parametrize("stem", ["osg-table-1", "osg-table-2"])
 def test_the_shipped_file_is_what_its_clips_show(table_2: Language, stem: str) -> None:
     shipped = Language.load(FOLDER / f"{stem}.json")

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
+from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
@@ -75,6 +76,8 @@ class ExtractionQueue:
         Publishes every step as ``jobs``, and every end as ``clips``.
     settings
         How many jobs run at the same time, and whether colours are corrected.
+    find_known
+        Returns the recording that comes with the program for a clip's file; None without one.
 
     """
 
@@ -86,7 +89,9 @@ class ExtractionQueue:
         workers: Workers,
         broadcast: Broadcast,
         settings: Settings,
+        find_known: Callable[[Path], Path | None] = lambda file: None,
     ) -> None:
+        self._find_known = find_known
         self._runner = runner
         self._clips = clips
         self._jobs = jobs
@@ -185,9 +190,11 @@ class ExtractionQueue:
         except NotFound:
             return None
         place = self._clips.place
+        file = await persist(self._clips.received, clip)
         task = Record(
             source=clip.source,
-            file=await persist(self._clips.received, clip),
+            file=file,
+            known=await run_in_threadpool(self._find_known, file),
             options=options_of(clip).model_copy(update={"water": self._settings.water}),
             video=place(clip.id, VIDEO) if source_named(clip.source).makes_video else None,
             recording=place(clip.id, RECORDING),

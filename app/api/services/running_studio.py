@@ -331,7 +331,10 @@ async def _studio(
 
     broadcast = Broadcast(partial(open_messages, database), hear)
     workers, runner = Workers(settings, metrics, clips.hold), JobRunner(broadcast, metrics)
-    extractions = ExtractionQueue(runner, clips, jobs, workers, broadcast, settings)
+    samples = Samples(settings.samples_dir)
+    extractions = ExtractionQueue(
+        runner, clips, jobs, workers, broadcast, settings, samples.find_recording
+    )
     studio = Studio(
         settings=settings,
         clips=clips,
@@ -350,7 +353,7 @@ async def _studio(
         runner=runner,
         extractions=extractions,
         broadcast=broadcast,
-        samples=Samples(settings.samples_dir),
+        samples=samples,
         metrics=metrics,
     )
     beside = metrics.watch_loop(), keep_trimmed(), _keep_clean(studio)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 import logging
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,6 +15,8 @@ from app.store import LanguageStore
 
 SEEDED = "Sample language"
 """Change of the first revision of a sample, for its history."""
+
+RECORDING_ENDING = ".npz"
 
 CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 
@@ -61,6 +64,14 @@ class Samples:
             for path in files
             if path.suffix in CLIP_ENDINGS
         }
+
+    def find_recording(self, file: Path) -> Path | None:
+        """Return the recording that comes with a sample clip; None for any other file."""
+        for path in (self._folder / "clips").glob(f"*{RECORDING_ENDING}"):
+            clip = path.with_suffix(".mp4")
+            if clip.is_file() and filecmp.cmp(clip, file, shallow=False):
+                return path
+        return None
 
     def languages(self) -> dict[str, Language]:
         """Return the languages by name, in order; one that cannot be read is left out."""

@@ -19,7 +19,7 @@ from pydantic import BaseModel, Field, TypeAdapter
 
 from app.api.workers.executor import TaskFiles
 from app.api.workers.pictures import Poster, Thumbnails, write_poster
-from app.api.workers.task import WRITES, Reads, Report, Task, Writes, failure_of
+from app.api.workers.task import READS, WRITES, Reads, Report, Task, Writes, failure_of
 from app.api.workers.worker_messages import (
     Answered,
     Failed,
@@ -46,7 +46,7 @@ from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.trigger_entry import TriggerEntry, entry_to_trigger
 from app.recognition.poses.frame import Body, FrameLandmarks
 from app.recognition.recording.clip_range import find_demonstration
-from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video import VideoFrame, read_frames
 from app.recognition.recording.video import probe as probe_video
 from app.resources import known_signs_file
 
@@ -107,9 +107,13 @@ class Probe(_ClipTask):
 
 
 class Record(_ClipTask):
-    """Writes a clip's recording, poster, filmstrip and, of what is no video, the video."""
+    """Writes a clip's recording, poster, filmstrip and, of what is no video, the video.
+
+    With `known`, the recording of a sample clip that comes with the program, no models run.
+    """
 
     kind: Literal["record"] = "record"
+    known: Annotated[Path | None, READS] = None
     video: Annotated[Path | None, WRITES] = None
     recording: Writes
     poster: Writes
@@ -117,6 +121,9 @@ class Record(_ClipTask):
 
     def run(self, report: Report) -> None:
         """Report the frames with the newest pose; see `ClipSource.record`."""
+        # On another machine the program may lie elsewhere.
+        if self.known is not None and self.known.is_file():
+            return self._keep_known(self.known, report)
         steps, thumbnails, poster = _Steps(report, "poses"), Thumbnails(), Poster(self.poster)
         partial = None if self.video is None else self.video.with_suffix(".part")
         if partial is None:
@@ -137,6 +144,16 @@ class Record(_ClipTask):
         poster.write()
         thumbnails.write(self.filmstrip)
         _save(recorded.recording, self.recording, report)
+        return None
+
+    def _keep_known(self, known: Path, report: Report) -> None:
+        recording, thumbnails = Recording.load(known), Thumbnails()
+        write_poster(self.file, self.poster)
+        with read_frames(self.file) as frames:
+            for frame in frames:
+                thumbnails.add(frame.index, frame.image)
+        thumbnails.write(self.filmstrip)
+        _save(recording, self.recording, report)
 
 
 class FindLandmarks(_ClipTask):

@@ -8,7 +8,7 @@ import pytest
 from app.recognition import Gesture, Language
 from app.settings import Settings
 from tests.api.recordings import recording_of
-from tests.api.running import assert_problem, client_of, running
+from tests.api.running import assert_problem, client_of, running, until
 from tests.recognition.damaged_clips import write_clip
 
 LANGUAGES = "/api/v1/languages"
@@ -57,6 +57,28 @@ def test_a_sample_clip_is_added_like_an_upload(settings: Settings) -> None:
         for name in ("../../secret", "missing.mp4"):
             refused = client.post("/api/v1/samples", json={"name": name})
             assert_problem(refused, 404, "not_found")
+
+
+@pytest.mark.slow
+def test_a_sample_whose_recording_comes_with_it_needs_no_models(
+    settings: Settings, samples: Path
+) -> None:
+    write_clip(samples / "clips" / "other.mp4", frames=5)
+    # A diver whom no model could find in these pictures.
+    recording_of("circle").save(samples / "clips" / "circle_a.npz")
+    with running(settings) as server, client_of(server.address) as client:
+        place = "/api/v1/clips"
+        chosen = client.post("/api/v1/samples", json={"name": "circle_a.mp4"}).json()["id"]
+        until(lambda: client.get(f"{place}/{chosen}").json()["status"] == "done")
+        assert len(client.get(f"{place}/{chosen}/takes").json()) == 1
+        for picture in ("poster", "filmstrip"):
+            assert client.get(f"{place}/{chosen}/{picture}").status_code == 200
+        # The same file as an upload is the same clip; another one is not.
+        content = (samples / "clips" / "circle_a.mp4").read_bytes()
+        same = client.post(place, files={"file": ("mine.mp4", content)}).json()["id"]
+        until(lambda: client.get(f"{place}/{same}").json()["status"] == "done")
+        assert len(client.get(f"{place}/{same}/takes").json()) == 1
+        assert server.studio.samples.find_recording(samples / "clips" / "other.mp4") is None
 
 
 def test_without_samples_the_app_starts(client: httpx.Client) -> None:

@@ -8,7 +8,7 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
 from tests.api.running_workers import hold_worker, linux
 from tests.browser.conftest import OpenPage
@@ -48,10 +48,31 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     expect(queued.filter(has_text="Next in the queue")).to_have_count(1)
     expect(queued.filter(has_text="Number 2 of 2 in the queue")).to_have_count(1)
     os.kill(worker, signal.SIGCONT)
-    # Only the clip that runs has a bar, and its name stands in the card.
+    # Only the clip that runs has a bar; it is the first of the list, and named in the card.
+    expect(queued.first).to_contain_text("one.mp4")
     expect(queued.get_by_role("progressbar")).to_have_count(1)
     expect(card).to_contain_text(re.compile(r"one\.mp4: \d+ of \d+ frames"), timeout=EXTRACTION_MS)
     expect(card).to_contain_text(re.compile(r"about \d+ (s|min) left"), timeout=EXTRACTION_MS)
     assert missing == []
     expect(card).to_contain_text("1 of 3 clips done", timeout=EXTRACTION_MS)
     expect(card).to_be_hidden(timeout=EXTRACTION_MS)
+
+
+def test_files_that_were_not_sent_when_the_page_was_left_are_asked_about_and_named(
+    open_page: OpenPage, small_clip: Path
+) -> None:
+    page = open_page(scene=False)
+    held: list[Route] = []
+    page.route("**/uploads**", held.append)
+    drop(page, *[small_clip] * 3, names=("dive 1.mp4", "dive 2.mp4", "dive 3.mp4"))
+    uploads = page.get_by_role("list", name="Uploads").get_by_role("listitem")
+    expect(uploads).to_have_count(3)
+    asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))"
+    assert page.evaluate(asks) is True
+    page.reload()
+    told = page.get_by_role("alert").filter(has_text="3 files were not sent")
+    expect(told).to_contain_text("dive 1.mp4, dive 2.mp4, dive 3.mp4")
+    assert page.evaluate(asks) is False
+    page.reload()
+    expect(page.get_by_role("heading", name="Clips")).to_be_visible()
+    expect(told).to_have_count(0)

@@ -11,7 +11,7 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
-from tests.api.running import Running, client_of
+from tests.api.running import Running, client_of, until
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -237,6 +237,30 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
         page.get_by_label("What circle-other.mp4 shows").select_option("line")
         wrong = page.get_by_role("gridcell", name="1 take of line read as circle")
         expect(wrong).to_have_css("background-image", re.compile("repeating-linear-gradient"))
+
+
+def test_chosen_clips_are_sent_at_once_and_a_page_that_is_left_loses_none(
+    open_page: OpenPage, server: Running
+) -> None:
+    with client_of(server.address) as client:
+        library = library_of(server, client, "test of many")
+        names = [f"circle-many-{number}.mp4" for number in range(4)]
+        for name in names:
+            add_clip(server, "circle", name=name)
+        page = open_page(health_of(library), scene=False)
+        page.get_by_role("button", name="Test with clips").click()
+        page.get_by_text("Choose from the").click()
+        chosen = page.locator(".library-boxes input:checked")
+        while chosen.count():
+            chosen.first.uncheck()
+        for name in names:
+            page.get_by_role("checkbox", name=name).check()
+        with page.expect_request("**/test-set/run"):
+            page.get_by_role("button", name="Test the chosen clips").click()
+        page.wait_for_timeout(300)  # The request is on its way; the run takes longer.
+        page.close()
+        address = f"/api/v1/languages/{library.language}/test-set"
+        until(lambda: client.get(address).json()["overall"]["asked"] == len(names))
 
 
 def test_a_clip_between_two_gestures_is_asked_back_and_counted_on_its_own(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 
 import pytest
 from playwright.sync_api import expect
@@ -39,6 +40,25 @@ def test_everything_is_in_reach_on_a_phone(open_page: OpenPage, library: Library
     page.get_by_role("button", name="Change circle", exact=True).click()
     expect(page.get_by_label("Start frame")).to_be_visible()
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+@pytest.mark.parametrize("width", [768, 1024, 1180, 1280])
+def test_the_bar_has_room_for_everything_on_a_tablet(
+    open_page: OpenPage, library: Library, width: int
+) -> None:
+    page = open_page(library.address, size=(width, 800), scene=False)
+    expect(page.get_by_role("button", name="Export")).to_be_enabled()
+    picker = page.get_by_label("Language", exact=True).bounding_box()
+    assert picker is not None
+    assert picker["width"] >= 160
+    parts = [part.bounding_box() for part in page.locator(".bar button:visible, .bar select").all()]
+    boxes = [box for box in parts if box is not None]
+    assert max(box["x"] + box["width"] for box in boxes) <= width
+    for one, other in combinations(boxes, 2):
+        across = min(each["x"] + each["width"] for each in (one, other))
+        down = min(each["y"] + each["height"] for each in (one, other))
+        is_beside = across <= max(one["x"], other["x"]) + 1
+        assert is_beside or down <= max(one["y"], other["y"]) + 1
 
 
 COVERED = """(box) => {
