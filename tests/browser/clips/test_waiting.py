@@ -13,6 +13,7 @@ from playwright.sync_api import Route, expect
 from tests.api.running_workers import hold_worker, linux
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
+from tests.recognition.damaged_clips import write_clip
 from tests.short_clips import shortened
 
 EXTRACTION_MS = 300_000
@@ -59,12 +60,13 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
 
 
 def test_files_that_were_not_sent_when_the_page_was_left_are_asked_about_and_named(
-    open_page: OpenPage, small_clip: Path
+    open_page: OpenPage, tmp_path: Path
 ) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=2)
     page = open_page(scene=False)
     held: list[Route] = []
-    page.route("**/uploads**", held.append)
-    drop(page, *[small_clip] * 3, names=("dive 1.mp4", "dive 2.mp4", "dive 3.mp4"))
+    page.route("**/uploads**", lambda route: held.append(route))
+    drop(page, *[clip] * 3, names=("dive 1.mp4", "dive 2.mp4", "dive 3.mp4"))
     uploads = page.get_by_role("list", name="Uploads").get_by_role("listitem")
     expect(uploads).to_have_count(3)
     asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))"

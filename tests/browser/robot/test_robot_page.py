@@ -16,6 +16,16 @@ from tests.robot.languages import language_of
 pytestmark = pytest.mark.slow
 
 
+TABLE = """
+format = "osg-studio/vehicle-table"
+version = 1
+[gestures]
+circle = { do = "lights", percent = 50 }
+[phrases]
+stop = { do = "hold" }
+"""
+
+
 def test_files_are_replaced_when_their_changes_are_confirmed(
     browser: Browser, tmp_path: Path
 ) -> None:
@@ -47,5 +57,20 @@ def test_files_are_replaced_when_their_changes_are_confirmed(
         assert stored.read_bytes() == (tmp_path / "pool.json").read_bytes()
         tab.get_by_label("Vehicle table").set_input_files(tmp_path / "wrong.toml")
         expect(tab.locator("#answer")).to_contain_text("see docs/robots/mavlink.md")
+        # What would be sent, before anybody dives.
+        tab.get_by_text("What would be sent to the vehicle").click()
+        expect(tab.locator("#no-actions")).to_be_visible()
+        (tmp_path / "table.toml").write_text(TABLE)
+        tab.get_by_label("Vehicle table").set_input_files(tmp_path / "table.toml")
+        tab.get_by_role("button", name="Replace the file").click()
+        rows = tab.get_by_role("table").get_by_role("row")
+        expect(rows).to_have_text(
+            [
+                "ShownDoesSends",
+                "gesture circlelights 50 %DO_SET_SERVO 13, 1500",
+                "phrase stopholdDO_SET_MODE ALT_HOLD",
+            ]
+        )
+    replaced.pop()
     assert replaced == ["language"]
     assert faults == []

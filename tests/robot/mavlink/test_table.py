@@ -10,7 +10,9 @@ from typing import get_args
 import pytest
 
 from app.recognition.errors import VehicleError
+from app.robot.commands.answers import PULSES
 from app.robot.mavlink.table import (
+    Answers,
     Camera,
     Depth,
     Hold,
@@ -62,10 +64,14 @@ def test_a_wrong_table_is_refused_by_its_key(tmp_path: Path, text: str, what: st
 
 def test_the_documented_table_is_one(tmp_path: Path) -> None:
     page = (ROOT / "docs" / "robots" / "mavlink.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    block, answers = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     file = tmp_path / "vehicle.toml"
     file.write_text(block)
     assert len(read_vehicle_table(file).gestures) == 5
+    file.write_text(block + answers)
+    assert read_vehicle_table(file).answers == Answers(show=("lights",))
+    listed = re.findall(r"^\| `(\w+)` \| (\d) \|", page, re.MULTILINE)
+    assert listed == [(answer.value, str(count)) for answer, count in PULSES.items()]
     actions = set(re.findall(r"^\| `(\w+)` \| (?:`MAV|the same|`ALT)", page, re.MULTILINE))
     assert actions == {get_args(kind.model_fields["do"].annotation)[0] for kind in KINDS}
 

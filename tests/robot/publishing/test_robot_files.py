@@ -187,7 +187,7 @@ def test_the_file_that_is_there_changes_nothing(robot: Robot) -> None:
     [
         ("language", "{}", "not a language file"),
         ("language", "[" * 100_000, "nested"),
-        ("language", b"\xff\xfe", "not UTF-8"),
+        ("language", b"\xff\xfe", "UTF-16, save it as UTF-8"),
         ("vehicle", "[gestures", "cannot be read"),
         ("vehicle", "version = 1", "format: Field required"),
         ("vehicle", "a = " + "[" * 20_000, "cannot be read"),
