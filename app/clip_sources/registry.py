@@ -56,10 +56,19 @@ def is_take(path: Path) -> bool:
     return any(source.is_take(path) for source in SOURCES)
 
 
-def supported_kinds() -> str:
-    """Return, in words, that a file is of no known kind, and which kinds to send instead."""
+def supported_kinds(kind: str | None = None) -> str:
+    """Return, in words, that a file is of no kind that is read, and which kinds to send instead.
+
+    Parameters
+    ----------
+    kind
+        What the file is, with its article; None: unknown.
+
+    """
     nouns = _join([source.noun for source in SOURCES], "nor")
     formats = _join([source.formats for source in SOURCES], "or")
+    if kind is not None:
+        return f"{kind}, which holds no clip that is read here; send {formats}"
     return f"neither {nouns} this app knows, whatever its name says; send {formats}"
 
 
