@@ -10,6 +10,7 @@ from app.clip_sources.keypoint_file import KeypointFileSource
 from app.clip_sources.source import ClipSource
 from app.clip_sources.video import VideoSource
 from app.recognition.errors import VideoError
+from app.recognition.recording.file_kinds import FileKind
 
 VIDEO = VideoSource()
 
@@ -56,19 +57,21 @@ def is_take(path: Path) -> bool:
     return any(source.is_take(path) for source in SOURCES)
 
 
-def supported_kinds(kind: str | None = None) -> str:
+def supported_kinds(kind: FileKind | None = None) -> str:
     """Return, in words, that a file is of no kind that is read, and which kinds to send instead.
 
     Parameters
     ----------
     kind
-        What the file is, with its article; None: unknown.
+        What the file is; None: unknown.
 
     """
     nouns = _join([source.noun for source in SOURCES], "nor")
     formats = _join([source.formats for source in SOURCES], "or")
     if kind is not None:
-        return f"{kind}, which holds no clip that is read here; send {formats}"
+        return (
+            f"{kind.name}, which holds no clip that is read here; {kind.remedy}, or send {formats}"
+        )
     return f"neither {nouns} this app knows, whatever its name says; send {formats}"
 
 

@@ -19,7 +19,7 @@ from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
 from app.clip_sources.source import HEAD_BYTES
-from app.recognition.recording.file_kinds import name_file_kind
+from app.recognition.recording.file_kinds import find_file_kind
 from app.store import Clip, Upload
 
 UNSUPPORTED = "unsupported_media_type"
@@ -111,7 +111,7 @@ async def inspect(
         raise ProblemError(
             422, "topic_unusable", f"{name} is no dive recording and has no topics; leave it out"
         )
-    kind = name_file_kind(head)
+    kind = find_file_kind(head)
     raise ProblemError(415, UNSUPPORTED, f"{name} is {supported_kinds(kind)}")
 
 

@@ -25,7 +25,7 @@ from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.file_kinds import name_file_kind
+from app.recognition.recording.file_kinds import find_file_kind
 from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -349,11 +349,11 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
 def _describe_unreadable(path: Path) -> str:
     try:
         with path.open("rb") as file:
-            kind = name_file_kind(file.read(64))
+            kind = find_file_kind(file.read(64))
     except OSError as error:
         return f"{path.name} cannot be read ({error.strerror}); check the path"
     if kind is not None:
-        return f"{path.name} is {kind} and no video that is read here; convert it to MP4 with H.264"
+        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
     return (
         f"{path.name} is not a readable video: it is no MP4, MOV, MKV, WebM, AVI or MPEG-TS file, "
         "or its index is cut off; record or export it again"
