@@ -1,4 +1,4 @@
-"""No view has a fault that axe calls serious, in dark and in light."""
+"""No view has a fault that axe calls serious, nor content that scrolls the header away."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from playwright.sync_api import expect
 from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
+from tests.browser.library import Library, add_clip, library_of
 
 SHOWN = {
     "Studio": "role=button[name=/^Take 1/]",
@@ -21,6 +21,22 @@ SHOWN = {
     "Live": "role=button[name='Start the camera']",
 }
 """By view a selector of content that appears once all is loaded."""
+
+
+ESCAPING = """() => {
+  const scrolls = (e) => e.checkVisibility() && /auto|scroll/.test(getComputedStyle(e).overflowY);
+  const scrollerOf = (e) => {
+    let each = e.parentElement;
+    while (each && !scrolls(each)) each = each.parentElement;
+    return each;
+  };
+  return [...document.querySelectorAll("body *")]
+    .filter((e) => e.offsetParent && getComputedStyle(e).position === "absolute")
+    .filter((e) => scrollerOf(e) && !scrollerOf(e).contains(e.offsetParent))
+    .map((e) => e.outerHTML.slice(0, 120));
+}"""
+"""Elements that are placed outside the box with which they should scroll: they lengthen the
+document, which then scrolls its header away."""
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +51,7 @@ def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library, s
     page = open_page(query, scene=False, scheme=scheme)
     expect(page.get_by_role("region", name="Why")).to_contain_text("'line'")
     assert faults(page) == []
+    assert page.evaluate(ESCAPING) == []
 
 
 @pytest.mark.parametrize("scheme", ["dark", "light"])
@@ -46,8 +63,23 @@ def test_every_view(open_page: OpenPage, library: Library, scheme: str) -> None:
     for name, content in SHOWN.items():
         links.get_by_text(name, exact=True).click()
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
-        found[name] = faults(page)
+        found[name] = [*faults(page), *page.evaluate(ESCAPING)]
     assert found == {name: [] for name in SHOWN}
+
+
+@pytest.mark.parametrize("width", [1440, 1024, 768])
+def test_the_header_stays_while_clips_are_chosen_for_the_test_set(
+    open_page: OpenPage, server: Running, library: Library, width: int
+) -> None:
+    for number in range(12):
+        add_clip(server, "circle", name=f"to test {width} {number}.mp4")
+    page = open_page(library.address | {"view": "health"}, scene=False, size=(width, 700))
+    page.get_by_role("button", name="Test with clips").click()
+    page.locator("summary").filter(has_text="Choose from the").click()
+    page.get_by_text(f"to test {width} 0.mp4").last.scroll_into_view_if_needed()
+    assert page.evaluate(ESCAPING) == []
+    expect(page.get_by_role("navigation", name="Views")).to_be_in_viewport(ratio=1)
+    assert page.evaluate("[scrollY, document.documentElement.scrollHeight]") == [0, 700]
 
 
 def test_every_view_on_a_phone(open_page: OpenPage, library: Library) -> None:
@@ -78,6 +110,7 @@ def test_what_the_views_lead_to(
         page = open_page({"language": library.language, **query}, scene=False, size=size)
         expect(page.locator(".view:visible").locator(content)).to_be_visible()
         assert faults(page) == []
+        assert page.evaluate(ESCAPING) == []
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
 
 
