@@ -133,6 +133,20 @@ function turn(next, steps = past) {
   listener();
 }
 
+/**
+ * Keep what was changed as the draft of another gesture, which has every other value as saved.
+ *
+ * @param {string} at
+ */
+export function takeAlong(at) {
+  const changes = Object.entries(draft()).filter(
+    ([name, value]) => !same(value, saved()[/** @type {keyof Draft} */ (name)]),
+  );
+  forget();
+  const values = Object.fromEntries(changes);
+  localStorage.setItem(at, JSON.stringify({ values, time: Date.now() }));
+}
+
 /** Delete the draft, after it was saved or dropped. */
 export function forget() {
   if (place) localStorage.removeItem(place);

@@ -8,6 +8,7 @@ import { currentLanguage, follow, selectedRange, state } from "../core/state.js"
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
+import { labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
 import { take } from "./demonstration-panel.js";
@@ -25,6 +26,7 @@ import {
   placeOf,
   redo,
   saved,
+  takeAlong,
   undo,
 } from "./gesture-draft.js";
 import { switches, textProblem, texts } from "./gesture-form.js";
@@ -100,8 +102,9 @@ function gestureOf({ language, gesture }) {
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
+    const proposed = labelOf(state.clips.find(({ id }) => id === state.clip)?.name ?? "");
     return {
-      label: "",
+      label: language.labels.includes(proposed) ? "" : proposed,
       description: "",
       command: "",
       salient: null,
@@ -343,6 +346,38 @@ function bereft(about) {
   );
 }
 
+/** Whether the gesture of a changed draft is not in its language (any more). */
+const isOrphaned = () =>
+  editor !== null &&
+  isChanged() &&
+  state.gestures?.id === editor.about.language.id &&
+  !isKnown({ ...editor.about, language: state.gestures });
+
+let isFollowing = false;
+
+/**
+ * Go on with the draft under the label that the gesture was given elsewhere; keep the draft where
+ * the gesture was deleted.
+ */
+async function followRename() {
+  if (!editor || !state.gestures || isFollowing) return;
+  const { gesture, language } = editor.about;
+  const newest = state.gestures.revision;
+  isFollowing = true;
+  const compared = await attempt("Finding the gesture", () =>
+    api.languages.compare(language.id, language.revision, newest),
+  );
+  isFollowing = false;
+  if (!isOrphaned()) return;
+  const label = compared?.gestures.find(({ before }) => before?.label === gesture)?.after?.label;
+  takeAlong(placeOf(language.id, label ?? String(gesture)));
+  close();
+  const title = `\u201c${gesture}\u201d was ${label ? "renamed" : "deleted"} elsewhere`;
+  if (label) toast(title, `Your draft goes on as a change of \u201c${label}\u201d.`);
+  else toast(title, "The draft is kept, and comes back with the gesture.", { kind: "error" });
+  await go(label ? "gesture" : null, { gesture: label ?? null });
+}
+
 const leave = () => go(null, { gesture: null });
 
 /** @param {HTMLElement} section */
@@ -405,6 +440,7 @@ export function open(section) {
       // A gesture that is renamed has its new label before the draft is forgotten.
       if (isSaving) return undefined;
       const about = subject();
+      if (isOrphaned()) return followRename();
       if (!about || !isKnown(about)) {
         left();
         if (nothingComes()) explain(section);

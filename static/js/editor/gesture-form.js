@@ -131,7 +131,11 @@ export function texts(taken) {
       command.row,
     ),
     draw,
-    focus: () => label.input.focus({ preventScroll: true }),
+    // A proposed label is replaced by typing.
+    focus: () => {
+      label.input.focus({ preventScroll: true });
+      label.input.select();
+    },
   };
 }
 

@@ -9,7 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
+from tests.browser.library import Library, add_clip, library_of
 
 
 @pytest.fixture
@@ -162,6 +162,61 @@ def test_a_draft_survives_that_its_language_is_deleted_elsewhere(
     alert.get_by_role("button", name="Bring it back").click()
     expect(page.get_by_label("Description")).to_have_value("half finished")
     expect(page.get_by_label("Language", exact=True)).to_have_value(library.language)
+
+
+def change(library: Library, label: str, values: dict[str, str]) -> None:
+    """Change a gesture as another tab does."""
+    place = f"/api/v1/languages/{library.language}"
+    tag = library.client.get(place).headers["etag"]
+    answer = library.client.patch(
+        f"{place}/gestures/{label}", json=values, headers={"If-Match": tag}
+    )
+    answer.raise_for_status()
+
+
+def test_a_renamed_gesture_is_saved_without_a_word_about_a_kept_draft(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Label").fill("ring")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    expect(page.locator(".toast")).to_have_count(1)
+    assert gesture(library, "ring")
+
+
+def test_a_draft_goes_on_under_the_label_that_the_gesture_was_given_elsewhere(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = editing(open_page, library)
+    page.get_by_label("Description").fill("half finished")
+    expect(page.get_by_text("Draft, not saved yet")).to_be_visible()
+    change(library, "circle", {"label": "ring", "command": "stop"})
+    expect(page.get_by_role("heading", name="Edit ring")).to_be_visible()
+    expect(page.get_by_text("was renamed elsewhere")).to_be_visible()
+    expect(page.get_by_label("Label", exact=True)).to_have_value("ring")
+    expect(page.get_by_label("Command")).to_have_value("stop")
+    expect(page.get_by_label("Description")).to_have_value("half finished")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    saved = gesture(library, "ring")
+    assert (saved["description"], saved["command"]) == ("half finished", "stop")
+
+
+def test_the_label_of_a_new_gesture_is_proposed_and_replaced_by_typing(
+    open_page: OpenPage, library: Library, server: Running
+) -> None:
+    clip = add_clip(server, "line", name="go_up-demonstration-2.mp4")
+    query = {"clip": clip, "language": library.language}
+    page = open_page(query, scene=False)
+    page.get_by_role("button", name="Save as gesture").click()
+    expect(page.get_by_label("Label", exact=True)).to_have_value("go up")
+    page.keyboard.press("Enter")
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+    assert gesture(library, "go up")
+    page.get_by_role("button", name="Save as gesture").click()
+    # The language has this label by now.
+    expect(page.get_by_label("Label", exact=True)).to_have_value("")
 
 
 def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
