@@ -76,7 +76,7 @@ function drawEverything() {
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip", "library"], drawClips);
   follow(["clips", "jobs"], drawBatch);
-  follow(["clips", "gestures"], drawTableButton);
+  follow(["clips", "gestures", "clip"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
   follow(["quota"], drawQuota);
   follow(["quota", "clips", "uploads"], followQuota);

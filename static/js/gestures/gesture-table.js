@@ -54,15 +54,19 @@ const targetLanguage = () => (state.gestures?.id === onDisplay().target ? state.
 const usable = () => state.clips.filter(({ status }) => status === "done" || BUSY.has(status));
 
 /**
- * Show the button that opens the table; it is highlighted while several clips show no gesture.
+ * Show the button that opens the table; it is highlighted while several clips show no gesture and
+ * none on display can be recognised: one button of a screen stands out.
  *
  * @param {State} state
  */
-export function drawTableButton({ gestures }) {
+export function drawTableButton({ gestures, clip }) {
   const button = byId("make-gestures");
   const clips = usable();
   button.hidden = !clips.length;
-  button.classList.toggle("primary", withoutGesture(clips, gestures).length > 1);
+  const recognisable =
+    gestures?.gestures.length && clips.some(({ id, status }) => id === clip && status === "done");
+  const unused = withoutGesture(clips, gestures).length > 1;
+  button.classList.toggle("primary", unused && !recognisable);
 }
 
 const rows = () => rowsOf(usable(), takesByClip, targetLanguage(), onDisplay().edited);

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
+from urllib.parse import urlencode
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Browser, expect
 
 from tests.api.running import Running, client_of
-from tests.browser.conftest import OpenPage
+from tests.browser.conftest import WITHOUT_SCENE, OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
 
@@ -59,6 +60,62 @@ def test_the_bar_has_room_for_everything_on_a_tablet(
         down = min(each["y"] + each["height"] for each in (one, other))
         is_beside = across <= max(one["x"], other["x"]) + 1
         assert is_beside or down <= max(one["y"], other["y"]) + 1
+
+
+SMALL = """() => [...document.querySelectorAll("button, select, summary, input")]
+  .filter((e) => e.checkVisibility() && !e.closest("table"))
+  .filter((e) => !e.matches(".take, .handle, .visually-hidden, [type=checkbox], [type=radio]"))
+  .filter((e) => e.getBoundingClientRect().height < 44)
+  .map((e) => e.outerHTML.slice(0, 120))"""
+"""Controls that are less than 44 px high."""
+
+
+def test_on_a_phone_the_answer_follows_the_picture_and_thumbs_find_every_control(
+    browser: Browser, server: Running, library: Library
+) -> None:
+    query = {**library.address, "recognition": library.recognise("line")}
+    context = browser.new_context(
+        viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True
+    )
+    context.add_cookies([{"name": WITHOUT_SCENE, "value": "1", "url": server.address}])
+    context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+    page = context.new_page()
+    page.goto(f"{server.address}/?{urlencode(query)}")
+    sentence = page.locator(".why-sentence")
+    expect(sentence).to_be_visible()
+    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
+    places = [
+        page.locator(part).first.bounding_box()
+        for part in (
+            "#lab-box",
+            "#outcome",
+            ".why-sentence",
+            ".remedies",
+            "#timeline",
+            ".vote-images",
+            ".vote-table",
+        )
+    ]
+    tops = [place["y"] for place in places if place is not None]
+    assert len(tops) == len(places)
+    assert tops == sorted(tops)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate(SMALL) == []
+    page.get_by_role("button", name="New language").click()
+    dialog = page.get_by_role("dialog", name="New language")
+    expect(dialog).to_be_visible()
+    assert dialog.evaluate("(box) => box.scrollWidth <= box.clientWidth")
+    context.close()
+
+
+def test_one_button_of_a_screen_stands_out(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    add_clip(server, "line", name="unused one.mp4")
+    add_clip(server, "line", name="unused two.mp4")
+    page = open_page(library.address, scene=False)
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    expect(page.locator("button.primary:visible")).to_have_text(["Recognise"])
 
 
 COVERED = """(box) => {
