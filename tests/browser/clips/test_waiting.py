@@ -23,6 +23,34 @@ SECONDS = 4.0
 """Length of the clip: enough frames for progress and an estimate of the time left."""
 
 
+def test_files_that_a_reload_drops_are_asked_about_and_named_afterwards(
+    open_page: OpenPage, tmp_path: Path
+) -> None:
+    page = open_page(scene=False)
+    expect(page.get_by_role("heading", name="One demonstration makes a gesture")).to_be_visible()
+    # No upload ends while this test looks.
+    page.route("**/api/v1/uploads**", lambda route: None)
+    file = tmp_path / "dive.mp4"
+    file.write_bytes(b"0" * 1000)
+    names = ("one.mp4", "two.mp4", "three.mp4", "four.mp4")
+    drop(page, *[file] * 4, names=names)
+    expect(page.get_by_role("list", name="Uploads").get_by_role("listitem")).to_have_count(4)
+    # A press, without which a browser does not ask.
+    page.locator("#clips-title").click()
+    with page.expect_event("dialog") as asked:
+        page.evaluate("setTimeout(() => location.reload())")
+    assert asked.value.type == "beforeunload"
+    asked.value.dismiss()
+    expect(page.get_by_role("list", name="Uploads").get_by_role("listitem")).to_have_count(4)
+    page.on("dialog", lambda dialog: dialog.accept())
+    page.reload()
+    alert = page.get_by_role("alert").filter(has_text="4 files were not sent")
+    expect(alert).to_contain_text("one.mp4, two.mp4, three.mp4")
+    page.reload()
+    expect(page.get_by_role("heading", name="One demonstration makes a gesture")).to_be_visible()
+    expect(alert).to_have_count(0)
+
+
 @linux
 def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     open_page: OpenPage, thin_clip: Callable[[str], Path], tmp_path: Path
@@ -48,6 +76,8 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     queued = page.get_by_role("list", name="Clips").get_by_role("listitem")
     expect(queued.filter(has_text="Next in the queue")).to_have_count(1)
     expect(queued.filter(has_text="Number 2 of 2 in the queue")).to_have_count(1)
+    # As it is worked: the running clip first, then the oldest.
+    expect(queued.locator("b")).to_have_text(names)
     os.kill(worker, signal.SIGCONT)
     # Only the clip that runs has a bar; it is the first of the list, and named in the card.
     expect(queued.first).to_contain_text("one.mp4")
