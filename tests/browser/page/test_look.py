@@ -108,6 +108,18 @@ def test_on_a_phone_the_answer_follows_the_picture_and_thumbs_find_every_control
     context.close()
 
 
+def test_names_of_many_takes_are_not_cut_on_the_timeline(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, *["circle"] * 17, name="long dive.mp4")
+    page = open_page({"clip": clip, "language": library.language}, scene=False, size=(1024, 768))
+    names = page.locator(".take-name")
+    expect(names).to_have_count(17)
+    cut = "(each) => each.filter((e) => e.offsetWidth > e.parentElement.clientWidth).length"
+    assert names.evaluate_all(cut) == 0
+    expect(page.get_by_role("button", name="Take 17,")).to_be_visible()
+
+
 def test_one_button_of_a_screen_stands_out(
     open_page: OpenPage, server: Running, library: Library
 ) -> None:
