@@ -8,12 +8,11 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from playwright.sync_api import Route, expect
+from playwright.sync_api import expect
 
 from tests.api.running_workers import hold_worker, linux
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
-from tests.recognition.damaged_clips import write_clip
 from tests.short_clips import shortened
 
 EXTRACTION_MS = 300_000
@@ -87,24 +86,3 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     assert missing == []
     expect(card).to_contain_text("1 of 3 clips done", timeout=EXTRACTION_MS)
     expect(card).to_be_hidden(timeout=EXTRACTION_MS)
-
-
-def test_files_that_were_not_sent_when_the_page_was_left_are_asked_about_and_named(
-    open_page: OpenPage, tmp_path: Path
-) -> None:
-    clip = write_clip(tmp_path / "dive.mp4", frames=2)
-    page = open_page(scene=False)
-    held: list[Route] = []
-    page.route("**/uploads**", lambda route: held.append(route))
-    drop(page, *[clip] * 3, names=("dive 1.mp4", "dive 2.mp4", "dive 3.mp4"))
-    uploads = page.get_by_role("list", name="Uploads").get_by_role("listitem")
-    expect(uploads).to_have_count(3)
-    asks = "!dispatchEvent(new Event('beforeunload', { cancelable: true }))"
-    assert page.evaluate(asks) is True
-    page.reload()
-    told = page.get_by_role("alert").filter(has_text="3 files were not sent")
-    expect(told).to_contain_text("dive 1.mp4, dive 2.mp4, dive 3.mp4")
-    assert page.evaluate(asks) is False
-    page.reload()
-    expect(page.get_by_role("heading", name="Clips")).to_be_visible()
-    expect(told).to_have_count(0)

@@ -291,16 +291,3 @@ def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(
     page.get_by_label("Label").fill("ring")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()
-
-
-def test_a_gesture_that_is_renamed_leaves_no_draft_behind(
-    open_page: OpenPage, library: Library
-) -> None:
-    page = open_page(library.address, scene=False)
-    page.get_by_role("button", name="Change circle", exact=True).click()
-    page.get_by_label("Label").fill("round")
-    page.get_by_role("button", name="Save", exact=True).click()
-    expect(page.get_by_text("round, in")).to_be_visible()
-    expect(page.get_by_text("The draft is kept")).to_have_count(0)
-    page.keyboard.press("Control+z")
-    expect(page.get_by_role("button", name="Change circle", exact=True)).to_be_visible()
