@@ -255,10 +255,12 @@ def test_a_label_that_is_taken_is_refused_in_the_editor(
 ) -> None:
     page = open_page(library.address, scene=False)
     page.get_by_role("button", name="Save as gesture").click()
+    label = page.get_by_role("textbox", name="Label")
+    label.fill("")
     page.get_by_role("button", name="Save gesture").click()
     problem = page.get_by_role("alert")
     expect(problem.filter(has_text="Label is empty; type one.")).to_be_visible()
-    page.get_by_role("textbox", name="Label").fill("circle")
+    label.fill("circle")
     page.get_by_role("button", name="Save gesture").click()
     expect(problem.filter(has_text="There is a gesture \u201ccircle\u201d already")).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
