@@ -17,7 +17,7 @@ SHOWN = {
     "Languages": "role=link[name='accessible']",
     "Phrases": "role=button[name='Add the first phrase']",
     "Health": "role=table[name='What is known of each gesture']",
-    "Practice": "role=button[name='Start the camera']",
+    "Practice": "role=textbox[name='Diver']",
     "Live": "role=button[name='Start the camera']",
 }
 """By view a selector of content that appears once all is loaded."""

@@ -288,6 +288,6 @@ def test_a_drawing_without_its_demonstration_says_what_cannot_be_edited(
         page.get_by_text("Imported without its demonstration: it cannot be played")
     ).to_be_visible()
     expect(page.get_by_text("Imported without its demonstration: its keypoints")).to_be_visible()
-    page.get_by_label("Label").fill("ring")
+    page.get_by_role("textbox", name="Label").fill("ring")
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()
