@@ -42,16 +42,19 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
     """Name the files of a folder that are none of those that are read, nor in one of them."""
     inside = set(read)
     left = [
-        path.relative_to(folder).as_posix()
+        path
         for path in sorted(folder.rglob("*"))
         if path.is_file()
         and not any(part.startswith(".") for part in path.relative_to(folder).parts)
         and inside.isdisjoint((path, *path.parents))
     ]
-    if left:
-        more = f" and {len(left) - MOST_NAMED} more" if len(left) > MOST_NAMED else ""
-        text = f"left out, no clip by its first bytes: {', '.join(left[:MOST_NAMED])}{more}"
-        people.print(text, markup=False, highlight=False, soft_wrap=True)
+    reasons = {True: "keypoints already", False: "no clip by its first bytes"}
+    for is_clip, reason in reasons.items():
+        names = [path.relative_to(folder).as_posix() for path in left if _is_clip(path) == is_clip]
+        if names:
+            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+            text = f"left out, {reason}: {', '.join(names[:MOST_NAMED])}{more}"
+            people.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
 def measure_bytes(path: Path) -> int:

@@ -71,8 +71,8 @@ class KeypointFileSource:
     )
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
-        """Return whether a file has the ending of a keypoint file, or a folder holds OpenPose's."""
-        return topic is None and is_keypoint_file(path)
+        """Return whether a file has the ending of a keypoint file, or holds OpenPose's frames."""
+        return topic is None and self.is_take(path)
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Decide by the first bytes, and for text by the name's ending."""
@@ -87,8 +87,8 @@ class KeypointFileSource:
         return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
-        """Return whether it is a keypoint file; a folder of OpenPose is one take."""
-        return is_keypoint_file(path)
+        """Return whether it is a keypoint file; OpenPose's folder, or its archive, is one take."""
+        return is_keypoint_file(path) or is_openpose_archive(path)
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read all of the file."""
@@ -155,9 +155,10 @@ class KeypointFileSource:
 
 def _read(path: Path, options: ReadOptions) -> ReadKeypoints:
     """Read a file; one that was stored without its name is read by its ending."""
-    if options.ending is None:
+    ending = options.ending or (".zip" if is_openpose_archive(path) else None)
+    if ending is None:
         return read_keypoints(path, options.keypoints)
-    with stage(path, options.ending) as place:
+    with stage(path, ending) as place:
         try:
             read = read_keypoints(place, options.keypoints)
         except OsgError as error:

@@ -61,8 +61,8 @@ def stage(path: Path, ending: Ending, limits: VideoLimits | None = None) -> Iter
 
 
 def is_openpose_archive(path: Path) -> bool:
-    """Return whether the zip at `path` looks like a folder of OpenPose; only names are read."""
-    return any(map(_is_frame, names_in(path)))
+    """Return whether `path` is a zip that looks like a folder of OpenPose; only names are read."""
+    return path.is_file() and any(map(_is_frame, names_in(path)))
 
 
 def _unpack(path: Path, folder: Path, limits: VideoLimits) -> None:

@@ -23,6 +23,7 @@ def test_a_folder_is_extracted_for_evaluate_and_copied_by_name(
     clip = write_clip(season / "circle" / "1.mp4", frames=3)
     with zipfile.ZipFile(season / "circle" / "notes.zip", "w") as archive:
         archive.writestr("notes.txt", "no dive recording")
+    (season / "circle" / "seen.csv").touch()
     (season / ".trash.mp4").write_bytes(b"\0\0\0\x18ftypmp42")
     clip.rename(clip := clip.with_name("1.LRV"))
     ended = osg_studio("extract", season, "--workers", 1, "--output", tmp_path / "copies")
@@ -30,6 +31,7 @@ def test_a_folder_is_extracted_for_evaluate_and_copied_by_name(
     copy = tmp_path / "copies" / "circle" / "1.LRV.npz"
     assert ended.out == f"{clip}\t{copy}\n"
     assert "1 clips extracted, 0 known" in ended.error
+    assert "left out, keypoints already: circle/seen.csv\n" in ended.error
     assert "left out, no clip by its first bytes: circle/notes.zip\n" in ended.error
     (recording,) = kept.iterdir()
     assert copy.read_bytes() == recording.read_bytes()

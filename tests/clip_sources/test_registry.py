@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import mimetypes
 import re
+import shutil
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -37,6 +39,25 @@ def test_files_and_folders_are_read_by_the_source_of_their_content(tmp_path: Pat
     }
     assert {path: source_of(path).name for path in files} == files
     assert {source_named(source.name) for source in SOURCES} == set(SOURCES)
+
+
+def test_an_archive_is_read_by_the_names_in_it(tmp_path: Path) -> None:
+    poses = recording(circle, frames=20)
+    packed = {
+        "keypoints": write_openpose(tmp_path / "json", poses, BODY_25),
+        "bag": write_bag(tmp_path / "dive", published_rows(recording_of("line"))),
+    }
+    for name, folder in packed.items():
+        archive = Path(shutil.make_archive(str(folder), "zip", folder))
+        assert source_of(archive).name == name
+    options = ReadOptions(frame_rate=30.0)
+    frames = tmp_path / "json.zip"
+    assert len(source_of(frames).record(frames, options).recording.poses) == len(poses)
+    other = tmp_path / "other.zip"
+    with ZipFile(other, "w") as archived:
+        archived.writestr("notes.txt", "no clip")
+    with pytest.raises(VideoError, match="a zip archive and no video that is read here; unpack it"):
+        source_of(other).probe(other, ReadOptions())
 
 
 def test_a_named_topic_means_a_dive_recording(tmp_path: Path) -> None:
