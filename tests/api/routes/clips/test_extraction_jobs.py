@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -149,6 +148,5 @@ def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, tmp_pa
     with running(narrow) as server, client_of(server.address) as client:
         refused = upload(client, clip)
         assert refused.status_code == 422
-        # FFmpeg calls a file unreadable where the memory ends while its index is read.
-        assert re.search("memory|not a readable video", refused.json()["detail"])
+        assert "memory" in refused.json()["detail"]
         assert client.get("/healthz").status_code == 200
