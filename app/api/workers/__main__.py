@@ -15,6 +15,7 @@ import ctypes
 import gc
 import importlib
 import json
+import mmap
 import os
 import signal
 import socket
@@ -27,6 +28,9 @@ from app.system.confinement import confine
 
 _SET_NAME = 15
 """Option of prctl(2) that names a process."""
+
+SPARE_BYTES = 128 * 1024 * 1024
+"""Memory that a process must have left for its error to be believed: ten pictures in 4K."""
 
 
 def main() -> None:
@@ -103,7 +107,17 @@ def run(given: str, scratch: str, *limits: int) -> None:
     try:
         task.run(report)
     except (MemoryError, OsgError, OSError) as error:
-        report(task.refuse(error))
+        # Decoders without memory say that the file is damaged.
+        report(task.refuse(error if is_memory_left() else MemoryError()))
+
+
+def is_memory_left() -> bool:
+    """Return whether this process may still use `SPARE_BYTES` more."""
+    try:
+        mmap.mmap(-1, SPARE_BYTES).close()
+    except (MemoryError, OSError):
+        return False
+    return True
 
 
 def end_with_server() -> None:

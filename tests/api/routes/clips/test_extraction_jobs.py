@@ -141,6 +141,23 @@ def test_a_worker_that_hangs_is_ended(settings: Settings, long_clip: Path) -> No
 
 
 @pytest.mark.skipif(os.name != "posix", reason="POSIX resource limits")
+def test_a_clip_is_not_called_damaged_where_memory_ends_within_its_decoder(
+    settings: Settings, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "large.mp4", frames=2, size=(3840, 2160))
+    for megabytes in range(560, 2000, 20):
+        limits = Limits(worker_memory_bytes=megabytes * 1024 * 1024)
+        narrow = settings.model_copy(update={"limits": limits})
+        with running(narrow) as server, client_of(server.address) as client:
+            answer = upload(client, clip)
+        if answer.status_code == 202:
+            break
+        assert "memory" in answer.json()["detail"], megabytes
+    else:
+        pytest.fail("the clip is never accepted")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="POSIX resource limits")
 @pytest.mark.withstands(row="H10")
 def test_a_clip_that_needs_too_much_memory_is_refused(settings: Settings, tmp_path: Path) -> None:
     clip = write_clip(tmp_path / "large.mp4", frames=2, size=(3840, 2160))
