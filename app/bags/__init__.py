@@ -4,8 +4,9 @@ A recording is read in place. A topic of pictures becomes a clip through the sam
 file, a topic of recorded keypoints without models.
 """
 
-from app.bags.bag_kind import bag_and_topic, is_bag
+from app.bags.bag_kind import bag_and_topic
 from app.bags.extraction import holds_keypoints, record_bag
 from app.bags.skeleton_video import show_recording
+from app.bags.staging import is_bag
 
 __all__ = ["bag_and_topic", "holds_keypoints", "is_bag", "record_bag", "show_recording"]

@@ -46,8 +46,3 @@ def bag_and_topic(text: str) -> tuple[Path, str | None]:
     if match is None or Path(text).exists():
         return Path(text), None
     return Path(match[1]), match[2]
-
-
-def is_bag(path: Path) -> bool:
-    """Return whether `path` is read as a dive recording and not as a video file."""
-    return kind_of(path) is not None

@@ -184,6 +184,12 @@ def _too_large(name: str, size: int) -> BagError:
     )
 
 
+def is_bag(path: Path) -> bool:
+    """Return whether `path` is a dive recording, by its first bytes or an archive's names."""
+    kind = kind_of(path)
+    return is_bag_archive(path) if kind == "zip" else kind is not None
+
+
 def is_bag_archive(path: Path) -> bool:
     """Return whether the zip at `path` looks like a dive recording; only names are read."""
     with path.open("rb") as file:

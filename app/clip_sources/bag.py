@@ -10,7 +10,7 @@ import numpy as np
 
 from app.bags import holds_keypoints, is_bag, record_bag
 from app.bags.bag import open_bag
-from app.bags.bag_kind import bag_kind, kind_of
+from app.bags.bag_kind import bag_kind
 from app.bags.extraction import write_video
 from app.bags.image_topic import BagFrames
 from app.bags.staging import is_bag_archive
@@ -53,8 +53,7 @@ class BagSource:
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
         """Return whether a topic is named, or the content is that of a rosbag2."""
-        is_zip = kind_of(path) == "zip"
-        return topic is not None or (is_bag_archive(path) if is_zip else is_bag(path))
+        return topic is not None or is_bag(path)
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Return whether `head` is the beginning of a rosbag2; a zip may hold anything else."""
