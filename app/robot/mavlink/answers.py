@@ -69,6 +69,11 @@ FAILURES: Final = (
 )
 
 
+def build_command(vehicle: Vehicle, command: int, *parameters: float) -> Message:
+    """Build a command to the vehicle's autopilot, sent for the first time."""
+    return CommandStep(command, parameters, vehicle.system, vehicle.component).build(0)
+
+
 class Output(Protocol):
     """Protocol of what shows pulses.
 
@@ -139,9 +144,7 @@ class LightsOutput:
 
     def build(self, value: float) -> Message:
         """Build the message that sets a pulse length."""
-        vehicle = self.vehicle
-        parameters = (vehicle.lights_servo, value)
-        return CommandStep(self.command, parameters, vehicle.system, vehicle.component).build(0)
+        return build_command(self.vehicle, self.command, self.vehicle.lights_servo, value)
 
 
 class TiltOutput:
@@ -172,8 +175,7 @@ class TiltOutput:
     def build(self, value: float) -> Message:
         """Build the message that sets an angle and leaves the yaw as it is."""
         rest = (math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
-        vehicle = self.vehicle
-        return CommandStep(self.command, (value, *rest), vehicle.system, vehicle.component).build(0)
+        return build_command(self.vehicle, self.command, value, *rest)
 
 
 class PatternPlayer:
@@ -348,9 +350,8 @@ class PatternPlayer:
         return self.output.build(value)
 
     def _ask_for_reports(self) -> Message:
-        vehicle, command = self.output.vehicle, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
-        parameters = (float(self.output.reported_by), REPORT_SECONDS * 1e6)
-        return CommandStep(command, parameters, vehicle.system, vehicle.component).build(0)
+        command, message = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(self.output.reported_by)
+        return build_command(self.output.vehicle, command, message, REPORT_SECONDS * 1e6)
 
 
 class AnswerDesk:

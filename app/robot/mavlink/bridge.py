@@ -8,7 +8,7 @@ import threading
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -36,13 +36,11 @@ from app.robot.events import (
     TakeRejected,
 )
 from app.robot.mavlink.actions import Message, Step, build_steps
+from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
 from app.robot.mavlink.peer import VehiclePeer
-from app.robot.mavlink.table import Action, Answers, Vehicle, VehicleTable
-
-if TYPE_CHECKING:
-    from app.robot.mavlink.answers import AnswerDesk
+from app.robot.mavlink.table import Action, VehicleTable
 
 TEXT_BYTES: Final = 50
 """Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
@@ -122,9 +120,7 @@ class MavlinkBridge:
         self._tell_people = tell
         self._now = now
         self._tell_answer = tell_answer
-        self._answers = (
-            None if table.answers is None else open_answers(table.answers, table.vehicle)
-        )
+        self._answers = None if table.answers is None else AnswerDesk(table.answers, table.vehicle)
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
@@ -435,13 +431,6 @@ class MavlinkBridge:
         if not self._broken:
             self._broken = True
             self._tell_people(f"no connection to the vehicle: {reason}")
-
-
-def open_answers(answers: Answers, vehicle: Vehicle) -> AnswerDesk:
-    """Open the answers of a table."""
-    from app.robot.mavlink.answers import AnswerDesk
-
-    return AnswerDesk(answers, vehicle)
 
 
 def build_heartbeat() -> Message:
