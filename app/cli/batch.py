@@ -18,6 +18,7 @@ from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
+from app.recognition.text.wording import list_some
 
 MOST_NAMED: Final = 10
 """Most files named that are left out."""
@@ -52,8 +53,7 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
     for is_clip, reason in reasons.items():
         names = [path.relative_to(folder).as_posix() for path in left if _is_clip(path) == is_clip]
         if names:
-            more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-            text = f"left out, {reason}: {', '.join(names[:MOST_NAMED])}{more}"
+            text = f"left out, {reason}: {list_some(names, MOST_NAMED)}"
             people.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

@@ -6,7 +6,6 @@ One frame a row, with numbered columns (``x0,y0,z0,v0,x1,...``) or named ones (`
 
 from __future__ import annotations
 
-import codecs
 import csv
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -34,6 +33,7 @@ from app.keypoint_files.keypoint_table import (
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.video_limits import VideoLimits
+from app.recognition.text.strict_json import is_utf16
 
 SEPARATORS: Final = ",;\t"
 """Separators of a table's cells; Excel writes semicolons where the comma is a decimal one."""
@@ -69,8 +69,7 @@ def read_mediapipe_table(
 def find_encoding(path: Path) -> str:
     """Return the encoding of a table: UTF-8, or UTF-16 by its byte-order mark, as Excel writes."""
     with path.open("rb") as file:
-        is_wide = file.read(2) in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-    return "utf-16" if is_wide else "utf-8-sig"
+        return "utf-16" if is_utf16(file.read(2)) else "utf-8-sig"
 
 
 def _point(cell: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -20,6 +20,7 @@ from app.recognition.poses.skeletons import find_missing_landmarks, translate_la
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
 from app.recognition.recording.video_limits import VideoLimits
+from app.recognition.text.wording import list_some
 
 MOST_NAMED: Final = 20
 """Most keypoints named in a sentence."""
@@ -153,24 +154,19 @@ def _map_names(
             found[landmark] = column
     if not found:
         raise KeypointFileError(
-            f"{path} names no keypoint that is known here: {_name_some(names)}; say which they "
-            f"are, as in --landmark {names[0]}=right_wrist"
+            f"{path} names no keypoint that is known here: {list_some(names, MOST_NAMED)}; say "
+            f"which they are, as in --landmark {names[0]}=right_wrist"
         )
     notes = []
     if dropped:
         notes.append(
-            f"left out, for they mean no landmark here: {_name_some(dropped)}; keep one by "
-            f"--landmark {dropped[0]}=NAME"
+            f"left out, for they mean no landmark here: {list_some(dropped, MOST_NAMED)}; keep "
+            f"one by --landmark {dropped[0]}=NAME"
         )
     if missing := find_missing_landmarks(found):
         source = "the folder" if path.is_dir() else "the file"
         notes.append(f"{source} gives no {', '.join(missing)}")
     return tuple(found), list(found.values()), tuple(notes)
-
-
-def _name_some(names: Sequence[str]) -> str:
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + more
 
 
 def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> tuple[int, int]:

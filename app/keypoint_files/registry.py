@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import codecs
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Final, Literal, get_args
@@ -15,6 +14,7 @@ from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.sleap import read_sleap
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.video_limits import VideoLimits
+from app.recognition.text.strict_json import is_utf16
 
 Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
 
@@ -78,5 +78,5 @@ def keypoint_ending(head: bytes, name: str) -> Ending | None:
     if head.startswith(_HDF5):
         return ".slp" if lower.endswith(".slp") else ".h5"
     named = next((ending for ending in get_args(Ending) if lower.endswith(ending)), None)
-    is_wide = named == ".csv" and head[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-    return named if named in (".csv", ".json") and (is_wide or b"\0" not in head) else None
+    is_text = b"\0" not in head or (named == ".csv" and is_utf16(head))
+    return named if named in (".csv", ".json") and is_text else None

@@ -9,14 +9,13 @@ from functools import lru_cache
 from pathlib import Path
 
 from app.api.services.language_documents import draft_of
+from app.evaluation.kept_recordings import RECORDING_ENDING
 from app.recognition import Language
 from app.recognition.errors import LanguageError
 from app.store import LanguageStore
 
 SEEDED = "Sample language"
 """Change of the first revision of a sample, for its history."""
-
-RECORDING_ENDING = ".npz"
 
 CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 

@@ -18,6 +18,7 @@ from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.outliers import find_outliers
 from app.recognition.preprocessing.side_swaps import find_side_swaps, swap_sides
+from app.recognition.text.wording import list_some
 
 ROUNDS = 16
 """Most rounds of repair: one round can reveal errors for the next. Of 400 recordings with heavy
@@ -84,9 +85,8 @@ class Repair:
         counts = dict(zip(self.poses.landmarks, self.jumps.sum(axis=0).tolist(), strict=True))
         jumping = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
         if jumping:
-            named = ", ".join(f"{name} in {counts[name]}" for name in jumping[:MOST_NAMED])
-            others = f" and {len(jumping) - MOST_NAMED} more" if jumping[MOST_NAMED:] else ""
-            found.append(f"places that landmarks jumped to were left out: {named}{others} {frames}")
+            named = list_some([f"{name} in {counts[name]}" for name in jumping], MOST_NAMED)
+            found.append(f"places that landmarks jumped to were left out: {named} {frames}")
         return tuple(found)
 
 

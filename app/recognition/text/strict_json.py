@@ -59,6 +59,11 @@ class _ObjectWithDuplicates(dict[str, Any]):
     duplicates: list[str]
 
 
+def is_utf16(head: bytes) -> bool:
+    """Return whether a text that begins with `head` is UTF-16, by its byte-order mark."""
+    return head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+
+
 def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
     """Parse UTF-8 JSON of limited size and depth that every reader understands alike.
 
@@ -92,8 +97,9 @@ def read_json(content: bytes, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any
             parse_int=_integer,
         )
     except UnicodeDecodeError as error:
-        is_wide = content[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
-        found = "UTF-16, save it as UTF-8" if is_wide else f"not UTF-8 at byte {error.start}"
+        found = (
+            "UTF-16, save it as UTF-8" if is_utf16(content) else f"not UTF-8 at byte {error.start}"
+        )
         raise StrictJSONError([Fault("", found)]) from error
     except json.JSONDecodeError as error:
         where = f"line {error.lineno}, column {error.colno}"

@@ -22,6 +22,12 @@ def join_words(items: Sequence[str], last: str = "and") -> str:
     return f"{', '.join(items[:-1])} {last} {items[-1]}"
 
 
+def list_some(items: Sequence[str], most: int) -> str:
+    """Return at most so many items, and how many more there are: "a, b and 7 more"."""
+    more = f" and {len(items) - most} more" if len(items) > most else ""
+    return ", ".join(items[:most]) + more
+
+
 def ask_which(labels: Sequence[str]) -> str:
     """Return the question which gesture was meant: "circle or square?"."""
     return f"{join_words(labels, last='or')}?"
