@@ -27,6 +27,9 @@ LEAST_SIDE = 16
 FALLBACK_RATE = 30.0
 """Frames per second of most cameras."""
 
+MOST_PEOPLE = 10
+"""Most people of a frame that are told apart; of a SLEAP project, in every frame on average."""
+
 MALFORMED = (
     ValueError,
     TypeError,

@@ -26,13 +26,19 @@ from app.keypoint_files.column_names import (
     plain,
     time_column,
 )
-from app.keypoint_files.keypoint_table import MALFORMED, KeypointOptions, KeypointTable, Times
+from app.keypoint_files.keypoint_table import (
+    MALFORMED,
+    MOST_PEOPLE,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+)
 from app.keypoint_files.mediapipe_table import table_of, times_of
 from app.recognition.errors import KeypointFileError, OsgError
-from app.recognition.estimation.person_tracker import PersonTracker
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import COCO_17
+from app.recognition.recording.people import Choice, People, SeenPerson
 from app.recognition.recording.video_limits import VideoLimits
 
 LARGEST_FILE: Final = 200_000_000
@@ -51,13 +57,15 @@ ORDER: Final = ("x", "y", "z", "v")
 
 def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
     """Read a JSON file of one recording; see `app.keypoint_files.read_keypoints`."""
-    del options
     if path.stat().st_size > LARGEST_FILE:
         raise KeypointFileError(f"{path} is larger than {LARGEST_FILE // 1_000_000} MB; cut it")
     try:
         content = json.loads(path.read_bytes())
-        frames = _follow_person(_frames(content))
-        limits.require_frames(len(frames))
+        frames, choice = _frames(content), None
+        everybody = _group_people(frames)
+        limits.require_frames(len(frames if everybody is None else everybody))
+        if everybody is not None:
+            frames, choice = _choose_person(everybody, options.nominal_rate)
         rows = [_landmarks(frame) for frame in frames]
         about, times = _about(content), _times(frames)
     except OsgError:
@@ -77,7 +85,13 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
     points = np.array([[row.get(name, unseen) for name in names] for row in rows])
     has_visibility = bool(np.isfinite(points[..., 2]).any())
     table = table_of(names, points, has_visibility, times)
-    return replace(table, frame_size=about.frame_size, frame_rate=about.frame_rate)
+    return replace(
+        table,
+        frame_size=about.frame_size,
+        frame_rate=about.frame_rate,
+        notes=() if choice is None else choice.notes,
+        people=None if choice is None else choice.count,
+    )
 
 
 def _frames(content: Any) -> list[Any]:
@@ -119,29 +133,40 @@ def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
     return found
 
 
-def _follow_person(frames: list[Any]) -> list[Any]:
-    """Return one person's keypoints a frame, where frames hold several people's."""
+def _group_people(frames: list[Any]) -> list[list[Any]] | None:
+    """Return the people of each frame; None where a frame holds one person's landmarks."""
     images: dict[str, list[Any]] = {}
     for place, frame in enumerate(frames):
         if not isinstance(frame, Mapping):
-            return frames
+            return None
         if "image_id" in frame:
             images.setdefault(str(frame["image_id"]), []).append(frame)
         elif "instances" in frame:
             images[str(place)] = list(frame["instances"])
         else:
-            return frames
-    tracker, followed = PersonTracker(), []
-    for place, people in enumerate(images.values()):
-        bodies = [_list_points(person) for person in people]
+            return None
+    return list(images.values())
+
+
+def _choose_person(everybody: list[list[Any]], rate: float) -> tuple[list[Any], Choice]:
+    """Return the landmarks in each frame of the person who stands out most, and the choice."""
+    people, seen = People(), []
+    for place, persons in enumerate(everybody):
+        bodies = [_list_points(person) for person in persons]
         bodies = [body for body in bodies if np.isfinite(body).all(axis=1).any()]
-        boxes = [
-            (np.nanmin(body[:, :2], axis=0), np.nanmax(body[:, :2], axis=0)) for body in bodies
-        ]
-        scores = np.array([body[:, 2].mean() for body in bodies])
-        chosen = tracker.choose(np.array(boxes), scores, float(place))
-        followed.append([] if chosen is None else [(x, y, 0, v) for x, y, v in bodies[chosen]])
-    return followed
+        # By score, so that the work for a frame is bounded.
+        bodies.sort(key=lambda body: -float(body[:, 2].mean()))
+        seen.append(bodies[:MOST_PEOPLE])
+        people.add(
+            place / rate,
+            [SeenPerson(body[:, :2], float(body[:, 2].mean())) for body in seen[-1]],
+        )
+    choice = people.choose()
+    followed = [
+        [] if place is None else [(x, y, 0, v) for x, y, v in bodies[place]]
+        for bodies, place in zip(seen, choice.index, strict=True)
+    ]
+    return followed, choice
 
 
 def _list_points(person: Mapping[str, Any]) -> FloatArray:

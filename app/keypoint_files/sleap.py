@@ -6,12 +6,13 @@ import importlib
 import json
 import warnings
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
+    MOST_PEOPLE,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -22,9 +23,6 @@ from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.people import Choice, People, SeenPerson, prominence_over
 from app.recognition.recording.video_limits import VideoLimits
-
-MOST_PEOPLE: Final = 10
-"""Most people in every frame of a project with the most frames: each takes two kilobytes."""
 
 
 def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:

@@ -349,6 +349,20 @@ def test_results_of_mmpose_alphapose_and_coco_are_read_and_one_person_is_followe
     np.testing.assert_allclose(poses.xy, body, atol=1e-6)
 
 
+def test_who_stands_out_most_is_chosen_though_somebody_small_comes_first(tmp_path: Path) -> None:
+    body = POSES.xy[:, COCO_COLUMNS]
+    late = len(body) // 3
+    shown = [
+        (5 + each / 10, each) if at >= late else (5 + each / 10,) for at, each in enumerate(body)
+    ]
+    content = [{"instances": [person(one, flat=False) for one in people]} for people in shown]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    recording = read_keypoints(tmp_path / "pose.json", OPTIONS).recording
+    assert not recording.poses.seen[:late].any()
+    np.testing.assert_allclose(recording.poses.xy[late:], body[late:], atol=1e-6)
+    assert any("two people are seen" in warning for warning in recording.warnings)
+
+
 def test_json_of_the_browser_s_mediapipe_is_read(tmp_path: Path) -> None:
     content = [{"poseLandmarks": frame} for frame in OBJECTS]
     (tmp_path / "pose.json").write_text(json.dumps(content))
