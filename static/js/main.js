@@ -41,7 +41,7 @@ import { drawTakesButton, openTakeTable } from "./export/take-table.js";
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
-import { drawFlat, drawRatio } from "./studio/clip-picture.js";
+import { drawFlat, drawRatio, drawStroke } from "./studio/clip-picture.js";
 import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";
@@ -101,7 +101,8 @@ function drawEverything() {
   follow(["joint"], showJoint);
   follow(["result"], drawOutcome);
   follow(["why", "result", "trial", "clips", "clip"], drawWhy);
-  follow(["why", "timeline"], drawCosts);
+  follow(["why", "result", "timeline"], drawCosts);
+  follow(["why", "result", "clip"], drawStroke);
 }
 
 /** Binds loading to the selection. */

@@ -362,8 +362,12 @@ export const recognitions = {
   analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
   /** @type {(recognition: string) => Promise<{ caption: string, image: string }[]>} */
   images: (recognition) => request("GET", `/recognitions/${id(recognition)}/images`),
-  /** @type {(recognition: string) => Promise<Explanation>} */
-  explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
+  /** @type {(recognition: string, expected: string) => Promise<Explanation>} */
+  explain: (recognition, expected) =>
+    request(
+      "GET",
+      `/recognitions/${id(recognition)}/explanation?${new URLSearchParams({ expected })}`,
+    ),
 };
 
 export const workspaces = {

@@ -2,14 +2,15 @@
 
 import { figure } from "./pose-picture.js";
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, svg } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { movingWrists } from "./wrist-motion.js";
+import { posesOf } from "./tracks.js";
+import { movingWrists, strokeOver } from "./wrist-motion.js";
 
-/** @import { Clip, Poses } from "../core/types.d.ts" */
+/** @import { Clip, Place, Poses, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
@@ -147,4 +148,48 @@ export async function drawFlat() {
   const frames = [nearestFrame(poses.time, range[0]), nearestFrame(poses.time, range[1])];
   const frame = Math.min(state.position?.frame ?? frames[0], poses.time.length - 1);
   picture.draw(frame, frames, movingWrists(poses, frames));
+}
+
+/** @param {Place[]} points */
+const pathOf = (points) =>
+  points
+    .filter((point) => point !== null)
+    .map(([x, y], index) => `${index ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`)
+    .join("");
+
+/**
+ * Draw the stroke of the expected gesture, or of the nearest one, dashed over the shown stroke.
+ *
+ * @param {State} state
+ */
+export async function drawStroke({ why, result }) {
+  const box = byId("stroke-over");
+  box.hidden = true;
+  if (!why || result?.id !== why.id || result.clip_id !== selectedClip()?.id) return;
+  const label = result.expected ?? result.nearest;
+  const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
+  const poses = alignment && (await posesOf(result.clip_id));
+  if (!poses || state.why !== why) return;
+  const paths = strokeOver(alignment, poses).map(pathOf).filter(Boolean);
+  const [width, height] = poses.frame_size;
+  const chosen = label === result.label ? "chosen" : "nearest";
+  const role = result.expected === null ? chosen : "expected";
+  box.classList.toggle("is-expected", role === "expected");
+  box.hidden = !paths.length;
+  box.replaceChildren(
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 ${width} ${height}`,
+        role: "img",
+        "aria-label": `The stroke of ${label}, ${role}, over the one shown`,
+      },
+      ...paths.flatMap((d) => [
+        svg("path", { class: "halo", d }),
+        svg("path", { d }),
+        svg("path", { class: "begin", d: `${d.split("L")[0]}h0` }),
+      ]),
+    ),
+    h("p", { className: "stroke-legend" }, h("i"), h("b", {}, label), ` ${role}`),
+  );
 }

@@ -44,8 +44,12 @@ export function toggleTracks() {
   drawTracks();
 }
 
-/** @param {string} clip */
-function posesOf(clip) {
+/**
+ * The poses of a clip, loaded once.
+ *
+ * @param {string} clip
+ */
+export function posesOf(clip) {
   if (loaded?.clip !== clip)
     loaded = { clip, poses: attempt("Loading the poses", () => api.clips.poses(clip)) };
   return loaded.poses;

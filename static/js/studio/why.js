@@ -21,14 +21,15 @@ const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
 /**
- * Load the explanation, once there is an expected label.
+ * Load the explanation by the expected gesture, or by the nearest one where none is expected.
  *
  * @param {Pick<State, "result">} state
  */
 export async function loadWhy({ result }) {
-  if (!result || result.expected === null) return update({ why: null });
+  const label = result && (result.expected ?? result.nearest);
+  if (!label) return update({ why: null });
   if (state.why?.id === result.id) return undefined;
-  const why = await attempt("Explaining", () => api.recognitions.explain(result.id));
+  const why = await attempt("Explaining", () => api.recognitions.explain(result.id, label));
   // Another recognition may be on display by now, whose own reasons must stay.
   return state.result?.id === result.id ? update({ why }) : undefined;
 }
@@ -106,9 +107,9 @@ function lane({ time, steps }, { part, name }, most, last) {
  *
  * @param {State} state
  */
-export function drawCosts({ why, timeline }) {
+export function drawCosts({ why, result, timeline }) {
   const box = byId("costs");
-  const found = why && !why.right ? costs(why) : null;
+  const found = why && !why.right && result?.expected ? costs(why) : null;
   if (!timeline || !found?.lanes.length) return box.replaceChildren();
   const most =
     Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;
