@@ -27,6 +27,7 @@ import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
 import { drawGestures } from "./gestures/gesture-cards.js";
 import { drawTableButton, openGestureTable } from "./gestures/gesture-table.js";
+import { drawRanges } from "./studio/labelled-ranges.js";
 import { rememberFrame } from "./studio/playback.js";
 import {
   answerQuestion,
@@ -91,6 +92,7 @@ function drawEverything() {
   follow(["gestures"], drawTrigger);
   follow(["gestures", "languages", "loaded", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end", "gestures"], drawStage);
+  follow(["clips", "clip", "takes", "take", "start", "end", "gestures", "ranges"], drawRanges);
   follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);

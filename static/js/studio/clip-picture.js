@@ -1,16 +1,14 @@
 // The picture of the clip: flat or as a space-time cube by viser, or drawn by the page itself.
 
 import { figure } from "./pose-picture.js";
-import * as api from "../core/api.js";
 import { byId, h, svg } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
 import { posesOf } from "./tracks.js";
 import { movingWrists, strokeOver } from "./wrist-motion.js";
 
-/** @import { Clip, Place, Poses, State } from "../core/types.d.ts" */
+/** @import { Clip, Poses, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
@@ -125,7 +123,7 @@ export function drawByViser() {
 async function load(clip) {
   if (loading === clip.id) return null;
   loading = clip.id;
-  const poses = await attempt("Loading the poses", () => api.clips.poses(clip.id));
+  const poses = await posesOf(clip.id);
   if (!poses || loading !== clip.id) return null;
   const picture = figure(() => {});
   picture.show(poses, clip.id);
@@ -150,45 +148,37 @@ export async function drawFlat() {
   picture.draw(frame, frames, movingWrists(poses, frames));
 }
 
-/** @param {Place[]} points */
-const pathOf = (points) =>
-  points
-    .filter((point) => point !== null)
-    .map(([x, y], index) => `${index ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`)
-    .join("");
-
 /**
  * Draw the stroke of the expected gesture, or of the nearest one, dashed over the shown stroke.
  *
  * @param {State} state
  */
-export async function drawStroke({ why, result }) {
+export async function drawStroke({ why, result, clip }) {
   const box = byId("stroke-over");
   box.hidden = true;
-  if (!why || result?.id !== why.id || result.clip_id !== selectedClip()?.id) return;
+  if (!why || result?.id !== why.id || result.clip_id !== clip) return;
   const label = result.expected ?? result.nearest;
   const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
-  const poses = alignment && (await posesOf(result.clip_id));
+  const poses = alignment && (await posesOf(clip));
   if (!poses || state.why !== why) return;
-  const paths = strokeOver(alignment, poses).map(pathOf).filter(Boolean);
-  const [width, height] = poses.frame_size;
+  const paths = strokeOver(alignment, poses).map((path) => `M${path.filter(Boolean).join("L")}`);
   const chosen = label === result.label ? "chosen" : "nearest";
   const role = result.expected === null ? chosen : "expected";
-  box.classList.toggle("is-expected", role === "expected");
   box.hidden = !paths.length;
+  box.classList.toggle("is-expected", role === "expected");
   box.replaceChildren(
     svg(
       "svg",
       {
-        viewBox: `0 0 ${width} ${height}`,
+        viewBox: `0 0 ${poses.frame_size.join(" ")}`,
         role: "img",
         "aria-label": `The stroke of ${label}, ${role}, over the one shown`,
       },
-      ...paths.flatMap((d) => [
-        svg("path", { class: "halo", d }),
-        svg("path", { d }),
-        svg("path", { class: "begin", d: `${d.split("L")[0]}h0` }),
-      ]),
+      ...["halo", "", "begin"].flatMap((kind) =>
+        paths.map((d) =>
+          svg("path", { class: kind, d: kind === "begin" ? `${d.split("L")[0]}h0` : d }),
+        ),
+      ),
     ),
     h("p", { className: "stroke-legend" }, h("i"), h("b", {}, label), ` ${role}`),
   );

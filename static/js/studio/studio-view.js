@@ -8,6 +8,7 @@ import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
+import { buildRanges } from "./labelled-ranges.js";
 import { frameShown } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
@@ -249,4 +250,5 @@ export function stageButtons() {
     saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
   buildTransport();
+  buildRanges(hasLanguage);
 }

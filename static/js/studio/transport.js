@@ -6,7 +6,7 @@ import { bind } from "../core/key-bindings.js";
 import { selectedClip, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
-import { setEnd, setStart } from "./timeline.js";
+import { setEnd, setStart, ZOOMS } from "./timeline.js";
 import { toggleTracks, tracksButton } from "./tracks.js";
 import { showFlat } from "./workspace.js";
 
@@ -141,6 +141,7 @@ export function buildTransport() {
   keys(["T"], "Next take", () => neighbour(1));
   keys(["Shift+T"], "Take before", () => neighbour(-1));
   keys(["G"], "Tracks of the wrists", toggleTracks);
+  for (const { key, text, zoom } of ZOOMS) keys([key, `Shift+${key}`], text, zoom);
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
 }

@@ -2,7 +2,7 @@
 
 import { nearestFrame } from "../clips/frame-times.js";
 
-/** @import { Alignment, Place, Poses } from "../core/types.d.ts" */
+/** @import { Alignment, Poses } from "../core/types.d.ts" */
 
 const STILL = 0.5; // Share of the larger wrist's path below which a wrist is no part of the stroke.
 const WRISTS = ["left_wrist", "right_wrist"];
@@ -72,52 +72,40 @@ export function tracksOf(poses, names) {
   });
 }
 
-/** @param {number[][]} points */
-const middle = (points) =>
-  [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
-
 /**
- * The stroke of an alignment's gesture, laid over the take as it was compared: by the turn, size
- * and middles of the wrists that carry the take's normalised stroke onto the diver in the picture.
+ * The stroke of an alignment's gesture, laid over the take as it was compared: by the size and the
+ * middles of the wrists that carry the take's normalised stroke onto the diver in the picture.
  *
  * @param {Pick<Alignment, "parts" | "time" | "query" | "gesture">} alignment
  * @param {Pick<Poses, "landmarks" | "xy" | "time">} poses
- * @returns {Place[][]} one path per moving wrist, in pixels
+ * @returns {(number[] | null)[][]} one path per moving wrist, in pixels
  */
 export function strokeOver({ parts, time, query, gesture }, poses) {
   const frames = time.map((seconds) => nearestFrame(poses.time, seconds));
-  const wrists = movingWrists(poses, [frames[0], frames[frames.length - 1]])
+  const names = movingWrists(poses, [frames[0], frames[frames.length - 1]]);
+  let [along, size] = [0, 0]; // of the least squares for the one scale
+  const wrists = names
     .filter((name) => parts.includes(name))
     .map((name) => {
       const [part, places] = [parts.indexOf(name), placesOf(poses, name)];
-      const both = frames.flatMap((frame, step) => {
-        const [[x, y], from] = [places[frame], query[step][part]];
-        return x === null || y === null || !from ? [] : [{ from, to: [x, y] }];
+      const pairs = frames.flatMap((frame, step) => {
+        const [from, [x, y]] = [query[step][part], places[frame]];
+        return from && x !== null && y !== null ? [[...from, x, y]] : [];
       });
-      const [from, to] = [
-        middle(both.map((each) => each.from)),
-        middle(both.map((each) => each.to)),
-      ];
-      return { part, both, from, to };
-    })
-    .filter(({ both }) => both.length > 1);
-  // Least squares of the similarity: its size times the cosine and the sine of its turn.
-  let [along, across, size] = [0, 0, 0];
-  for (const { both, from, to } of wrists)
-    for (const pair of both) {
-      const [x, y] = [pair.from[0] - from[0], pair.from[1] - from[1]];
-      const [u, v] = [pair.to[0] - to[0], pair.to[1] - to[1]];
-      along += x * u + y * v;
-      across += x * v - y * u;
-      size += x * x + y * y;
-    }
-  const [cosine, sine] = [along / (size || 1), across / (size || 1)];
-  return wrists.map(({ part, from, to }) =>
-    gesture.map((step) => {
-      const place = step[part];
-      if (!place) return null;
-      const [x, y] = [place[0] - from[0], place[1] - from[1]];
-      return [to[0] + cosine * x - sine * y, to[1] + sine * x + cosine * y];
+      const middle = [0, 1, 2, 3].map(
+        (axis) => pairs.reduce((sum, pair) => sum + pair[axis], 0) / (pairs.length || 1),
+      );
+      for (const pair of pairs)
+        for (const axis of [0, 1]) {
+          along += (pair[axis] - middle[axis]) * (pair[axis + 2] - middle[axis + 2]);
+          size += (pair[axis] - middle[axis]) ** 2;
+        }
+      return { part, middle };
+    });
+  return wrists.map(({ part, middle: [left, top, x, y] }) =>
+    gesture.map(({ [part]: at }) => {
+      const scale = along / (size || 1);
+      return at && [x + scale * (at[0] - left), y + scale * (at[1] - top)];
     }),
   );
 }
