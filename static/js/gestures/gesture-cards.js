@@ -113,9 +113,13 @@ function drawCarried(language) {
   box.hidden = !carried;
   if (!carried) return;
   box.replaceChildren(
-    `Revision ${carried.revision}, code `,
-    h("code", {}, carried.code),
-    h("span", { className: "dim" }, ", as a robot with it shows. "),
+    h(
+      "span",
+      {},
+      `Revision ${carried.revision}, code `,
+      h("code", {}, carried.code),
+      h("span", { className: "dim" }, ", as a robot with it shows. "),
+    ),
     h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
   );
 }
