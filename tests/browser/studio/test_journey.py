@@ -16,7 +16,7 @@ from app.recognition.voters.registry import MOTION_VOTERS
 from app.ui.workspace import initial_frame
 from tests.api.running import Running
 from tests.api.running_workers import hold_worker, linux
-from tests.browser.conftest import OpenPage
+from tests.browser.conftest import Film, OpenPage
 from tests.browser.files import drop
 from tests.short_clips import thinned
 
@@ -201,3 +201,35 @@ def test_a_take_is_recognised_while_the_rest_of_its_clip_is_read(
     expect(page.locator("#save-gesture")).to_be_enabled(timeout=EXTRACTION_MS)
     assert page.get_by_role("button", name=re.compile("^Take ")).count() > few
     expect(page.locator("#outcome")).to_contain_text("line")
+
+
+def test_a_dropped_clip_is_misread_explained_and_read_right_after_a_try(
+    open_page: OpenPage, sample_clips: Path, installed_models: None, tmp_path: Path, film: Film
+) -> None:
+    page = open_page(size=(1440, 900))
+    page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
+    expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
+    film(page, 1.0)
+    drop(page, thinned(sample_clips / "unfinished-triangle.mp4", tmp_path / "triangle at 6 m.mp4"))
+    bones = page.locator("#welcome .skeleton .bones")
+    expect(bones).to_have_attribute("d", re.compile("^M"), timeout=EXTRACTION_MS)
+    for _ in range(6):
+        film(page, 0.3)
+    expect(page.locator("#save-gesture")).to_be_enabled(timeout=EXTRACTION_MS)
+    page.get_by_label("Expected", exact=True).select_option("triangle")
+    lab_of(page)
+    expect(page.locator("#lab-loading")).to_be_hidden()
+    film(page, 1.2)
+    page.get_by_role("button", name="Recognise").click()
+    outcome = page.locator("#outcome")
+    expect(outcome).to_contain_text("Recognised as wedge, expected triangle")
+    why = page.get_by_role("region", name="Why")
+    change = why.get_by_role("button", name="with this take as another demonstration")
+    expect(change).to_be_visible()
+    film(page, 2.8)
+    change.hover()
+    film(page, 0.8)
+    change.click()
+    expect(outcome).to_contain_text("Recognised as triangle, as expected")
+    expect(why.get_by_role("status")).to_contain_text("as another demonstration")
+    film(page, 2.4)
