@@ -16,7 +16,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import Observer, Progress, record
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record
 from app.recognition.recording.video import FrameReader, probe
 
 
@@ -82,10 +82,16 @@ class VideoSource:
         estimator: PoseEstimator | None = None,
         progress: Progress | None = None,
         observer: Observer | None = None,
+        keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Find body and hands in every frame."""
         found = record(
-            path, estimator=estimator, progress=progress, observer=observer, water=options.water
+            path,
+            estimator=estimator,
+            progress=progress,
+            observer=observer,
+            water=options.water,
+            keep_so_far=keep_so_far,
         )
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)

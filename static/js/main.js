@@ -83,7 +83,7 @@ function drawEverything() {
   follow(["quota", "clips", "uploads"], followQuota);
   follow(["samples"], drawSampleClips);
   follow(
-    ["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded", "role"],
+    ["samples", "languages", "clips", "uploads", "jobs", "clip", "takes", "loaded", "role"],
     drawWelcome,
   );
   follow(["languages", "language", "loaded"], drawPicker);
@@ -104,17 +104,21 @@ function drawEverything() {
   follow(["result"], drawOutcome);
   follow(["why", "result", "trial", "clips", "clip"], drawWhy);
   follow(["why", "result", "timeline"], drawCosts);
-  follow(["why", "result", "clip"], drawStroke);
+  follow(["why", "result", "clip", "clips"], drawStroke);
 }
 
 /** Binds loading to the selection. */
 function loadWithSelection() {
   let ready = "";
-  follow(["clips", "clip", "gestures"], () => {
+  follow(["clips", "clip", "gestures", "jobs"], () => {
     const clip = selectedClip();
-    const now = clip ? `${clip.id} ${clip.status} ${triggerKey(state)}` : "";
-    if (now === ready) return;
-    ready = now;
+    const kept = clip && state.jobs.get(clip.job_id)?.kept;
+    const now = clip ? `${clip.id} ${triggerKey(state)}` : "";
+    const read = clip ? `${now} ${clip.status} ${clip.status === "running" ? kept : ""}` : "";
+    if (read === ready) return;
+    // Takes of another clip, or by another trigger, must not be shown while these are loading.
+    if (!clip || !ready.startsWith(now)) update({ takes: null, timeline: null });
+    ready = read;
     loadTakes();
   });
   follow(["recognition"], loadResult);

@@ -32,7 +32,7 @@ from app.store import (
     StoreError,
     StoreUnavailable,
 )
-from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
 from app.store.models import VIDEO
 
 RENEW_SECONDS = 10.0
@@ -191,6 +191,7 @@ class ExtractionQueue:
             return None
         place = self._clips.place
         file = await persist(self._clips.received, clip)
+        so_far = place(clip.id, SO_FAR)
         task = Record(
             source=clip.source,
             file=file,
@@ -198,16 +199,22 @@ class ExtractionQueue:
             options=options_of(clip).model_copy(update={"water": self._settings.water}),
             video=place(clip.id, VIDEO) if source_named(clip.source).makes_video else None,
             recording=place(clip.id, RECORDING),
+            so_far=so_far,
             poster=place(clip.id, POSTER),
             filmstrip=place(clip.id, FILMSTRIP),
         )
         # Stored after the end of the worker, because storing may have to wait for the database.
-        match ended := await run_task(self._workers, task, report):
-            case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
-                await persist(self._clips.keep_found, clip)
-                await persist(self._jobs.complete, job.id, frames, warnings, of_salutes)
-            case Failed(code=code, detail=detail):
-                await persist(self._jobs.finish, job.id, JobStatus.FAILED, code=code, error=detail)
+        so_far.unlink(missing_ok=True)
+        try:
+            match ended := await run_task(self._workers, task, report):
+                case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
+                    await persist(self._clips.keep_found, clip)
+                    await persist(self._jobs.complete, job.id, frames, warnings, of_salutes)
+                case Failed(code=code, detail=detail):
+                    failed = partial(self._jobs.finish, code=code, error=detail)
+                    await persist(failed, job.id, JobStatus.FAILED)
+        finally:
+            so_far.unlink(missing_ok=True)
         return ended
 
     async def _give_up(self, job_id: str) -> None:

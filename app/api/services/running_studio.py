@@ -7,7 +7,7 @@ import logging
 import time
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from contextlib import ExitStack, asynccontextmanager, contextmanager
+from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from functools import lru_cache, partial, wraps
@@ -56,6 +56,7 @@ from app.store import (
     UploadStore,
     identity_of,
 )
+from app.store.clips import SO_FAR
 from app.store.models import now
 from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
@@ -94,6 +95,23 @@ logger = logging.getLogger(__name__)
 
 Made = TypeVar("Made")
 Stored = TypeVar("Stored")
+
+
+@dataclass(frozen=True)
+class RecordingFile:
+    """File of a recording.
+
+    Attributes
+    ----------
+    path
+        The file.
+    changed
+        For a recording so far, which is replaced now and then: nanoseconds of its last change.
+
+    """
+
+    path: Path
+    changed: int | None = None
 
 
 @dataclass(frozen=True)
@@ -184,12 +202,19 @@ class Studio:
             self.languages.purge_for(quota.owner, self.clips.purge_for(quota.owner, error.excess))
         return store()
 
-    def recording(self, clip_id: str) -> Recording:
-        """Return the recording of a clip; errors as in `recording_file`."""
-        return load_recording(str(self.recording_file(clip_id)))
+    def recording(self, clip_id: str, *, so_far: bool = False) -> Recording:
+        """Return the recording of a clip; see `recording_file`."""
+        return load_recording(self.recording_file(clip_id, so_far=so_far))
 
-    def recording_file(self, clip_id: str) -> Path:
+    def recording_file(self, clip_id: str, *, so_far: bool = False) -> RecordingFile:
         """Return the file of a clip's recording.
+
+        Parameters
+        ----------
+        clip_id
+            The clip's.
+        so_far
+            Whether the first frames suffice while the others are being read.
 
         Raises
         ------
@@ -200,6 +225,10 @@ class Studio:
 
         """
         found = self.clips.get(clip_id)
+        if so_far and found.job.status == JobStatus.RUNNING:
+            with suppress(OSError):
+                file = self.clips.place(clip_id, SO_FAR)
+                return RecordingFile(file, file.stat().st_mtime_ns)
         if found.job.status != JobStatus.DONE:
             reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
             raise ProblemError(
@@ -209,7 +238,7 @@ class Studio:
                 "wait for its job, or start it again",
                 job_id=found.job.id,
             )
-        return self.clips.recording(clip_id)
+        return RecordingFile(self.clips.recording(clip_id))
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""
@@ -228,9 +257,9 @@ class Studio:
 
 
 @lru_cache(CACHED_RECORDINGS)
-def load_recording(path: str) -> Recording:
+def load_recording(file: RecordingFile) -> Recording:
     """Load a recording, or return it from the cache."""
-    return Recording.load(path)
+    return Recording.load(file.path)
 
 
 class DocumentCache(Generic[Made]):

@@ -113,13 +113,9 @@ function drawCarried(language) {
   box.hidden = !carried;
   if (!carried) return;
   box.replaceChildren(
-    h(
-      "span",
-      {},
-      `Revision ${carried.revision}, code `,
-      h("code", {}, carried.code),
-      h("span", { className: "dim" }, ", as a robot with it shows. "),
-    ),
+    `Revision ${carried.revision}, code `,
+    h("code", {}, carried.code),
+    h("span", { className: "dim" }, ", as a robot with it shows. "),
     h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
   );
 }

@@ -4,11 +4,11 @@ import { figure } from "./pose-picture.js";
 import { byId, h, svg } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
-import { selectedClip, selectedRange, state } from "../core/state.js";
+import { isReadable, selectedClip, selectedRange, state } from "../core/state.js";
 import { posesOf } from "./tracks.js";
 import { movingWrists, strokeOver } from "./wrist-motion.js";
 
-/** @import { Clip, Poses, State } from "../core/types.d.ts" */
+/** @import { Poses, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
@@ -69,7 +69,7 @@ export function followChoice({ changed, play }) {
     text: "Space-time cube, or the flat picture",
     group: "Playback",
     run: toggleCube,
-    when: () => selectedClip()?.status === "done" && !byId("view-studio").hidden,
+    when: () => isReadable() && !byId("view-studio").hidden,
   });
   draw();
 }
@@ -83,8 +83,6 @@ export function drawRatio() {
 
 /** @type {{ clip: string, poses: Poses, picture: ReturnType<typeof figure> } | null} */
 let shown = null;
-/** @type {string | null} */
-let loading = null;
 
 /**
  * Draw the flat picture by the page, and show the reason; `retry` tries viser again if that may
@@ -104,7 +102,7 @@ export function drawByPage(reason, retry = null) {
       retry ? h("button", { type: "button", onclick: retry }, "Try again") : null,
     ),
   );
-  shown = loading = null;
+  shown = null;
   draw();
   drawFlat();
 }
@@ -115,31 +113,22 @@ export function drawByViser() {
   draw();
 }
 
-/**
- * Load the poses of a clip and build its picture; null when another clip is wanted by now.
- *
- * @param {Clip} clip
- */
-async function load(clip) {
-  if (loading === clip.id) return null;
-  loading = clip.id;
-  const poses = await posesOf(clip.id);
-  if (!poses || loading !== clip.id) return null;
+/** @param {string} clip whose picture is built, unless another one is wanted by then */
+async function build(clip) {
+  const poses = await posesOf(clip);
+  if (!poses || state.clip !== clip || shown?.clip === clip) return;
   const picture = figure(() => {});
-  picture.show(poses, clip.id);
+  picture.show(poses, clip);
   byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
-  return { clip: clip.id, poses, picture };
+  shown = { clip, poses, picture };
 }
 
 /** Draw the frame on display, where the page draws it. */
 export async function drawFlat() {
   const clip = selectedClip();
   if (!own || clip?.status !== "done") return;
-  if (shown?.clip !== clip.id) {
-    const loaded = await load(clip);
-    if (!loaded) return;
-    shown = loaded;
-  }
+  if (shown?.clip !== clip.id) await build(clip.id);
+  if (shown?.clip !== clip.id) return;
   const { poses, picture } = shown;
   const range = selectedRange()?.shown ?? [0, poses.time.at(-1) ?? 0];
   /** @type {[number, number]} */
@@ -157,6 +146,7 @@ export async function drawStroke({ why, result, clip }) {
   const box = byId("stroke-over");
   box.hidden = true;
   if (!why || result?.id !== why.id || result.clip_id !== clip) return;
+  if (selectedClip()?.status !== "done") return; // The poses so far are not given.
   const label = result.expected ?? result.nearest;
   const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
   const poses = alignment && (await posesOf(clip));

@@ -2,7 +2,7 @@
 
 import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
-import { selectedRange, state, update } from "../core/state.js";
+import { selectedClip, selectedRange, state, update } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { attempt, toast } from "../core/toasts.js";
 import { saveInto } from "../gestures/gesture-table.js";
@@ -11,9 +11,12 @@ import { addToTestSet } from "../languages/test-set.js";
 /** @import { SelectedRange, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.ranges"; // sessionStorage: they survive a reload.
-const LONGEST_LABEL = 80;
+const LABEL = "Label of this range";
 
-const [field, add, done] = [h("input", { type: "text" }), h("button"), h("button", WRITES)];
+const field = h("input", { placeholder: LABEL, "aria-label": LABEL, autocomplete: "off" });
+const form = h("form", { className: "joined" }, field, h("button", {}, "Add range"));
+const send = h("button", WRITES);
+
 const here = () => state.ranges.filter(({ clip_id }) => clip_id === state.clip);
 
 /** Whether the ranges are takes of gestures that the language has. */
@@ -25,47 +28,31 @@ function keep(ranges) {
   update({ ranges });
 }
 
-/** @param {State["ranges"][number]} range */
-function takeOut(range) {
-  keep(state.ranges.filter((each) => each !== range));
-  field.value = range.label;
-  update({ take: null, recognition: null, start: range.start, end: range.end });
-}
-
 /**
- * The labelled ranges along the timeline, in lines of their own where they overlap; a press takes
- * one out again, to change or to drop it.
+ * The labelled ranges along the timeline; a press takes one out again, to change or to drop it.
  *
  * @param {number} last second of the clip
  */
 const bars = (last) =>
-  here().map((range, index, all) => {
+  here().map((range) => {
     const { label, start, end } = range;
-    const line = 1 + all.slice(0, index).filter((one) => one.start < end && start < one.end).length;
+    const onclick = () => {
+      keep(state.ranges.filter((each) => each !== range));
+      field.value = label;
+      update({ take: null, recognition: null, start, end });
+    };
     const [left, width] = [start, end - start].map((part) => `${(100 * part) / last}%`);
     return h(
       "button",
       {
         type: "button",
         title: `${label}: ${moment(start)} to ${moment(end)}. Press to change it.`,
-        style: { "margin-left": left, width, "grid-row": String(line) },
-        onclick: () => takeOut(range),
+        style: { "margin-left": left, width },
+        onclick,
       },
       label,
     );
   });
-
-async function save() {
-  const [ranges, tests] = [here(), areTests()];
-  const saved = await attempt("Saving the ranges", async () => {
-    if (!tests) await saveInto(state.language ?? "", ranges);
-    else await addToTestSet(ranges.map(({ label, ...at }) => ({ ...at, expected: label })));
-    return true;
-  });
-  if (!saved) return;
-  keep(state.ranges.filter((each) => !ranges.includes(each)));
-  if (tests) toast("In the test set", "They are recognised again after every change.");
-}
 
 /**
  * Build the field that labels the range chosen by hand; `hasLanguage()` asks for one to save into.
@@ -73,23 +60,33 @@ async function save() {
  * @param {() => Promise<boolean>} hasLanguage
  */
 export function buildRanges(hasLanguage) {
-  limit(field, LONGEST_LABEL).placeholder = "Label of this range";
-  field.setAttribute("aria-label", field.placeholder);
-  field.autocomplete = "off";
-  add.textContent = "Add range";
-  const form = h("form", { className: "joined" }, field, add);
+  limit(field, 80);
   form.onsubmit = (event) => {
     event.preventDefault();
     const label = field.value.trim();
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
     if (!label || !state.clip) return field.focus();
-    keep([...state.ranges, { label, clip_id: state.clip, start, end }]);
+    // One gesture has one range: a range in the place of others takes theirs.
+    const kept = state.ranges.filter(
+      (each) => each.end <= start || end <= each.start || each.clip_id !== state.clip,
+    );
+    keep([...kept, { label, clip_id: state.clip, start, end }]);
     field.value = "";
   };
-  done.onclick = async () => {
-    if (areTests() || (await hasLanguage())) save();
+  send.onclick = async () => {
+    const [ranges, tests] = [here(), areTests()];
+    if (!tests && !(await hasLanguage())) return;
+    send.disabled = true;
+    const saved = await attempt("Saving the ranges", async () => {
+      if (!tests) await saveInto(state.language ?? "", ranges);
+      else await addToTestSet(ranges.map(({ label, ...at }) => ({ ...at, expected: label })));
+      return true;
+    });
+    send.disabled = false;
+    if (saved) keep(state.ranges.filter((each) => !ranges.includes(each)));
+    if (saved && tests) toast("In the test set", "They are recognised again after every change.");
   };
-  byId("ranges").replaceChildren(form, done);
+  byId("ranges").replaceChildren(form, send);
   update({ ranges: JSON.parse(sessionStorage.getItem(KEY) ?? "[]") });
 }
 
@@ -101,11 +98,12 @@ export function buildRanges(hasLanguage) {
 export function drawRanges({ takes, take, start, end, timeline }) {
   const along = document.getElementById("labelled-ranges");
   along?.replaceChildren(...bars(timeline?.time.at(-1) || 1));
-  const byHand = takes && take === null && (start !== null || end !== null);
-  byId("ranges").hidden = !byHand && !(takes && here().length);
-  if (field.parentElement) field.parentElement.hidden = !byHand;
-  done.hidden = !here().length;
-  done.textContent = areTests()
+  const byHand = take === null && (start !== null || end !== null);
+  const done = selectedClip()?.status === "done" && takes;
+  byId("ranges").hidden = !done || (!byHand && !here().length);
+  form.hidden = !byHand;
+  send.hidden = !here().length;
+  send.textContent = areTests()
     ? `Keep ${plural(here().length, "range")} as tests`
     : `Save ${plural(here().length, "range")} as gestures`;
 }

@@ -5,7 +5,7 @@ import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
-import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { rememberFrame, seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
@@ -24,14 +24,10 @@ const MOST_ZOOM = 40; // Each screenful of it has thumbnails of its own.
 
 let zoom = 1; // The timeline's width, as a multiple of its room.
 
-/** @param {number} duration in sight */
-function tickStep(duration) {
-  return [0.1, 0.5, 1, 2, 5, 10, 30, 60, 120].find((step) => duration / step <= 10) ?? 300;
-}
-
 /** @param {number} duration */
 function ruler(duration) {
-  const step = tickStep(duration / zoom);
+  const least = duration / zoom / 10; // Ten fit into what is in sight.
+  const step = [0.1, 0.5, 1, 2, 5, 10, 30, 60, 120].find((each) => each >= least) ?? 300;
   const ticks = [];
   for (let second = 0; second <= duration - step / 3; second += step) {
     ticks.push(
@@ -86,51 +82,33 @@ function takeButton(take, index, duration) {
 const held = () => heldName(state.gestures);
 
 /**
- * Where a salute opens or closes a take.
+ * Where a salute opens and where one closes a take.
  *
- * @param {number} seconds
- * @param {"opens" | "closes"} kind
- * @param {number} duration
- */
-function saluteMark(seconds, kind, duration) {
-  return h(
-    "span",
-    {
-      className: `salute ${kind}`,
-      title: held(),
-      style: { left: percent(seconds, duration) },
-    },
-    icon("salute"),
-  );
-}
-
-/**
  * @param {Take} take
  * @param {number} duration
  */
-const saluteMarks = (take, duration) =>
-  [
-    saluteMark(take.start, "opens", duration),
-    take.closed ? saluteMark(take.end, "closes", duration) : null,
-  ].filter((mark) => mark !== null);
+const saluteMarks = ({ start, end, closed }, duration) =>
+  [["opens", start], ...(closed ? [["closes", end]] : [])].map(([kind, seconds]) =>
+    h(
+      "span",
+      {
+        className: `salute ${kind}`,
+        title: held(),
+        style: { left: percent(Number(seconds), duration) },
+      },
+      icon("salute"),
+    ),
+  );
 
 /** When the last frame is shown: the right edge of the timeline. */
 const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
 
 const lastMoment = () => timeOfFrames().at(-1) || 1;
 
-/**
- * The frame that is nearest to a moment.
- *
- * @param {number} seconds
- */
+/** @param {number} seconds */
 const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 
-/**
- * How many frames a key moves a handle on.
- *
- * @type {Record<string, number>}
- */
+/** @type {Record<string, number>} how many frames a key moves a handle on */
 const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 /** @param {"start" | "end"} which */
@@ -305,7 +283,7 @@ export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
   const range = /** @type {SelectedRange} */ (selectedRange());
-  if (clip?.status !== "done" || !state.takes || !state.timeline) return box.replaceChildren();
+  if (!clip || !isReadable() || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
   const track = box.querySelector(".track");
   const [left, width] = [range.start, range.end - range.start].map((part) =>
@@ -320,12 +298,14 @@ export function drawTimeline() {
     .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
     .flatMap((take) => saluteMarks(take, duration));
   drawNote(range, state.takes);
-  if (track && box.dataset.clip === clip.id) {
+  // While a clip is being read, its end moves.
+  const drawn = `${clip.id} ${duration}`;
+  if (track && box.dataset.clip === drawn) {
     redrawTrack(track, [lengths, ...salutes, ...takes], takes);
     placeHandles(track, range);
     return undefined;
   }
-  box.dataset.clip = clip.id;
+  box.dataset.clip = drawn;
   zoom = 1;
   const lane = h(
     "div",

@@ -52,23 +52,8 @@ let pointed = null; // what the card points at
 /** @type {HTMLElement | null} */
 let came = null; // where the focus was
 let at = 0; // the step on display
+let listening = new AbortController();
 let offering = false; // whether it offers the example
-
-const seen = () => {
-  try {
-    return localStorage.getItem(KEY) !== null;
-  } catch {
-    return true;
-  }
-};
-
-function remember() {
-  try {
-    localStorage.setItem(KEY, "seen");
-  } catch {
-    /* a browser without storage shows it again */
-  }
-}
 
 /** @param {Element} element */
 const visible = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
@@ -92,18 +77,13 @@ function position() {
     const [left, top] = [Math.min(box.left, mostLeft), Math.min(box.top, mostTop)];
     spots.push([left, box.bottom + GAP], [left, box.top - GAP - height]);
     spots.push([box.right + GAP, top], [box.left - GAP - width, top]);
-    Object.assign(byId("tour-ring").style, {
-      left: `${box.left - 4}px`,
-      top: `${box.top - 4}px`,
-      width: `${box.width + 8}px`,
-      height: `${box.height + 8}px`,
-    });
+    const size = `width: ${box.width + 8}px; height: ${box.height + 8}px`;
+    byId("tour-ring").style.cssText = `left: ${box.left - 4}px; top: ${box.top - 4}px; ${size}`;
   }
-  const fits = spots.find(
+  const [left, top] = spots.find(
     ([x, y]) => x >= 0 && y >= 0 && x <= mostLeft + GAP && y <= mostTop + GAP,
-  );
-  const [left, top] = fits ?? [GAP, mostTop];
-  Object.assign(card.style, { left: `${left}px`, top: `${top}px` });
+  ) ?? [GAP, mostTop];
+  card.style.cssText = `left: ${left}px; top: ${top}px`;
 }
 
 /**
@@ -122,15 +102,12 @@ function escape(event) {
 
 function end() {
   if (!card) return;
-  removeEventListener("resize", position);
-  removeEventListener("scroll", position, true);
-  removeEventListener("keydown", escape);
-  removeEventListener("pointerdown", pressed);
+  listening.abort();
   byId("tour-ring")?.remove();
   card.remove();
   card = null;
   came?.focus?.();
-  remember();
+  localStorage.setItem(KEY, "seen");
 }
 
 /**
@@ -200,10 +177,12 @@ function begin(focus) {
   // Early in the order of Tab, so that a keyboard finds it.
   document.body.prepend(h("div", { id: "tour-ring", className: "tour-ring", hidden: true }), card);
   show(0, focus);
-  addEventListener("resize", position);
-  addEventListener("scroll", position, true);
-  addEventListener("keydown", escape);
-  addEventListener("pointerdown", pressed);
+  listening = new AbortController();
+  const { signal } = listening;
+  addEventListener("resize", position, { signal });
+  addEventListener("scroll", position, { signal, capture: true });
+  addEventListener("keydown", escape, { signal });
+  addEventListener("pointerdown", pressed, { signal });
 }
 
 /** Start the tour on request. */
@@ -215,5 +194,5 @@ export function startTour() {
 
 /** Start the tour on a first visit, without taking the focus. */
 export function offerTour() {
-  if (!seen()) begin(false);
+  if (localStorage.getItem(KEY) === null) begin(false);
 }

@@ -44,11 +44,7 @@ export function toggleTracks() {
   drawTracks();
 }
 
-/**
- * The poses of a clip, loaded once.
- *
- * @param {string} clip
- */
+/** @param {string} clip whose poses are loaded once */
 export function posesOf(clip) {
   if (loaded?.clip !== clip)
     loaded = { clip, poses: attempt("Loading the poses", () => api.clips.poses(clip)) };

@@ -3,7 +3,7 @@
 import { byId, h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { isReadable, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
 import { setEnd, setStart, ZOOMS } from "./timeline.js";
@@ -57,11 +57,18 @@ const button = (name, label, keys, onclick) =>
       className: "quiet icon",
       id: `do-${name}`,
       "aria-label": label,
-      title: `${label} (${keys})`,
+      title: keys ? `${label} (${keys})` : label,
       onclick,
     },
     icon(name),
   );
+
+/**
+ * @param {string} text
+ * @param {string} title
+ * @param {() => unknown} onclick
+ */
+const edge = (text, title, onclick) => h("button", { type: "button", title, onclick }, text);
 
 /** Build the bar, and bind its keys. */
 export function buildTransport() {
@@ -92,38 +99,18 @@ export function buildTransport() {
       },
       SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`)),
     ),
-    h(
-      "button",
-      {
-        type: "button",
-        className: "quiet icon",
-        id: "do-loop",
-        "aria-label": "Repeat the range",
-        title: "Repeat the range",
-        onclick: () => loop(!state.position?.loop),
-      },
-      icon("loop"),
-    ),
+    button("loop", "Repeat the range", "", () => loop(!state.position?.loop)),
     h(
       "span",
       { className: "joined edges" },
-      h(
-        "button",
-        { type: "button", title: "Let the range start here ([)", onclick: setStart },
-        "Start here",
-      ),
-      h(
-        "button",
-        { type: "button", title: "Let the range end here (])", onclick: setEnd },
-        "End here",
-      ),
+      edge("Start here", "Let the range start here ([)", setStart),
+      edge("End here", "Let the range end here (])", setEnd),
     ),
     tracksButton(),
     cubeButton(),
   );
   followChoice({ changed: showFlat, play: toggle });
-  const when = () =>
-    selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
+  const when = () => isReadable() && state.position !== null && !byId("view-studio").hidden;
   /**
    * @param {string[]} names
    * @param {string} text
@@ -153,7 +140,7 @@ export function buildTransport() {
  */
 export function drawTransport({ position }) {
   const bar = byId("transport");
-  bar.hidden = !position || selectedClip()?.status !== "done";
+  bar.hidden = !position || !isReadable();
   if (bar.hidden || !position) return;
   const { playing, frame, frames, time } = position;
   const toggles = byId("do-play");

@@ -5,12 +5,13 @@ import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { mcapExport } from "../clips/mcap-export.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { isReadable, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
 import { addToTestSet } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
+import { partsOf } from "./alignment-parts.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
@@ -48,18 +49,8 @@ function costs({ alignments, expected }) {
       steps[step][part] += cost;
     }),
   );
-  const totals = alignment.parts.map((_, part) => steps.reduce((sum, step) => sum + step[part], 0));
-  const shown = totals
-    .map((total, part) => ({ total, part }))
-    .sort((one, other) => other.total - one.total)
-    .filter(({ total }) => total > 0)
-    .slice(0, MOST_PARTS);
-  return {
-    time: alignment.time,
-    steps,
-    lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })),
-    label: expected,
-  };
+  const lanes = partsOf(alignment).filter(({ cost }) => cost > 0);
+  return { time: alignment.time, steps, lanes: lanes.slice(0, MOST_PARTS), label: expected };
 }
 
 /**
@@ -336,7 +327,7 @@ const askExpected = (labels) => [
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
-  const done = selectedClip()?.status === "done";
+  const done = isReadable();
   byId("reasons").hidden = !done;
   box.hidden = !done || !result; // Without a result the decision says what to do.
   if (!done || !result) {
