@@ -159,6 +159,22 @@ def test_the_expected_stroke_is_dashed_over_the_shown_one_once_there_is_an_answe
     expect(over).to_be_hidden()
 
 
+def test_on_a_phone_the_decision_on_eight_gestures_is_not_cut(
+    open_page: OpenPage, library: Library
+) -> None:
+    for label in ("square", "wedge", "sweep", "infinity", "three", "triangle"):
+        library.add_gesture(label)
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page = open_page(query, size=(390, 844), scene=False)
+    table = page.get_by_role("table", name="Votes")
+    expect(table.locator("th.gesture")).to_have_count(8)
+    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
+    parts = page.locator("#votes *").evaluate_all("""all => all
+        .filter((part) => part.getBoundingClientRect().right > innerWidth)
+        .map((part) => part.outerHTML.slice(0, 80))""")
+    assert parts == []
+
+
 def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, size=(1440, 900), scene=False)
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
