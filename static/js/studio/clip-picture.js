@@ -162,7 +162,7 @@ export async function drawStroke({ why, result, clip }) {
       {
         viewBox: `0 0 ${poses.frame_size.join(" ")}`,
         role: "img",
-        "aria-label": `The stroke of ${label}, ${role}, over the one shown`,
+        "aria-label": `The stroke of ${label}, over the one shown`,
       },
       ...["halo", "", "begin"].flatMap((kind) =>
         paths.map((d) =>

@@ -11,9 +11,9 @@ import { addToTestSet } from "../languages/test-set.js";
 /** @import { SelectedRange, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.ranges"; // sessionStorage: they survive a reload.
-const LABEL = "Label of this range";
+const ASKS = "What this range shows";
 
-const field = h("input", { placeholder: LABEL, "aria-label": LABEL, autocomplete: "off" });
+const field = h("input", { placeholder: ASKS, "aria-label": ASKS, autocomplete: "off" });
 const form = h("form", { className: "joined" }, field, h("button", {}, "Add range"));
 const send = h("button", WRITES);
 

@@ -127,7 +127,7 @@ def test_ranges_are_labelled_while_the_clip_plays_and_saved_together(
     expect(page.locator("#clock")).to_have_text(re.compile(r"frame [1-9]\d* of 370"))
     page.get_by_label("Speed", exact=True).select_option("0.25")
     pause = page.get_by_role("button", name="Pause", exact=True)
-    label = page.get_by_role("textbox", name="Label of this range")
+    label = page.get_by_role("textbox", name="What this range shows")
     add = page.get_by_role("button", name="Add range")
     expect(label).to_be_hidden()
     page.locator("#clip-name").click()
