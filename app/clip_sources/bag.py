@@ -41,7 +41,6 @@ class BagSource:
     folder: str | None = "a dive recording (metadata.yaml)"
     has_pictures = True
     has_topics = True
-    makes_video = True
     probe_seconds = 120.0
     """Longest time to probe, which reads the whole unpacked recording: the largest allowed
     (`app.bags.staging.MOST_BYTES`) at 20 MB/s, the slowest disk still sold."""
@@ -104,6 +103,7 @@ class BagSource:
             progress=progress,
             observer=observer,
             water=options.water,
+            turn=options.turn,
         )
         poses = found.poses
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))
@@ -117,7 +117,7 @@ class BagSource:
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
         """Write a copy of the topic as a video."""
-        write_video(path, options.topic, copy)
+        write_video(path, options.topic, copy, options.turn)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
@@ -130,5 +130,5 @@ class BagSource:
                     f"{chosen.name} holds keypoints, and a robot looks at pictures; use "
                     f"`osg-studio recognize {path} --topic {chosen.name}`"
                 )
-            frames = BagFrames(bag, chosen)
+            frames = BagFrames(bag, chosen, turn=options.turn)
             return OpenFrames(frames, opening.pop_all().close)

@@ -173,11 +173,12 @@ class JobStore:
                 session.add(clip)
             return True
 
-    def retry(self, clip_id: str, client: str) -> Job | None:
-        """Queue another job for a clip; ``None`` if it has an open or a successful job."""
+    def retry(self, clip_id: str, client: str, *, anew: bool = False) -> Job | None:
+        """Queue another job for a clip; ``None`` if one is open or, unless `anew`, successful."""
+        ended = () if anew else (JobStatus.DONE,)
         with self._database.writing() as session:
             query = select(Job).where(Job.clip_id == clip_id)
-            if any(job.status in (*_OPEN, JobStatus.DONE) for job in session.exec(query)):
+            if any(job.status in (*_OPEN, *ended) for job in session.exec(query)):
                 return None
             job = Job(clip_id=clip_id, client=client)
             session.add(job)

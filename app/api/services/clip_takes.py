@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 
-from app.api.services.running_studio import Studio, load_recording
+from app.api.services.running_studio import Studio, load_recording, written_at
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter
@@ -62,24 +63,25 @@ def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tup
         As `Studio.recording_file`.
 
     """
-    recording = str(studio.recording_file(clip_id))
+    file = studio.recording_file(clip_id)
+    written = written_at(file)
     trigger = SALUTE if state is None else studio.language(state).trigger
     if state is not None and trigger.spots:
-        return _spot(recording, state.revision.document)
-    return _segment(recording, trigger)
+        return _spot(file, written, state.revision.document)
+    return _segment(file, written, trigger)
 
 
 @lru_cache(CACHED_CLIPS)
-def _segment(recording: str, trigger: Trigger) -> tuple[TakeRange, ...]:
+def _segment(file: Path, written: int, trigger: Trigger) -> tuple[TakeRange, ...]:
     """Find the takes between held triggers."""
     return tuple(
         TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
-        for take in takes_in(load_recording(recording), trigger=trigger)
+        for take in takes_in(load_recording(file, written), trigger=trigger)
     )
 
 
 @lru_cache(CACHED_CLIPS)
-def _spot(recording: str, document: str) -> tuple[TakeRange, ...]:
+def _spot(file: Path, written: int, document: str) -> tuple[TakeRange, ...]:
     """Spot a language's gestures; return none if none of them can be spotted."""
     try:
         spotter = Spotter(Recognizer(Language.from_json(document)))
@@ -87,5 +89,5 @@ def _spot(recording: str, document: str) -> tuple[TakeRange, ...]:
         return ()
     return tuple(
         TakeRange(found.start, found.end, True, found.start, found.end)
-        for found in spotter.listen(load_recording(recording).poses)
+        for found in spotter.listen(load_recording(file, written).poses)
     )

@@ -186,7 +186,8 @@ class Studio:
 
     def recording(self, clip_id: str) -> Recording:
         """Return the recording of a clip; errors as in `recording_file`."""
-        return load_recording(str(self.recording_file(clip_id)))
+        file = self.recording_file(clip_id)
+        return load_recording(file, written_at(file))
 
     def recording_file(self, clip_id: str) -> Path:
         """Return the file of a clip's recording.
@@ -227,10 +228,15 @@ class Studio:
         return _recognizers.get(state.revision.document, profile)
 
 
+def written_at(file: Path) -> int:
+    """Return when a file was written, for the key of a cache: clips may be read again."""
+    return file.stat().st_mtime_ns if file.is_file() else 0
+
+
 @lru_cache(CACHED_RECORDINGS)
-def load_recording(path: str) -> Recording:
-    """Load a recording, or return it from the cache."""
-    return Recording.load(path)
+def load_recording(file: Path, written: int) -> Recording:
+    """Load a recording that was `written_at` this time, or return it from the cache."""
+    return Recording.load(file)
 
 
 class DocumentCache(Generic[Made]):
