@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from app.bags.bag_kind import METADATA, split_parts
 from app.bags.staging import stage
 from app.recognition.errors import BagError, OsgError, TopicError
 
@@ -126,7 +128,7 @@ class Bag:
     Parameters
     ----------
     reader
-        Open reader of rosbags.
+        Open reader of rosbags, or of the parts of a recording that was split.
     place
         Path that it reads.
     name
@@ -134,7 +136,7 @@ class Bag:
 
     """
 
-    def __init__(self, reader: Reader, place: Path, name: str) -> None:
+    def __init__(self, reader: Reader | SplitReader, place: Path, name: str) -> None:
         self._reader = reader
         self._place = place
         self.name = name
@@ -244,9 +246,68 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):
-            reader = open_things.enter_context(Reader(found))
+            parts = [] if (found / METADATA).is_file() else _parts_of(found)
+            readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
+            reader = SplitReader(readers, place.name) if parts else readers[0]
             bag = Bag(reader, found, place.name)
         yield bag
+
+
+def _parts_of(place: Path) -> list[Path]:
+    return split_parts(place) if place.is_dir() else []
+
+
+class SplitReader:
+    """Reads the parts of a recording, whose metadata is lost, as one; see `split_parts`.
+
+    Parameters
+    ----------
+    readers
+        Open readers of rosbags, one a part, in order.
+    name
+        Name of the recording in messages.
+
+    Raises
+    ------
+    BagError
+        When the parts overlap in time, and so are no parts of one recording.
+
+    """
+
+    def __init__(self, readers: Sequence[Reader], name: str) -> None:
+        self._readers = [reader for reader in readers if reader.message_count]
+        for one, other in pairwise(self._readers):
+            if one.end_time > other.start_time:
+                raise BagError(
+                    f"{name} holds files that are numbered as parts of one recording, but overlap "
+                    "in time; give each recording by itself, with its metadata.yaml"
+                )
+        self.connections = [each for reader in self._readers for each in reader.connections]
+
+    @property
+    def topics(self) -> dict[str, TopicInfo]:
+        """What the parts hold of each topic, together."""
+        found: dict[str, TopicInfo] = {}
+        for reader in self._readers:
+            for topic, info in reader.topics.items():
+                known = found.get(topic)
+                if known is None:
+                    found[topic] = info
+                    continue
+                kind = info.msgtype if info.msgtype == known.msgtype else None
+                count = known.msgcount + info.msgcount
+                connections = [*known.connections, *info.connections]
+                found[topic] = info._replace(msgtype=kind, msgcount=count, connections=connections)
+        return found
+
+    def messages(
+        self, connections: Collection[Connection]
+    ) -> Iterator[tuple[Connection, int, bytes]]:
+        """Yield the messages of these connections, part after part."""
+        for reader in self._readers:
+            own = [each for each in connections if any(each is one for one in reader.connections)]
+            if own:
+                yield from reader.messages(own)
 
 
 def _topic(name: str, info: TopicInfo) -> Topic:

@@ -120,6 +120,41 @@ def test_old_recordings_without_definitions_are_read_by_the_known_ones(tmp_path:
     assert len(record_bag(tmp_path / "old").poses) == len(recording_of("line").poses)
 
 
+def write_parts(folder: Path, storage: Storage, starts: tuple[float, ...]) -> Path:
+    """Write a recording that was split and lost its metadata: parts of one second, 4 pictures."""
+    folder.mkdir()
+    for number, start in enumerate(starts):
+        rows = [
+            ("/camera", raw(picture(4 * number + index), "rgb8", stamp), stamp)
+            for index, stamp in enumerate(stamps([start + step / 4 for step in range(4)]))
+        ]
+        part = file_of(write_bag(folder.parent / f"{folder.name}-{number}", rows, storage))
+        # The tenth part follows the ninth, unlike in the order of letters.
+        part.rename(folder / f"dive_{9 + number}{part.suffix}")
+    return folder
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize("packed", [False, True])
+def test_parts_without_metadata_are_one_recording(
+    tmp_path: Path, storage: Storage, packed: bool
+) -> None:
+    folder = write_parts(tmp_path / "dive", storage, (0.0, 1.0, 2.0))
+    with open_bag(zipped(folder) if packed else folder) as bag:
+        (topic,) = bag.topics
+        assert (topic.name, topic.messages) == ("/camera", 12)
+        assert bag.durations() == {"/camera": 2.75}
+        frames = list(BagFrames(bag, topic))
+    assert [frame.time for frame in frames] == [index / 4 for index in range(12)]
+    assert all(np.array_equal(frame.image, picture(frame.index)) for frame in frames)
+
+
+def test_files_that_overlap_in_time_are_no_parts_of_one_recording(tmp_path: Path) -> None:
+    folder = write_parts(tmp_path / "dive", "mcap", (0.0, 0.5))
+    with pytest.raises(BagError, match="overlap in time"), open_bag(zipped(folder)):
+        pass
+
+
 def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> None:
     rows = [(name, raw(picture(0), "rgb8", START), START) for name in ("/left", "/right")]
     bag_path = write_bag(tmp_path / "stereo", rows)
