@@ -17,6 +17,10 @@ MAX_ATTEMPTS = 3
 """Number of starts after which an unfinished job is given up: it may be the cause of our
 crashes."""
 
+MOST_OFF, MOST_OFF_SHARE = 0.5, 0.1
+"""Seconds, and share of the measured duration, by which a stated one may be wrong, whichever is
+greater: sound may last longer than the picture."""
+
 _RUNNING = col(Job.status) == JobStatus.RUNNING.value
 _OPEN = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
 
@@ -147,6 +151,7 @@ class JobStore:
         frames: int,
         warnings: Sequence[str],
         salute_warnings: Sequence[str] = (),
+        seconds: float | None = None,
     ) -> bool:
         """End a successful job; return whether this server still owned it.
 
@@ -158,6 +163,9 @@ class JobStore:
             Number of decoded frames; stored with the clip.
         warnings, salute_warnings
             Sentences for the user about the clip: for every language, and for those with salutes.
+        seconds
+            Measured duration, stored with the clip if the container stated none or another one;
+            None: not measured.
 
         """
         with self._database.writing() as session:
@@ -170,6 +178,8 @@ class JobStore:
             session.add(job)
             if clip := session.get(Clip, job.clip_id):
                 clip.frames = frames
+                if seconds is not None and _contradicts(clip.duration, seconds):
+                    clip.duration = seconds
                 session.add(clip)
             return True
 
@@ -217,6 +227,11 @@ class JobStore:
 
     def _has(self, job: Job | None) -> bool:
         return job is not None and job.status == JobStatus.RUNNING and job.server == self._server
+
+
+def _contradicts(stated: float | None, measured: float) -> bool:
+    """Return whether a stated duration is missing, or wrong by more than containers round."""
+    return stated is None or abs(stated - measured) > max(MOST_OFF, MOST_OFF_SHARE * measured)
 
 
 def _overdue(session: Session) -> ColumnElement[bool]:

@@ -204,9 +204,11 @@ class ExtractionQueue:
         )
         # Stored after the end of the worker, because storing may have to wait for the database.
         match ended := await run_task(self._workers, task, report):
-            case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
+            case Finished() as found:
                 await persist(self._clips.keep_found, clip)
-                await persist(self._jobs.complete, job.id, frames, warnings, of_salutes)
+                warnings = found.warnings, found.salute_warnings
+                complete = partial(self._jobs.complete, seconds=found.seconds)
+                await persist(complete, job.id, found.frames, *warnings)
             case Failed(code=code, detail=detail):
                 await persist(self._jobs.finish, job.id, JobStatus.FAILED, code=code, error=detail)
         return ended

@@ -147,7 +147,7 @@ export interface components {
             height: number;
             /**
              * Duration
-             * @description Seconds, where the container says
+             * @description Seconds, where the container says; once its poses are found, as measured
              */
             duration: number | null;
             /**

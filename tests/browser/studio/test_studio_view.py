@@ -213,7 +213,7 @@ def test_one_click_turns_the_picture_of_a_diver_who_lies_on_the_side(
         button.click()
     assert answered.value.status == 202
     expect(page.locator("#clips .chosen .clip-open")).to_have_attribute(
-        "title", f"lying.mp4, {width} × {height} pixels"
+        "title", f"lying.mp4, {width} \u00d7 {height} pixels"
     )
     expect(page.locator("#clip-warnings")).to_contain_text("was turned by 90°", timeout=60_000)
     expect(page.get_by_role("button", name="Turn it back")).to_be_visible()

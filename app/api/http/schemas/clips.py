@@ -32,7 +32,9 @@ class ClipView(BaseModel):
     )
     width: int = Field(description="Pixels of the upright picture")
     height: int
-    duration: float | None = Field(description="Seconds, where the container says")
+    duration: float | None = Field(
+        description="Seconds, where the container says; once its poses are found, as measured"
+    )
     frames: int | None = Field(description="Frames decoded; before that, as the container says")
     size: int = Field(description="Bytes")
     media_type: str

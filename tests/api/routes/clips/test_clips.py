@@ -56,6 +56,17 @@ def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: 
     assert poster.content[:2] == b"\xff\xd8"
 
 
+@pytest.mark.usefixtures("installed_models")
+def test_a_duration_that_a_browser_did_not_write_is_measured(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "dive.webm", codec="libvpx", options={"live": "1"})
+    clip_id = upload(client, clip, "dive.webm").json()["id"]
+    assert client.get(f"{CLIPS}/{clip_id}").json()["duration"] is None
+    until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "done")
+    assert client.get(f"{CLIPS}/{clip_id}").json()["duration"] == pytest.approx(12 / 25)
+
+
 @pytest.mark.withstands(row="H25")
 def test_without_models_the_app_works_and_the_job_says_what_is_missing(
     settings: Settings, small_clip: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
