@@ -63,6 +63,9 @@ USES: dict[str, Use] = {
 }
 """Use of a topic, by message type."""
 
+DEPTH_ENCODINGS = ("16UC1", "32FC1", "compressedDepth")
+"""Encodings in which ROS stores distances (REP-118), in which nobody can be recognised."""
+
 MOST_TOPICS_NAMED = 8
 """Most topics named in a one-line message; a robot records fifty."""
 
@@ -142,6 +145,11 @@ class Bag:
         self.name = name
         self.topics = tuple(_topic(name, info) for name, info in reader.topics.items())
 
+    def usable_topics(self) -> list[Topic]:
+        """Return the topics that a clip can be made of, those that seem to hold depth last."""
+        usable = [topic for topic in self.topics if topic.usable]
+        return sorted(usable, key=self._shows_depth) if len(usable) > 1 else usable
+
     def topic(self, name: str | None = None) -> Topic:
         """Return the topic to make a clip of.
 
@@ -158,7 +166,7 @@ class Bag:
             When there is no usable topic at all.
 
         """
-        usable = [topic for topic in self.topics if topic.usable]
+        usable = self.usable_topics()
         if not usable:
             raise BagError(self._explain_unusable())
         if name is None:
@@ -204,6 +212,17 @@ class Bag:
                 first, last = spans.get(connection.topic, (received, received))
                 spans[connection.topic] = min(first, received), max(last, received)
         return {name: (last - first) / 1e9 for name, (first, last) in spans.items()}
+
+    def _shows_depth(self, topic: Topic) -> bool:
+        """Return whether a topic's name or first picture says that it holds distances."""
+        if topic.use != "pictures" or "depth" in topic.name.lower():
+            return topic.use == "pictures"
+        with suppress(BagError):
+            for message in self.messages(topic.name):
+                stated = getattr(message.content, "encoding", None)
+                stated = stated or getattr(message.content, "format", "")
+                return any(each in str(stated) for each in DEPTH_ENCODINGS)
+        return False
 
     def _explain_unusable(self) -> str:
         empty = [topic for topic in self.topics if topic.use]

@@ -17,6 +17,7 @@ from app.bags.bag import DEFINITIONS, USES, open_bag
 from app.bags.extraction import record_bag
 from app.bags.image_topic import BagFrames
 from app.bags.keypoint_topic import _READERS
+from app.bags.topic_summary import usable_topics
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (
@@ -166,6 +167,25 @@ def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> No
             bag.topic("/middle")
     with open_bag(camera) as bag, pytest.raises(TopicError, match=r"/log is of type std_msgs"):
         bag.topic("/log")
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"),
+    [("/cam/a_depth", "mono8"), ("/cam/aligned", "16UC1"), ("/cam/aligned", "32FC1")],
+)
+def test_depth_is_never_offered_first(tmp_path: Path, name: str, encoding: str) -> None:
+    bits = {"mono8": np.uint8, "16UC1": np.uint16, "32FC1": np.float32}
+    deep = np.zeros((48, 64), bits[encoding])
+    rows = [
+        (name, raw(deep, encoding, START), START),
+        ("/cam/image", raw(picture(0), "rgb8", START), START),
+    ]
+    if encoding == "32FC1":
+        rows.append(("/cam/other", raw(picture(0), "rgb8", START), START))
+    folder = write_bag(tmp_path / "dive", rows)
+    with open_bag(folder) as bag, pytest.raises(TopicError, match=r"--topic /cam/image\)"):
+        bag.topic()
+    assert usable_topics(folder)[0].name == "/cam/image"
 
 
 def test_a_recording_with_nothing_to_use_says_what_it_holds(tmp_path: Path) -> None:
