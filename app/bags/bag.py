@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from app.bags.bag_kind import METADATA, split_parts
+from app.bags.session_reader import TOPICS as SESSION_TOPICS
+from app.bags.session_reader import SessionReader, is_session
 from app.bags.staging import stage
 from app.recognition.errors import BagError, OsgError, TopicError
 
@@ -245,6 +247,38 @@ class Bag:
         return f"there is no topic {name!r}"
 
 
+class SessionBag(Bag):
+    """A session that this program has written, of which the keypoints are read.
+
+    Parameters
+    ----------
+    session
+        Its open reader.
+    place, name
+        See `Bag`.
+
+    """
+
+    def __init__(self, session: SessionReader, place: Path, name: str) -> None:
+        self._session = session
+        self._place = place
+        self.name = name
+        self.topics = tuple(
+            Topic(topic, kind, USES.get(kind), session.frames)
+            for topic, kind in SESSION_TOPICS.items()
+        )
+
+    def messages(self, topic: str) -> Iterator[Message]:
+        """Yield a topic's messages in order; raises BagError when the file is damaged."""
+        with _convert_errors(self._place, self.name):
+            for received, content in self._session.messages(topic):
+                yield Message(received, content)
+
+    def durations(self) -> dict[str, float]:
+        """Return the seconds from the first to the last frame."""
+        return {topic.name: self._session.seconds for topic in self.topics if topic.usable}
+
+
 @contextmanager
 def open_bag(path: str | Path) -> Iterator[Bag]:
     """Open a recording: a rosbag2 folder, its one file, or a zip of either.
@@ -265,10 +299,15 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):
-            parts = [] if (found / METADATA).is_file() else _parts_of(found)
-            readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
-            reader = SplitReader(readers, place.name) if parts else readers[0]
-            bag = Bag(reader, found, place.name)
+            bag: Bag
+            if is_session(found):
+                file = open_things.enter_context(found.open("rb"))
+                bag = SessionBag(SessionReader(file), found, place.name)
+            else:
+                parts = [] if (found / METADATA).is_file() else _parts_of(found)
+                readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
+                reader = SplitReader(readers, place.name) if parts else readers[0]
+                bag = Bag(reader, found, place.name)
         yield bag
 
 

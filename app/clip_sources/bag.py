@@ -13,6 +13,7 @@ from app.bags.bag import open_bag
 from app.bags.bag_kind import bag_kind
 from app.bags.extraction import write_video
 from app.bags.image_topic import BagFrames
+from app.bags.session_reader import is_session
 from app.bags.staging import is_bag_archive
 from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
@@ -67,8 +68,11 @@ class BagSource:
         return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
-        """Return False: a dive recording shows many gestures, and its name labels none of them."""
-        return False
+        """Return whether it is a session that this program wrote of a clip.
+
+        Another dive recording shows many gestures, and its name labels none of them.
+        """
+        return is_session(path)
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """List the topics that a clip can be made of."""
