@@ -1,6 +1,7 @@
 // The picture of the clip: flat or as a space-time cube by viser, or drawn by the page itself.
 
 import { figure } from "./pose-picture.js";
+import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
@@ -122,21 +123,22 @@ export function drawByViser() {
  * @param {Clip} clip
  */
 async function load(clip) {
-  if (loading === clip.id) return null;
-  loading = clip.id;
+  const wanted = versionOf(clip);
+  if (loading === wanted) return null;
+  loading = wanted;
   const poses = await attempt("Loading the poses", () => api.clips.poses(clip.id));
-  if (!poses || loading !== clip.id) return null;
+  if (!poses || loading !== wanted) return null;
   const picture = figure(() => {});
-  picture.show(poses, clip.id);
+  picture.show(poses, clip);
   byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
-  return { clip: clip.id, poses, picture };
+  return { clip: wanted, poses, picture };
 }
 
 /** Draw the frame on display, where the page draws it. */
 export async function drawFlat() {
   const clip = selectedClip();
   if (!own || clip?.status !== "done") return;
-  if (shown?.clip !== clip.id) {
+  if (shown?.clip !== versionOf(clip)) {
     const loaded = await load(clip);
     if (!loaded) return;
     shown = loaded;
