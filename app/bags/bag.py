@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from app.bags.bag_kind import METADATA, split_parts
+from app.bags.session_reader import TOPICS as SESSION_TOPICS
+from app.bags.session_reader import SessionReader, is_session
 from app.bags.staging import stage
 from app.recognition.errors import BagError, OsgError, TopicError
 
@@ -60,6 +64,9 @@ USES: dict[str, Use] = {
     "hri_msgs/msg/Skeleton2D": "keypoints",
 }
 """Use of a topic, by message type."""
+
+DEPTH_ENCODINGS = ("16UC1", "32FC1", "compressedDepth")
+"""Encodings in which ROS stores distances (REP-118), in which nobody can be recognised."""
 
 MOST_TOPICS_NAMED = 8
 """Most topics named in a one-line message; a robot records fifty."""
@@ -126,7 +133,7 @@ class Bag:
     Parameters
     ----------
     reader
-        Open reader of rosbags.
+        Open reader of rosbags, or of the parts of a recording that was split.
     place
         Path that it reads.
     name
@@ -134,11 +141,16 @@ class Bag:
 
     """
 
-    def __init__(self, reader: Reader, place: Path, name: str) -> None:
+    def __init__(self, reader: Reader | SplitReader, place: Path, name: str) -> None:
         self._reader = reader
         self._place = place
         self.name = name
         self.topics = tuple(_topic(name, info) for name, info in reader.topics.items())
+
+    def usable_topics(self) -> list[Topic]:
+        """Return the topics that a clip can be made of, those that seem to hold depth last."""
+        usable = [topic for topic in self.topics if topic.usable]
+        return sorted(usable, key=self._shows_depth) if len(usable) > 1 else usable
 
     def topic(self, name: str | None = None) -> Topic:
         """Return the topic to make a clip of.
@@ -156,7 +168,7 @@ class Bag:
             When there is no usable topic at all.
 
         """
-        usable = [topic for topic in self.topics if topic.usable]
+        usable = self.usable_topics()
         if not usable:
             raise BagError(self._explain_unusable())
         if name is None:
@@ -203,6 +215,17 @@ class Bag:
                 spans[connection.topic] = min(first, received), max(last, received)
         return {name: (last - first) / 1e9 for name, (first, last) in spans.items()}
 
+    def _shows_depth(self, topic: Topic) -> bool:
+        """Return whether a topic's name or first picture says that it holds distances."""
+        if topic.use != "pictures" or "depth" in topic.name.lower():
+            return topic.use == "pictures"
+        with suppress(BagError):
+            for message in self.messages(topic.name):
+                stated = getattr(message.content, "encoding", None)
+                stated = stated or getattr(message.content, "format", "")
+                return any(each in str(stated) for each in DEPTH_ENCODINGS)
+        return False
+
     def _explain_unusable(self) -> str:
         empty = [topic for topic in self.topics if topic.use]
         if empty:
@@ -222,6 +245,38 @@ class Bag:
                 state = "has no messages" if topic.use else f"is of type {topic.type}"
                 return f"topic {name} {state} and cannot be used"
         return f"there is no topic {name!r}"
+
+
+class SessionBag(Bag):
+    """A session that this program has written, of which the keypoints are read.
+
+    Parameters
+    ----------
+    session
+        Its open reader.
+    place, name
+        See `Bag`.
+
+    """
+
+    def __init__(self, session: SessionReader, place: Path, name: str) -> None:
+        self._session = session
+        self._place = place
+        self.name = name
+        self.topics = tuple(
+            Topic(topic, kind, USES.get(kind), session.frames)
+            for topic, kind in SESSION_TOPICS.items()
+        )
+
+    def messages(self, topic: str) -> Iterator[Message]:
+        """Yield a topic's messages in order; raises BagError when the file is damaged."""
+        with _convert_errors(self._place, self.name):
+            for received, content in self._session.messages(topic):
+                yield Message(received, content)
+
+    def durations(self) -> dict[str, float]:
+        """Return the seconds from the first to the last frame."""
+        return {topic.name: self._session.seconds for topic in self.topics if topic.usable}
 
 
 @contextmanager
@@ -244,9 +299,73 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):
-            reader = open_things.enter_context(Reader(found))
-            bag = Bag(reader, found, place.name)
+            bag: Bag
+            if is_session(found):
+                file = open_things.enter_context(found.open("rb"))
+                bag = SessionBag(SessionReader(file), found, place.name)
+            else:
+                parts = [] if (found / METADATA).is_file() else _parts_of(found)
+                readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
+                reader = SplitReader(readers, place.name) if parts else readers[0]
+                bag = Bag(reader, found, place.name)
         yield bag
+
+
+def _parts_of(place: Path) -> list[Path]:
+    return split_parts(place) if place.is_dir() else []
+
+
+class SplitReader:
+    """Reads the parts of a recording, whose metadata is lost, as one; see `split_parts`.
+
+    Parameters
+    ----------
+    readers
+        Open readers of rosbags, one a part, in order.
+    name
+        Name of the recording in messages.
+
+    Raises
+    ------
+    BagError
+        When the parts overlap in time, and so are no parts of one recording.
+
+    """
+
+    def __init__(self, readers: Sequence[Reader], name: str) -> None:
+        self._readers = [reader for reader in readers if reader.message_count]
+        for one, other in pairwise(self._readers):
+            if one.end_time > other.start_time:
+                raise BagError(
+                    f"{name} holds files that are numbered as parts of one recording, but overlap "
+                    "in time; give each recording by itself, with its metadata.yaml"
+                )
+        self.connections = [each for reader in self._readers for each in reader.connections]
+
+    @property
+    def topics(self) -> dict[str, TopicInfo]:
+        """What the parts hold of each topic, together."""
+        found: dict[str, TopicInfo] = {}
+        for reader in self._readers:
+            for topic, info in reader.topics.items():
+                known = found.get(topic)
+                if known is None:
+                    found[topic] = info
+                    continue
+                kind = info.msgtype if info.msgtype == known.msgtype else None
+                count = known.msgcount + info.msgcount
+                connections = [*known.connections, *info.connections]
+                found[topic] = info._replace(msgtype=kind, msgcount=count, connections=connections)
+        return found
+
+    def messages(
+        self, connections: Collection[Connection]
+    ) -> Iterator[tuple[Connection, int, bytes]]:
+        """Yield the messages of these connections, part after part."""
+        for reader in self._readers:
+            own = [each for each in connections if any(each is one for one in reader.connections)]
+            if own:
+                yield from reader.messages(own)
 
 
 def _topic(name: str, info: TopicInfo) -> Topic:

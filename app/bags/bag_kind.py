@@ -13,6 +13,9 @@ format of ROS 1, which is detected only to refuse it by name."""
 METADATA = "metadata.yaml"
 """The file that makes a folder a rosbag2."""
 
+_PART = re.compile(r"(.+)_(\d{1,6})(\.mcap|\.db3)")
+"""Name of a part of a recording that was split, with its number."""
+
 _BEGINNINGS: dict[bytes, BagKind] = {
     b"\x89MCAP0\r\n": "mcap",
     b"SQLite format 3\0": "sqlite3",
@@ -30,10 +33,27 @@ def bag_kind(head: bytes) -> BagKind | None:
     return next((kind for start, kind in _BEGINNINGS.items() if head.startswith(start)), None)
 
 
+def split_parts(folder: Path) -> list[Path]:
+    """Return the storage files of a folder in order, if they are numbered parts of one recording.
+
+    Such a recording has lost its metadata, as when the power fails. Empty if the order is unknown.
+    """
+    files = [each for each in folder.iterdir() if each.suffix in (".mcap", ".db3")]
+    parts = {
+        int(found[2]): (found[1], found[3], each)
+        for each in files
+        if (found := _PART.fullmatch(each.name))
+    }
+    same = len({(name, ending) for name, ending, _ in parts.values()}) == 1
+    numbers = sorted(parts)
+    whole = len(files) == len(parts) > 1 and numbers[-1] - numbers[0] == len(numbers) - 1
+    return [parts[number][2] for number in numbers] if same and whole else []
+
+
 def kind_of(path: Path) -> BagKind | None:
     """Return the kind of the recording at `path`, or None if there is none."""
     if path.is_dir():
-        return "folder" if (path / METADATA).is_file() else None
+        return "folder" if (path / METADATA).is_file() or split_parts(path) else None
     if not path.is_file():
         return None
     with path.open("rb") as file:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from app.bags.bag import Bag, Topic, open_bag
+import numpy as np
+
+from app.bags.bag import open_bag
 from app.bags.image_topic import BagFrames
 from app.bags.keypoint_topic import keypoint_recording
 from app.bags.skeleton_video import show_recording
@@ -15,7 +18,7 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import Observer, Progress, record_frames
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.video import VideoFrame
+from app.recognition.recording.video import FrameSource, Turn, VideoFrame
 from app.recognition.recording.video_limits import VideoLimits
 
 
@@ -29,6 +32,7 @@ def record_bag(
     observer: Observer | None = None,
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
+    turn: Turn = 0,
 ) -> Recording:
     """Find body and hands in a dive recording, as `extraction.record` does in a clip.
 
@@ -43,7 +47,7 @@ def record_bag(
     video
         Path of a copy for players (`VideoFile`): the same pictures at the same times, or the
         skeleton on black if only keypoints were recorded. None writes no copy.
-    estimator, progress, observer, limits, water
+    estimator, progress, observer, limits, water, turn
         See `app.recognition.recording.extraction.record`.
 
     Raises
@@ -64,10 +68,20 @@ def record_bag(
             recording = keypoint_recording(bag, chosen, limits)
             show_recording(recording, video, progress, observer)
             return recording
-        return _record_pictures(bag, chosen, video, estimator, progress, observer, limits, water)
+        frames = BagFrames(bag, chosen, limits, turn)
+        with copying(frames, video) as copy:
+
+            def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+                copy(frame)
+                if observer is not None:
+                    observer(frame, found)
+
+            return record_frames(
+                frames, estimator=estimator, progress=progress, observer=observe, water=water
+            )
 
 
-def write_video(path: str | Path, topic: str | None, video: Path) -> None:
+def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0) -> None:
     """Write the copy of a topic for players, without finding landmarks in it.
 
     See `record_bag`, also for the errors raised.
@@ -77,10 +91,10 @@ def write_video(path: str | Path, topic: str | None, video: Path) -> None:
         if chosen.use == "keypoints":
             show_recording(keypoint_recording(bag, chosen), video)
             return
-        frames = BagFrames(bag, chosen)
-        with VideoFile(video, frames.info.width, frames.info.height) as file:
+        frames = BagFrames(bag, chosen, turn=turn)
+        with copying(frames, video) as copy:
             for frame in frames:
-                file.add(frame.image, frame.time)
+                copy(frame)
 
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
@@ -89,30 +103,15 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
         return bag.topic(topic).use == "keypoints"
 
 
-def _record_pictures(
-    bag: Bag,
-    topic: Topic,
-    video: Path | None,
-    estimator: PoseEstimator | None,
-    progress: Progress | None,
-    observer: Observer | None,
-    limits: VideoLimits | None,
-    water: WaterCorrection,
-) -> Recording:
-    """Find landmarks in every picture, and copy the picture for players."""
-    frames = BagFrames(bag, topic, limits)
-    with ExitStack() as open_files:
-        file = None
-        if video is not None:
-            size = (frames.info.width, frames.info.height)
-            file = open_files.enter_context(VideoFile(video, *size))
+@contextmanager
+def copying(frames: FrameSource, video: Path | None) -> Iterator[Callable[[VideoFrame], None]]:
+    """Give a function that copies a frame to a video for players; without a `video` to nowhere.
 
-        def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-            if file is not None:
-                file.add(frame.image, frame.time)
-            if observer is not None:
-                observer(frame, found)
-
-        return record_frames(
-            frames, estimator=estimator, progress=progress, observer=observe, water=water
-        )
+    An odd last row or column is left out, because the usual codecs store only even sizes.
+    """
+    if video is None:
+        yield lambda frame: None
+        return
+    width, height = frames.info.width // 2 * 2, frames.info.height // 2 * 2
+    with VideoFile(video, width, height) as file:
+        yield lambda frame: file.add(np.ascontiguousarray(frame.image[:height, :width]), frame.time)

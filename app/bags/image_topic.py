@@ -14,7 +14,7 @@ from app.bags.image_messages import PacketDecoder, raw_image
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.timestamps import FrameClock
-from app.recognition.recording.video import VideoFrame, VideoInfo
+from app.recognition.recording.video import Turn, VideoFrame, VideoInfo
 from app.recognition.recording.video_limits import VideoLimits
 
 RAW = "sensor_msgs/msg/Image"
@@ -35,6 +35,8 @@ class BagFrames(Iterator[VideoFrame]):
         One of its usable topics of pictures.
     limits
         Limits of the clip.
+    turn
+        By how much the pictures are turned.
 
     Attributes
     ----------
@@ -50,7 +52,9 @@ class BagFrames(Iterator[VideoFrame]):
 
     """
 
-    def __init__(self, bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> None:
+    def __init__(
+        self, bag: Bag, topic: Topic, limits: VideoLimits | None = None, turn: Turn = 0
+    ) -> None:
         self._topic = topic
         self._limits = limits or VideoLimits()
         self._limits.require_frames(topic.messages)
@@ -62,7 +66,10 @@ class BagFrames(Iterator[VideoFrame]):
         self._clock = FrameClock()
         self._by_header: bool | None = None
         self._count = 0
-        self._pictures = self._read(bag)
+        self._pictures = (
+            (stamp, np.ascontiguousarray(np.rot90(image, -turn // 90)))
+            for stamp, image in self._read(bag)
+        )
         self._next = next(self._pictures, None)
         if self._next is None:
             raise BagError(
@@ -75,7 +82,7 @@ class BagFrames(Iterator[VideoFrame]):
             height=height,
             duration=None,
             frames=topic.messages,
-            rotation=0,
+            rotation=-turn % 360,
             codec=topic.type,
         )
 

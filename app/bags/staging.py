@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of
+from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of, split_parts
 from app.recognition.errors import BagError
 from app.system.stand_in import stand_in
 from app.system.zip_archive import (
@@ -104,13 +104,14 @@ def _unpack(path: Path, folder: Path) -> Path:
         except UnpackedTooLarge as error:
             raise _too_large(path.name, MOST_BYTES) from error
     _require_small(folder, path.name)
-    if (folder / METADATA).is_file():
+    if (folder / METADATA).is_file() or split_parts(folder):
         return folder
     files = sorted(folder.iterdir())
     if len(files) != 1:
         raise BagError(
-            f"{path.name} holds {len(files)} storage files and no {METADATA}, so their order is "
-            "not known; pack the recording's whole folder"
+            f"{path.name} holds {len(files)} storage files and no {METADATA}, and their names do "
+            "not number them as parts of one recording (dive_0.mcap, dive_1.mcap), so their order "
+            "is not known; pack the recording's whole folder"
         )
     return files[0]
 

@@ -44,7 +44,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
 
     Returns
     -------
-    The topics, at least one, in the recording's order.
+    The topics, at least one, in the recording's order, those that seem to hold depth last.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     found: list[TopicSummary] = []
     refused: OsgError | None = None
     with open_bag(path) as bag:
-        candidates = [topic for topic in bag.topics if _choosable(topic)]
+        candidates = [topic for topic in bag.usable_topics() if _choosable(topic)]
         if not candidates:
             bag.topic()  # raises an error with the reason
         durations = bag.durations()
@@ -76,7 +76,7 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
 
 
 def _choosable(topic: Topic) -> bool:
-    return topic.usable and len(topic.name) <= LONGEST_NAME
+    return len(topic.name) <= LONGEST_NAME
 
 
 def _summary(bag: Bag, topic: Topic, duration: float, limits: VideoLimits) -> TopicSummary:

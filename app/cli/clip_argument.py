@@ -21,6 +21,7 @@ from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.recording.segmentation import LONGEST_TAKE
+from app.recognition.recording.video import Turn
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
@@ -53,6 +54,14 @@ TriggerOption = Annotated[
         metavar="FILE",
         help="Language file whose trigger begins and ends the takes of the clips; by default a "
         "salute. See osg-studio trigger.",
+    ),
+]
+
+TurnOption = Annotated[
+    Turn,
+    typer.Option(
+        metavar="DEGREES",
+        help="Turn the pictures clockwise first, by 90, 180 or 270: the camera was turned.",
     ),
 ]
 
@@ -105,6 +114,8 @@ class ClipReading:
         Values that keypoint files do not contain.
     trigger
         What begins and ends their takes.
+    turn
+        By how much pictures are turned first.
 
     """
 
@@ -114,10 +125,11 @@ class ClipReading:
     topic: str | None = None
     keypoints: KeypointOptions = field(default_factory=KeypointOptions)
     trigger: Trigger = SALUTE
+    turn: Turn = 0
 
     def options(self, topic: str | None) -> ReadOptions:
         """Return the options for a clip source; `topic` is the one that the clip names."""
-        given = {"topic": self.topic or topic, "water": self.water}
+        given = {"topic": self.topic or topic, "water": self.water, "turn": self.turn}
         return ReadOptions.of_keypoints(self.keypoints).model_copy(update=given)
 
 

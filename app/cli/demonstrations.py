@@ -19,6 +19,7 @@ from app.cli.clip_argument import (
     HandsOption,
     LandmarkOption,
     TriggerOption,
+    TurnOption,
     WaterOption,
     clip_and_span,
     keypoint_options,
@@ -61,6 +62,7 @@ def define(
     trigger_of: TriggerOption = None,
     diver: DiverOption = "",
     water: WaterOption = "auto",
+    turn: TurnOption = 0,
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
     frame_rate: FrameRateOption = None,
@@ -73,7 +75,7 @@ def define(
     """
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
     held = SALUTE if trigger_of is None else Language.load(trigger_of).trigger
-    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held)
+    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held, turn=turn)
     given = [parse_demonstrations(text) for text in demonstrations]
     labels = [shown[0].label for shown in given]
     for count, _ in enumerate(labels, 1):  # before any clip is read
@@ -108,6 +110,7 @@ def add_demonstrations(
     diver: DiverOption = "",
     output: OutputOption = None,
     water: WaterOption = "auto",
+    turn: TurnOption = 0,
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
     frame_rate: FrameRateOption = None,
@@ -120,7 +123,9 @@ def add_demonstrations(
     for shown in given:
         loaded.gesture(shown[0].label)  # an unknown label is an error before any clip is read
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=loaded.trigger)
+    reading = ClipReading(
+        water, estimator, hands, keypoints=keypoints, trigger=loaded.trigger, turn=turn
+    )
     for shown in given:
         gesture = loaded.gesture(shown[0].label)
         changed = define_gesture(shown, reading, diver=diver, gesture=gesture)

@@ -16,9 +16,11 @@ from app.cli.clip_argument import (
     FrameSizeOption,
     LandmarkOption,
     TriggerOption,
+    TurnOption,
     keypoint_options,
 )
 from app.cli.terminal import people, progress_bar
+from app.clip_sources import ReadOptions
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
@@ -101,6 +103,7 @@ def evaluate(
     frame_rate: FrameRateOption = None,
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
+    turn: TurnOption = 0,
     picture: Annotated[
         Path | None, typer.Option(help="SVG to write; several confusion matrices get numbers.")
     ] = None,
@@ -115,7 +118,7 @@ def evaluate(
         with progress_bar("clips") as advance:
             collection = collect_takes(
                 labelled_files(source, layout),
-                keypoints=keypoints,
+                options=ReadOptions.of_keypoints(keypoints).model_copy(update={"turn": turn}),
                 trigger=SALUTE if held is None else Language.load(held).trigger,
                 progress=advance,
             )

@@ -14,8 +14,9 @@ import typer
 from app.bags.staging import is_bag_archive
 from app.cli.administration import settings_of
 from app.cli.batch import tell_left_out
+from app.cli.clip_argument import TurnOption
 from app.cli.terminal import people, progress_bar
-from app.clip_sources import SOURCES
+from app.clip_sources import SOURCES, ReadOptions
 from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
 from app.recognition.errors import OsgError
 
@@ -48,6 +49,7 @@ def extract(
         Path | None,
         typer.Option(help="Folder to copy the recordings to, named as their clips."),
     ] = None,
+    turn: TurnOption = 0,
 ) -> None:
     """Find the landmarks of all clips of a folder, once; what was done before is skipped."""
     settings = settings_of(None)
@@ -66,7 +68,7 @@ def extract(
 
         # The clips of a batch are files of a folder, even if the studio has an object store.
         processes = Workers(settings.model_copy(update={"storage": None}))
-        footage = Footage(clips, recordings_dir(), processes, show)
+        footage = Footage(clips, recordings_dir(), processes, show, ReadOptions(turn=turn))
         ended = asyncio.run(_work(footage, processes, workers or _cores()))
     _tell(folder.absolute(), ended, output)
 

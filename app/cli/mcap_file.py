@@ -10,8 +10,9 @@ from rich.filesize import decimal
 
 from app.bags import bag_and_topic
 from app.bags.export_writer import NamedRecognition, write_bag
+from app.cli.clip_argument import ClipReading
 from app.cli.terminal import people, progress_bar
-from app.clip_sources import ReadOptions, source_of
+from app.clip_sources import source_of
 from app.recognition import Language, Recognition, Recording, Take
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
@@ -19,7 +20,7 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 def save_bag(
     target: Path,
     clip: Path,
-    topic: str | None,
+    reading: ClipReading,
     recording: Recording,
     recognitions: Sequence[NamedRecognition],
     trigger: Trigger = SALUTE,
@@ -30,7 +31,7 @@ def save_bag(
     ----------
     target
         The MCAP file.
-    clip, topic
+    clip, reading
         Source of `recording`, as for `app.cli.clip_argument.read_clip`.
     recording, recognitions
         Landmarks of the clip, and its recognised takes.
@@ -46,7 +47,7 @@ def save_bag(
     path, named = bag_and_topic(str(clip))
     with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as made:
         partial = Path(made, "session")
-        options = ReadOptions(topic=topic or named)
+        options = reading.options(named)
         source = source_of(path, options.topic)
         video = source.playable_video(path, options, Path(made, "video"))
         with progress_bar(target.name) as advance:

@@ -18,6 +18,7 @@ from app.cli.clip_argument import (
     FrameSizeOption,
     HandsOption,
     LandmarkOption,
+    TurnOption,
     WaterOption,
     clip_and_span,
     keypoint_options,
@@ -74,6 +75,7 @@ def recognize(
         Path, typer.Option(help="Table of a folder's takes to write, .csv or .parquet.")
     ] = Path("recognitions.csv"),
     water: WaterOption = "auto",
+    turn: TurnOption = 0,
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
     frame_rate: FrameRateOption = None,
@@ -89,7 +91,7 @@ def recognize(
     spots = without_salutes or loaded.trigger.spots
     spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
     keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(water, estimator, hands, topic, keypoints)
+    reading = ClipReading(water, estimator, hands, topic, keypoints, turn=turn)
     if is_folder_of_clips(path):
         if as_json or mcap is not None or expected is not None:
             raise OsgError(
@@ -102,7 +104,7 @@ def recognize(
         recording, results = recognize_clip(path, span, reading, recognizer, spotter)
         if mcap is not None:
             named = name_recognitions(loaded, expected, results)
-            save_bag(mcap, path, topic, recording, named, loaded.trigger)
+            save_bag(mcap, path, reading, recording, named, loaded.trigger)
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results:
             explain_absence(path, recording, recognizer, without_salutes=spots)

@@ -15,6 +15,7 @@ from app.cli.clip_argument import (
     FrameSizeOption,
     HandsOption,
     LandmarkOption,
+    TurnOption,
     WaterOption,
     clip_and_span,
     keypoint_options,
@@ -59,6 +60,7 @@ def trigger(
         Path | None, typer.Option(help="Language file to write; by default the same file.")
     ] = None,
     water: WaterOption = "auto",
+    turn: TurnOption = 0,
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
     frame_rate: FrameRateOption = None,
@@ -80,7 +82,7 @@ def trigger(
     chosen = SALUTE if salute else NO_TRIGGER
     if pose is not None:
         keypoints = keypoint_options(frame_rate, frame_size, landmark)
-        reading = ClipReading(water, estimator, hands, keypoints=keypoints)
+        reading = ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
         ends = None if stop is None else read_pose(stop, reading)
         chosen = Trigger("pose", read_pose(pose, reading), ends)
     if gesture is not None:

@@ -13,6 +13,7 @@ from app.bags.bag import open_bag
 from app.bags.bag_kind import bag_kind
 from app.bags.extraction import write_video
 from app.bags.image_topic import BagFrames
+from app.bags.session_reader import is_session
 from app.bags.staging import is_bag_archive
 from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
@@ -41,7 +42,6 @@ class BagSource:
     folder: str | None = "a dive recording (metadata.yaml)"
     has_pictures = True
     has_topics = True
-    makes_video = True
     probe_seconds = 120.0
     """Longest time to probe, which reads the whole unpacked recording: the largest allowed
     (`app.bags.staging.MOST_BYTES`) at 20 MB/s, the slowest disk still sold."""
@@ -68,8 +68,11 @@ class BagSource:
         return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
-        """Return False: a dive recording shows many gestures, and its name labels none of them."""
-        return False
+        """Return whether it is a session that this program wrote of a clip.
+
+        Another dive recording shows many gestures, and its name labels none of them.
+        """
+        return is_session(path)
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """List the topics that a clip can be made of."""
@@ -105,6 +108,7 @@ class BagSource:
             progress=progress,
             observer=observer,
             water=options.water,
+            turn=options.turn,
         )
         poses = found.poses
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))
@@ -118,7 +122,7 @@ class BagSource:
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
         """Write a copy of the topic as a video."""
-        write_video(path, options.topic, copy)
+        write_video(path, options.topic, copy, options.turn)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
@@ -131,5 +135,5 @@ class BagSource:
                     f"{chosen.name} holds keypoints, and a robot looks at pictures; use "
                     f"`osg-studio recognize {path} --topic {chosen.name}`"
                 )
-            frames = BagFrames(bag, chosen)
+            frames = BagFrames(bag, chosen, turn=options.turn)
             return OpenFrames(frames, opening.pop_all().close)

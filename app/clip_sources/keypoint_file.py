@@ -61,7 +61,6 @@ class KeypointFileSource:
     folder: str | None = "frames of OpenPose (*_keypoints.json)"
     has_pictures = False
     has_topics = False
-    makes_video = True
     probe_seconds = 120.0
     """Longest time to probe, which must read the whole file to know its content."""
     broken_off = Refusal(

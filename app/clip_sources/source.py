@@ -15,7 +15,7 @@ from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.video import FrameSource
+from app.recognition.recording.video import FrameSource, Turn
 
 MADE_VIDEO: Final = "video/mp4"
 """Media type of the video that is written for a clip whose file is no video."""
@@ -55,6 +55,8 @@ class ReadOptions(BaseModel):
         Values for a keypoint file, see `KeypointOptions`.
     water
         Whether colour and contrast are corrected before landmarks are found.
+    turn
+        By how much pictures are turned before; players then show a turned copy.
 
     """
 
@@ -66,6 +68,7 @@ class ReadOptions(BaseModel):
     frame_size: tuple[int, int] | None = None
     landmarks: dict[str, str] = Field(default_factory=dict)
     water: WaterCorrection = "auto"
+    turn: Turn = 0
 
     @classmethod
     def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:
@@ -197,9 +200,6 @@ class ClipSource(Protocol):
         Whether a file of this kind may hold pictures of the diver.
     has_topics
         Whether a clip is made of one of several topics.
-    makes_video
-        Whether the video that players show is written while the clip is recorded; else the file
-        itself is that video.
     probe_seconds
         Longest time for `probe`.
     broken_off
@@ -214,7 +214,6 @@ class ClipSource(Protocol):
     folder: str | None
     has_pictures: bool
     has_topics: bool
-    makes_video: bool
     probe_seconds: float
     broken_off: Refusal
 
@@ -273,10 +272,11 @@ class ClipSource(Protocol):
         path, options
             The file, and how it is read.
         video
-            Path of the video that players show, if `makes_video`; None writes none.
+            Path of the video that players show, unless the file itself is that video; None writes
+            none.
         estimator, progress, observer, keep_so_far
-            See `app.recognition.recording.extraction.record`; a source with `makes_video` keeps
-            nothing until the end, since its video cannot be shown before.
+            See `app.recognition.recording.extraction.record`; only videos that are shown as they
+            are keep anything before the end.
 
         Raises
         ------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.bags.extraction import copying
 from app.clip_sources.source import (
     HEAD_BYTES,
     ClipFacts,
@@ -16,8 +17,9 @@ from app.clip_sources.source import (
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record
-from app.recognition.recording.video import FrameReader, probe
+from app.recognition.poses.frame import FrameLandmarks
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record_frames
+from app.recognition.recording.video import FrameReader, VideoFrame, probe, read_frames
 
 
 class VideoSource:
@@ -30,7 +32,6 @@ class VideoSource:
     folder: str | None = None
     has_pictures = True
     has_topics = False
-    makes_video = False
     probe_seconds = 30.0
     """Longest time to probe, which decodes one frame and takes milliseconds."""
     broken_off = Refusal(
@@ -66,7 +67,7 @@ class VideoSource:
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the container's facts, and decode one frame."""
-        info = probe(path)
+        info = probe(path, turn=options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
@@ -85,14 +86,21 @@ class VideoSource:
         keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Find body and hands in every frame."""
-        found = record(
-            path,
-            estimator=estimator,
-            progress=progress,
-            observer=observer,
-            water=options.water,
-            keep_so_far=keep_so_far,
-        )
+        with read_frames(path, turn=options.turn) as frames, copying(frames, video) as copy:
+
+            def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+                copy(frame)
+                if observer is not None:
+                    observer(frame, found)
+
+            found = record_frames(
+                frames,
+                estimator=estimator,
+                progress=progress,
+                observer=observe,
+                water=options.water,
+                keep_so_far=keep_so_far,
+            )
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)
 
@@ -101,10 +109,15 @@ class VideoSource:
         return Refusal("video_unreadable", str(error).replace(path.name, "the clip"))
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
-        """Return the file itself."""
-        return path
+        """Return the file itself, or write a copy whose pictures are turned."""
+        if not options.turn:
+            return path
+        with read_frames(path, turn=options.turn) as frames, copying(frames, copy) as add:
+            for frame in frames:
+                add(frame)
+        return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open the file for decoding."""
-        reader = FrameReader(path)
+        reader = FrameReader(path, turn=options.turn)
         return OpenFrames(reader, reader.close)

@@ -8,6 +8,7 @@ from platformdirs import user_data_path
 
 from app import __version__
 from app.recognition.recording.recording import FILE_VERSION
+from app.recognition.recording.video import Turn
 from app.recognition.text.hashing import hash_file
 
 RECORDING_ENDING = ".npz"
@@ -20,11 +21,12 @@ def recordings_dir() -> Path:
     return kept
 
 
-def kept_recording(clip: Path, folder: Path) -> Path:
+def kept_recording(clip: Path, folder: Path, turn: Turn = 0) -> Path:
     """Return the path of a clip's recording in a cache folder; the file need not exist.
 
-    The name is the hash of the clip's content with the versions of program and file format, so that
-    a clip may be renamed or moved, and recordings of other versions are not reused.
+    The name is the hash of the clip's content with the versions of program and file format, and by
+    how much its pictures are turned, so that a clip may be renamed or moved, and recordings of
+    other versions are not reused.
 
     Raises
     ------
@@ -32,4 +34,5 @@ def kept_recording(clip: Path, folder: Path) -> Path:
         When the clip cannot be read.
 
     """
-    return folder / f"{hash_file(clip)}-{__version__}-{FILE_VERSION}{RECORDING_ENDING}"
+    turned = f"-turned-{turn}" if turn else ""
+    return folder / f"{hash_file(clip)}-{__version__}-{FILE_VERSION}{turned}{RECORDING_ENDING}"

@@ -12,7 +12,6 @@ from app.clip_sources import ReadOptions, source_of
 from app.evaluation.kept_recordings import RECORDING_ENDING, kept_recording, recordings_dir
 from app.evaluation.labelled_files import LabelledFile
 from app.evaluation.one_shot import LabelledTake
-from app.keypoint_files import KeypointOptions
 from app.recognition import Recording, takes_in
 from app.recognition.errors import ModelError, OsgError
 from app.recognition.estimation import PoseEstimator, create_estimator
@@ -32,8 +31,8 @@ class ClipRecorder:
     keep_in
         Cache folder of recordings, `recordings_dir` by default. The key is a clip's content, so a
         clip may be renamed or moved.
-    keypoints
-        Values that keypoint files do not contain.
+    options
+        How files are read; only what concerns keypoint files, and by how much pictures are turned.
     progress
         Called after every extracted frame; an exception in it stops the extraction.
 
@@ -43,11 +42,11 @@ class ClipRecorder:
         self,
         keep_in: Path | None = None,
         *,
-        keypoints: KeypointOptions | None = None,
+        options: ReadOptions | None = None,
         progress: Progress | None = None,
     ) -> None:
         self._folder = keep_in or recordings_dir()
-        self._options = ReadOptions.of_keypoints(keypoints or KeypointOptions())
+        self._options = options or ReadOptions()
         self._progress = progress
         self._estimator: PoseEstimator | None = None
 
@@ -65,7 +64,7 @@ class ClipRecorder:
         source = source_of(path)
         if not source.shows_pictures(path, self._options):
             return source.record(path, self._options).recording
-        kept = kept_recording(path, self._folder)
+        kept = kept_recording(path, self._folder, self._options.turn)
         if kept.is_file():
             return Recording.load(kept)
         progress = None
@@ -125,7 +124,7 @@ def collect_takes(
     files: Sequence[LabelledFile],
     *,
     keep_in: Path | None = None,
-    keypoints: KeypointOptions | None = None,
+    options: ReadOptions | None = None,
     trigger: Trigger = SALUTE,
     progress: Progress | None = None,
 ) -> Collection:
@@ -138,8 +137,8 @@ def collect_takes(
     keep_in
         Cache folder of recordings, `recordings_dir` by default. The key is a clip's content, so a
         clip may be renamed or moved.
-    keypoints
-        Values that keypoint files do not contain.
+    options
+        How files are read, see `ClipRecorder`.
     trigger
         What begins and ends a take.
     progress
@@ -153,7 +152,7 @@ def collect_takes(
     """
     takes: list[LabelledTake] = []
     problems: dict[str, str] = {}
-    with closing(ClipRecorder(keep_in, keypoints=keypoints, progress=progress)) as recorder:
+    with closing(ClipRecorder(keep_in, options=options, progress=progress)) as recorder:
         for file in files:
             try:
                 takes += _takes(file, recorder.record(file.path), trigger)

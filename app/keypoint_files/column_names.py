@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
-from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.frame import Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 
 AXES: Final[Mapping[str, str]] = {
     "x": "x",
@@ -38,6 +39,9 @@ TIMES: Final = frozenset(name for names, _ in UNITS for name in names)
 NAMES: Final = ("landmark", "landmark_name", "landmark_id", "name", "joint", "keypoint", "bodypart")
 """Headings of the landmark's name, in tables with one landmark a row."""
 
+PEOPLE: Final = ("track", "track_id", "track_name", "person", "person_id", "individual")
+"""Headings of whose keypoints a row holds, in tables with one person a row."""
+
 MOST_LANDMARKS: Final = 600
 """Most landmarks of a frame: MediaPipe's body, hands and face have 553; a file with more holds
 something else."""
@@ -60,6 +64,13 @@ _PATTERNS: Final = (
 """``x0``; ``landmark_0_x``; ``nose_x``; ``x_nose``."""
 
 
+_HAND: Final = re.compile(
+    r"(?:(?P<side>left|right)_?hand|hand_?(?P<after>left|right)|(?P<letter>[lr])h(?:and)?)_?"
+    r"(?:landmark|point|kp|keypoint)?_?(?P<name>\d+|[a-z].*)"
+)
+"""``left_hand_0``, ``hand_right_wrist``, ``lh_20``: a landmark of a hand."""
+
+
 @dataclass(frozen=True)
 class Columns:
     """Places of the values in a row.
@@ -72,12 +83,18 @@ class Columns:
         Place of the time, or None.
     unit
         Unit of the time: ``"s"``, ``"ms"``, ``"us"``, ``"ns"`` or ``"frames"``.
+    who
+        Place of the person's name or number, or None.
+    hands
+        Places of the 21 landmarks of a hand, in the order of `HAND_LANDMARKS`, by its side.
 
     """
 
     points: Mapping[str, Mapping[str, int]]
     when: int | None
     unit: str
+    who: int | None = None
+    hands: Mapping[Side, Sequence[Mapping[str, int]]] = field(default_factory=dict)
 
 
 def columns_of(headings: Sequence[str]) -> Columns:
@@ -96,7 +113,10 @@ def columns_of(headings: Sequence[str]) -> Columns:
             points.setdefault(match["name"], {})[AXES[match["axis"].lower()]] = place
     whole = {name: places for name, places in points.items() if {"x", "y"} <= set(places)}
     when, unit = time_column(headings)
-    return Columns(_number_points(whole), when, unit)
+    plainly = [plain(heading) for heading in headings]
+    who = next((plainly.index(name) for name in PEOPLE if name in plainly), None)
+    hands, rest = _split_hands(whole)
+    return Columns(_number_points(rest), when, unit, who, hands)
 
 
 def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
@@ -119,6 +139,30 @@ def numbered_landmark(name: str, first: int = 0) -> str:
     if name.isdigit() and 0 <= int(name) - first < len(POSE_LANDMARKS):
         return POSE_LANDMARKS[int(name) - first]
     return name
+
+
+def _split_hands(
+    points: Mapping[str, Mapping[str, int]],
+) -> tuple[Mapping[Side, Sequence[Mapping[str, int]]], Mapping[str, Mapping[str, int]]]:
+    """Return the hands of which all landmarks are given, and all points that are of none."""
+    found: dict[Side, dict[str, str]] = {"left": {}, "right": {}}
+    for name in points:
+        if match := _HAND.fullmatch(plain(name)):
+            side = match["side"] or match["after"] or {"l": "left", "r": "right"}[match["letter"]]
+            found["left" if side == "left" else "right"][match["name"]] = name
+    hands: dict[Side, Sequence[Mapping[str, int]]] = {}
+    rest = dict(points)
+    for which, named in found.items():
+        for order in _HAND_ORDERS:
+            if set(order) == set(named):
+                hands[which] = [rest.pop(named[each]) for each in order]
+    return hands, rest
+
+
+_HAND_ORDERS: Final = (
+    HAND_LANDMARKS,
+    *([str(first + each) for each in range(len(HAND_LANDMARKS))] for first in (0, 1)),
+)
 
 
 def _number_points(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:

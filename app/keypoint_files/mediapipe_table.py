@@ -1,17 +1,20 @@
 """MediaPipe landmarks as CSV, in the common layouts (MediaPipe itself writes no files).
 
 One frame a row, with numbered columns (``x0,y0,z0,v0,x1,...``) or named ones (``nose_x``,
-``LEFT_WRIST.visibility``), or one landmark a row (``frame,landmark,x,y``).
+``LEFT_WRIST.visibility``), or one landmark a row (``frame,landmark,x,y``). Hands are numbered or
+named (``left_hand_0_x``). SLEAP's analysis has a column that says whose track a row is of.
 """
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.keypoint_files.column_names import (
     AXES,
@@ -24,6 +27,7 @@ from app.keypoint_files.column_names import (
     time_column,
 )
 from app.keypoint_files.keypoint_table import (
+    MOST_PEOPLE,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -31,7 +35,10 @@ from app.keypoint_files.keypoint_table import (
     visibility_of,
 )
 from app.recognition.errors import KeypointFileError
+from app.recognition.poses.frame import Hand, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.strict_json import is_utf16
 
@@ -97,10 +104,13 @@ def _wide(
     names = tuple(columns.points)
     places = [columns.points[name] for name in names]
     has_visibility = any("v" in each for each in places)
+    sides = tuple(columns.hands)
+    places += [each for side in sides for each in columns.hands[side]]
     rows: list[list[list[float]]] = []
     times: list[float] = []
+    people: list[str] = []
     for number, line in enumerate(_lines(lines)):
-        limits.require_frames(number + 1)
+        limits.require_frames(1 + number // (1 if columns.who is None else MOST_PEOPLE))
         rows.append(
             [
                 [_number(line, each.get(axis), number, path) for axis in ("x", "y", "v")]
@@ -110,8 +120,88 @@ def _wide(
         times.append(
             float(number) if columns.when is None else _number(line, columns.when, number, path)
         )
-    return table_of(
-        names, _points(rows, len(names)), has_visibility, times_of(np.array(times), columns.unit)
+        if columns.who is not None:
+            people.append(line[columns.who].strip() if columns.who < len(line) else "")
+    points, moments = _points(rows, len(places)), np.array(times)
+    chosen = None
+    if len(set(people)) > 1:
+        chosen = _choose_person(points[:, : len(names)], moments, people, path)
+        limits.require_frames(len(chosen.times))
+        moments = chosen.times
+        points = np.where(chosen.rows[:, None, None] < 0, np.nan, points[chosen.rows])
+    table = table_of(
+        names, points[:, : len(names)], has_visibility, times_of(moments, columns.unit)
+    )
+    return replace(
+        table,
+        hands=_hands(points[:, len(names) :, :2], sides),
+        notes=() if chosen is None else chosen.notes,
+        people=None if chosen is None else chosen.people,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Chosen:
+    """The rows ``(T,)`` of one person, -1 where there is none, at the ``(T,)`` times of all."""
+
+    rows: npt.NDArray[np.int64]
+    times: FloatArray
+    people: npt.NDArray[np.int64]
+    notes: tuple[str, ...]
+
+
+def _choose_person(
+    points: FloatArray, moments: FloatArray, people: Sequence[str], path: Path
+) -> _Chosen:
+    """Choose the most prominent of several people, each in rows of their own.
+
+    Raises
+    ------
+    KeypointFileError
+        When somebody has two rows of one time, so that it is not told who is who.
+
+    """
+    times, at = np.unique(moments, return_inverse=True)
+    by_name: dict[str, list[int]] = {}
+    for row, name in enumerate(people):
+        by_name.setdefault(name, []).append(row)
+    for name, rows in by_name.items():
+        if len(set(at[rows].tolist())) < len(rows):
+            raise KeypointFileError(
+                f"{path} has two rows of {name or 'nobody by name'} at one time; export each "
+                "person's track by its own name"
+            )
+    confidence = visibility_of(points)
+    xy = mask_unseen(points[..., :2], confidence, 0.0)
+    # The rows of a track follow each other in time, as its movement is measured.
+    ordered = {name: sorted(rows, key=lambda row: at[row]) for name, rows in by_name.items()}
+    name = max(
+        ordered, key=lambda name: prominence_over(xy[ordered[name]], confidence[ordered[name]])
+    )
+    followed = np.full(len(times), -1)
+    followed[at[ordered[name]]] = ordered[name]
+    seen = np.asarray(np.isfinite(xy).all(axis=2)).any(axis=1)
+    return _Chosen(
+        rows=followed,
+        times=times,
+        people=np.bincount(at[seen], minlength=len(times)),
+        notes=(f"of {len(ordered)} people track {name!r} stands out most and is followed",),
+    )
+
+
+def _hands(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...], ...] | None:
+    """Return the hands of each frame from ``(T, 21 * sides, 2)``; None if none is seen in any."""
+    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 2)
+    seen = np.isfinite(groups).all(axis=(2, 3)) & (groups != 0).any(axis=(2, 3))
+    if not seen.any():
+        return None
+    return tuple(
+        tuple(
+            Hand(groups[row, place], side, 1.0)
+            for place, side in enumerate(sides)
+            if seen[row, place]
+        )
+        for row in range(len(groups))
     )
 
 

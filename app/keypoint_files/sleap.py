@@ -38,6 +38,8 @@ def read_sleap(path: Path, options: KeypointOptions, limits: VideoLimits) -> Key
 
     """
     labels = _labels(path, limits)
+    if isinstance(labels, KeypointTable):
+        return labels
     try:
         return _table(labels, path, options, limits)
     except MALFORMED as error:  # the library checks little of what it reads
@@ -78,7 +80,10 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
 
 
 def _labels(path: Path, limits: VideoLimits) -> Any:
-    """Return the labels that SLEAP's library reads from a file, after a check of the file."""
+    """Return the labels that SLEAP's library reads from a file, after a check of the file.
+
+    An analysis without scores, as SLEAP wrote it before 1.1.4, is read here into a table.
+    """
     try:
         library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
     except ImportError as error:
@@ -92,6 +97,8 @@ def _labels(path: Path, limits: VideoLimits) -> Any:
             warnings.simplefilter("ignore")  # about videos that are missing but not needed
             with h5py.File(path) as file:
                 _require_frames(file, limits)
+                if "tracks" in file and "point_scores" not in file:
+                    return _table_without_scores(file)
                 stated = json.loads(file.attrs.get("video_backend_metadata", "{}"))
             if path.suffix.lower() == ".slp":
                 return library.load_slp(str(path), open_videos=False)
@@ -102,6 +109,25 @@ def _labels(path: Path, limits: VideoLimits) -> Any:
         raise
     except Exception as error:  # the library's errors share no base but Exception
         raise _unreadable(path, error) from error
+
+
+def _table_without_scores(file: Any) -> KeypointTable:
+    """Return the most prominent track of an open analysis; every point in it counts as sure."""
+    names = tuple(name.decode() for name in file["node_names"][:])
+    tracks = np.asarray(file["tracks"][:], dtype=np.float64)
+    if tracks.ndim != 4 or tracks.shape[1:3] != (2, len(names)) or 0 in tracks.shape:
+        raise ValueError(f"tracks of shape {tracks.shape} for {len(names)} nodes")
+    xy = tracks.transpose(0, 3, 2, 1)
+    chosen = max(range(len(xy)), key=lambda track: prominence_over(xy[track]))
+    named = [name.decode() for name in file.get("track_names", [])[:]]
+    name = named[chosen] if chosen < len(named) else str(chosen)
+    return KeypointTable(
+        names=names,
+        xy=mask_unseen(xy[chosen], None, 0.0),
+        times=Times(np.arange(xy.shape[1], dtype=np.float64), counted=True),
+        notes=_notes(len(xy), f"track {name!r} stands out most and is followed"),
+        people=np.asarray(np.isfinite(xy).all(axis=3)).any(axis=2).sum(axis=0, dtype=np.int64),
+    )
 
 
 def _unreadable(path: Path, error: Exception) -> KeypointFileError:
@@ -172,7 +198,7 @@ def _choose_person(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[
     for frame, time in zip(labelled, times.tolist(), strict=True):
         points = [_points(instance) for instance in frame.instances]
         seen.append([one for one in points if np.isfinite(one[:, :2]).any()])
-        scores = [float(np.nan_to_num(np.nanmean(one[:, 2]))) for one in seen[-1]]
+        scores = [_mean_score(one) for one in seen[-1]]
         people.add(
             time,
             [SeenPerson(one[:, :2], score) for one, score in zip(seen[-1], scores, strict=True)],
@@ -183,6 +209,12 @@ def _choose_person(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[
         if place is not None:
             chosen[row] = seen[row][place]
     return chosen, choice
+
+
+def _mean_score(points: FloatArray) -> float:
+    """Return the mean score of points ``(K, 3)``, of those that have one; else 0."""
+    known = points[np.isfinite(points[:, 2]), 2]
+    return float(known.mean()) if len(known) else 0.0
 
 
 def _size(labels: Any) -> tuple[int, int] | None:

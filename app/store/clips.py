@@ -20,7 +20,7 @@ from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
 from app.store.clip_folder import ClipFolder
 from app.store.database import Database
 from app.store.errors import NotFound
-from app.store.models import VIDEO, Clip, Job, JobStatus, new_id, now
+from app.store.models import UPRIGHT, VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
 from app.store.objects.clip_copies import ClipCopies
 from app.store.quotas import NO_QUOTA, Quota, Usage, release_in
@@ -305,6 +305,26 @@ class ClipStore:
             clip.duration = chosen["duration"]
             session.add(clip)
 
+    def turn(self, clip_id: str, degrees: int) -> None:
+        """Store that a clip's pictures are turned clockwise by so much more than before.
+
+        Raises
+        ------
+        NotFound
+            When there is no such clip.
+
+        """
+        with self._database.writing() as session:
+            clip = session.get(Clip, clip_id)
+            if clip is None or clip.deleted is not None:
+                raise NotFound(f"there is no clip {clip_id!r}")
+            options = json.loads(clip.options or "{}")
+            options["turn"] = (clip.turn + degrees) % 360
+            clip.options = json.dumps({name: each for name, each in options.items() if each})
+            if degrees % 180:
+                clip.width, clip.height = clip.height, clip.width
+            session.add(clip)
+
     def purge(self, before: datetime) -> int:
         """Remove for good the clips deleted before a given time; return their number."""
         with self._database.writing() as session:
@@ -355,7 +375,7 @@ class ClipStore:
             path
             for path in self.folder.glob("*/*")
             if path.parent.name in sources
-            and path.name not in (sources[path.parent.name], VIDEO, *_FOUND)
+            and path.name not in (sources[path.parent.name], VIDEO, *UPRIGHT.values(), *_FOUND)
         ]
         removed, homes = 0, []
         for path in orphans:
@@ -385,7 +405,7 @@ class ClipStore:
             When the object store does not answer; the call can be repeated.
 
         """
-        made = (VIDEO,) if clip.video_is_made else ()
+        made = (clip.video_name,) if clip.video_is_made else ()
         self._files.keep(clip.id, (*made, *_FOUND))
 
     def received(self, clip: Clip) -> Path:
@@ -394,7 +414,9 @@ class ClipStore:
 
     def video(self, clip_id: str) -> Path:
         """Return the path of the clip's video: the received file, or one that its job made."""
-        return self._files.find(clip_id, VIDEO)
+        with self._database.reading() as session:
+            clip = session.get(Clip, clip_id)
+        return self._files.find(clip_id, VIDEO if clip is None else clip.video_name)
 
     def recording(self, clip_id: str) -> Path:
         """Return the path of the clip's recording, which exists once its job is done."""

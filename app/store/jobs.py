@@ -17,6 +17,10 @@ MAX_ATTEMPTS = 3
 """Number of starts after which an unfinished job is given up: it may be the cause of our
 crashes."""
 
+MOST_OFF, MOST_OFF_SHARE = 0.5, 0.1
+"""Seconds, and share of the measured duration, by which a stated one may be wrong, whichever is
+greater: sound may last longer than the picture."""
+
 _RUNNING = col(Job.status) == JobStatus.RUNNING.value
 _OPEN = (JobStatus.QUEUED.value, JobStatus.RUNNING.value)
 
@@ -147,6 +151,7 @@ class JobStore:
         frames: int,
         warnings: Sequence[str],
         salute_warnings: Sequence[str] = (),
+        seconds: float | None = None,
     ) -> bool:
         """End a successful job; return whether this server still owned it.
 
@@ -158,6 +163,9 @@ class JobStore:
             Number of decoded frames; stored with the clip.
         warnings, salute_warnings
             Sentences for the user about the clip: for every language, and for those with salutes.
+        seconds
+            Measured duration, stored with the clip if the container stated none or another one;
+            None: not measured.
 
         """
         with self._database.writing() as session:
@@ -170,14 +178,17 @@ class JobStore:
             session.add(job)
             if clip := session.get(Clip, job.clip_id):
                 clip.frames = frames
+                if seconds is not None and _contradicts(clip.duration, seconds):
+                    clip.duration = seconds
                 session.add(clip)
             return True
 
-    def retry(self, clip_id: str, client: str) -> Job | None:
-        """Queue another job for a clip; ``None`` if it has an open or a successful job."""
+    def retry(self, clip_id: str, client: str, *, anew: bool = False) -> Job | None:
+        """Queue another job for a clip; ``None`` if one is open or, unless `anew`, successful."""
+        ended = () if anew else (JobStatus.DONE,)
         with self._database.writing() as session:
             query = select(Job).where(Job.clip_id == clip_id)
-            if any(job.status in (*_OPEN, JobStatus.DONE) for job in session.exec(query)):
+            if any(job.status in (*_OPEN, *ended) for job in session.exec(query)):
                 return None
             job = Job(clip_id=clip_id, client=client)
             session.add(job)
@@ -216,6 +227,11 @@ class JobStore:
 
     def _has(self, job: Job | None) -> bool:
         return job is not None and job.status == JobStatus.RUNNING and job.server == self._server
+
+
+def _contradicts(stated: float | None, measured: float) -> bool:
+    """Return whether a stated duration is missing, or wrong by more than containers round."""
+    return stated is None or abs(stated - measured) > max(MOST_OFF, MOST_OFF_SHARE * measured)
 
 
 def _overdue(session: Session) -> ColumnElement[bool]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from datetime import UTC, datetime
 from enum import StrEnum
 from typing import Literal
@@ -21,6 +22,9 @@ from sqlmodel import Field, SQLModel
 
 VIDEO = "video"
 """Name of the clip source whose file is the video that players show."""
+
+UPRIGHT = {turn: f"upright-{turn}" for turn in (90, 180, 270)}
+"""Names of the files of videos whose pictures are turned clockwise by so many degrees."""
 
 
 def now() -> datetime:
@@ -107,7 +111,17 @@ class Clip(SQLModel, table=True):
     @property
     def video_is_made(self) -> bool:
         """Whether its video is made by its job, and is not the received file."""
-        return self.source != VIDEO
+        return self.source != VIDEO or self.turn != 0
+
+    @property
+    def video_name(self) -> str:
+        """Name of the file of its video."""
+        return UPRIGHT.get(self.turn, VIDEO)
+
+    @property
+    def turn(self) -> int:
+        """Degrees, clockwise, by which its pictures are turned."""
+        return int(json.loads(self.options or "{}").get("turn", 0))
 
     @property
     def needs_topic(self) -> bool:

@@ -31,6 +31,7 @@ MEANINGS = {
     "invitation_closed": "the invitation is withdrawn, over, or its limit is reached (`reason`)",
     "invitation_unknown": "no invitation has this token",
     "is_demonstration": "a take that is a demonstration of its gesture proves nothing as a test",
+    "no_pictures": "a clip of keypoints has no pictures to turn",
     "job_not_needed": "the job is done, or the topic is chosen already",
     "label_taken": "another gesture of the language has this label, or one that looks like it",
     "name_taken": "another language has a name that looks like this one",

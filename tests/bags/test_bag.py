@@ -17,6 +17,7 @@ from app.bags.bag import DEFINITIONS, USES, open_bag
 from app.bags.extraction import record_bag
 from app.bags.image_topic import BagFrames
 from app.bags.keypoint_topic import _READERS
+from app.bags.topic_summary import usable_topics
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.bag_files import (
@@ -120,6 +121,41 @@ def test_old_recordings_without_definitions_are_read_by_the_known_ones(tmp_path:
     assert len(record_bag(tmp_path / "old").poses) == len(recording_of("line").poses)
 
 
+def write_parts(folder: Path, storage: Storage, starts: tuple[float, ...]) -> Path:
+    """Write a recording that was split and lost its metadata: parts of one second, 4 pictures."""
+    folder.mkdir()
+    for number, start in enumerate(starts):
+        rows = [
+            ("/camera", raw(picture(4 * number + index), "rgb8", stamp), stamp)
+            for index, stamp in enumerate(stamps([start + step / 4 for step in range(4)]))
+        ]
+        part = file_of(write_bag(folder.parent / f"{folder.name}-{number}", rows, storage))
+        # The tenth part follows the ninth, unlike in the order of letters.
+        part.rename(folder / f"dive_{9 + number}{part.suffix}")
+    return folder
+
+
+@pytest.mark.parametrize("storage", STORAGES)
+@pytest.mark.parametrize("packed", [False, True])
+def test_parts_without_metadata_are_one_recording(
+    tmp_path: Path, storage: Storage, packed: bool
+) -> None:
+    folder = write_parts(tmp_path / "dive", storage, (0.0, 1.0, 2.0))
+    with open_bag(zipped(folder) if packed else folder) as bag:
+        (topic,) = bag.topics
+        assert (topic.name, topic.messages) == ("/camera", 12)
+        assert bag.durations() == {"/camera": 2.75}
+        frames = list(BagFrames(bag, topic))
+    assert [frame.time for frame in frames] == [index / 4 for index in range(12)]
+    assert all(np.array_equal(frame.image, picture(frame.index)) for frame in frames)
+
+
+def test_files_that_overlap_in_time_are_no_parts_of_one_recording(tmp_path: Path) -> None:
+    folder = write_parts(tmp_path / "dive", "mcap", (0.0, 0.5))
+    with pytest.raises(BagError, match="overlap in time"), open_bag(zipped(folder)):
+        pass
+
+
 def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> None:
     rows = [(name, raw(picture(0), "rgb8", START), START) for name in ("/left", "/right")]
     bag_path = write_bag(tmp_path / "stereo", rows)
@@ -131,6 +167,25 @@ def test_one_of_several_topics_must_be_named(camera: Path, tmp_path: Path) -> No
             bag.topic("/middle")
     with open_bag(camera) as bag, pytest.raises(TopicError, match=r"/log is of type std_msgs"):
         bag.topic("/log")
+
+
+@pytest.mark.parametrize(
+    ("name", "encoding"),
+    [("/cam/a_depth", "mono8"), ("/cam/aligned", "16UC1"), ("/cam/aligned", "32FC1")],
+)
+def test_depth_is_never_offered_first(tmp_path: Path, name: str, encoding: str) -> None:
+    bits = {"mono8": np.uint8, "16UC1": np.uint16, "32FC1": np.float32}
+    deep = np.zeros((48, 64), bits[encoding])
+    rows = [
+        (name, raw(deep, encoding, START), START),
+        ("/cam/image", raw(picture(0), "rgb8", START), START),
+    ]
+    if encoding == "32FC1":
+        rows.append(("/cam/other", raw(picture(0), "rgb8", START), START))
+    folder = write_bag(tmp_path / "dive", rows)
+    with open_bag(folder) as bag, pytest.raises(TopicError, match=r"--topic /cam/image\)"):
+        bag.topic()
+    assert usable_topics(folder)[0].name == "/cam/image"
 
 
 def test_a_recording_with_nothing_to_use_says_what_it_holds(tmp_path: Path) -> None:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import base64
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import av
 import numpy as np
 import pytest
+from mcap.writer import Writer
 
 from app.bags.export_writer import CHANNELS, NamedRecognition, write_bag
+from app.bags.extraction import record_bag
+from app.bags.topic_summary import usable_topics
+from app.evaluation.labelled_files import labelled_files
+from app.evaluation.labelled_takes import collect_takes
 from app.recognition import Gesture, Language, Recognizer, Recording, takes_in
-from app.recognition.errors import BagError
+from app.recognition.errors import BagError, VideoError
 from tests.api.recordings import recording_of
 from tests.bags.exports import checked
 from tests.posed import BY_BELLY, posed_recording
@@ -154,3 +160,61 @@ def test_takes_lie_between_the_triggers_of_the_language(tmp_path: Path) -> None:
     (take,) = takes_in(posed_recording("circle-by-belly"), trigger=BY_BELLY)
     assert [content["start"] for _, content in found["/takes"]] == pytest.approx([take.start])
     assert max(content["score"] for _, content in found["/salute"]) > 0.9
+
+
+def test_the_keypoints_of_a_session_are_read_back(
+    tmp_path: Path, sample_recording: Callable[[str], Recording]
+) -> None:
+    written = sample_recording("line-test-1")
+    path = tmp_path / "line.mcap"
+    write_bag(path, written, name="dive.mp4")
+    (topic,) = usable_topics(path)
+    poses = written.poses
+    assert (topic.use, topic.messages) == ("keypoints", len(poses))
+    assert topic.duration == pytest.approx(poses.duration)
+    assert (topic.width, topic.height) == poses.frame_size
+    read = record_bag(path)
+    np.testing.assert_allclose(read.poses.time, poses.time, atol=1e-6)
+    np.testing.assert_allclose(read.poses.xy, poses.xy, atol=0.006)
+    assert [len(hands) for hands in read.hands] == [len(hands) for hands in written.hands]
+    np.testing.assert_allclose(read.salute, written.salute, atol=0.01)
+    (take,) = collect_takes(labelled_files(tmp_path)).takes
+    (original,) = takes_in(written)
+    assert take.label == "line"
+    assert len(take.poses) == len(original.poses)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_flipped_bytes_of_a_session_give_frames_or_one_line(
+    tmp_path: Path, recording: Recording, seed: int
+) -> None:
+    path = tmp_path / "session.mcap"
+    write_bag(path, recording)
+    random, content = np.random.default_rng(seed), bytearray(path.read_bytes())
+    for place in random.integers(64, len(content), 1 + seed * 3):
+        content[place] = random.integers(0, 256)
+    path.write_bytes(content)
+    said, frames = "", 1
+    try:
+        frames = len(record_bag(path).poses)
+    except (BagError, VideoError) as error:
+        said = str(error)
+    assert 0 < frames <= len(recording.poses)
+    assert "\n" not in said
+
+
+def test_a_session_cut_short_or_without_keypoints_is_refused_in_one_line(
+    tmp_path: Path, recording: Recording
+) -> None:
+    path = tmp_path / "session.mcap"
+    write_bag(path, recording)
+    content = path.read_bytes()
+    path.write_bytes(content[: len(content) // 2])
+    with pytest.raises(BagError, match=r"session\.mcap is damaged or cut short"):
+        record_bag(path)
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(library="osg-studio 0.2.0")
+        writer.finish()  # type: ignore[no-untyped-call]
+    with pytest.raises(BagError, match="have no messages"):
+        record_bag(path)

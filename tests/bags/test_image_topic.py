@@ -270,3 +270,12 @@ def test_whatever_a_raw_picture_claims_it_is_read_or_refused(
     except BagError:
         return
     assert image.shape == (height, width, 3)
+
+
+def test_pictures_of_a_topic_are_turned_clockwise(tmp_path: Path) -> None:
+    rows: list[Row] = [("/camera", raw(picture(0), "rgb8", START), START)]
+    with open_bag(write_bag(tmp_path / "dive", rows)) as bag:
+        reader = BagFrames(bag, bag.topic(), turn=90)
+        (frame,) = reader
+    assert (reader.info.width, reader.info.height) == (48, 64)
+    assert np.array_equal(frame.image, np.rot90(picture(0), -1))

@@ -83,6 +83,8 @@ def test_a_million_entries_are_not_walked(tmp_path: Path, monkeypatch: pytest.Mo
         ({"metadata.yaml": b"x"}, "holds no dive recording"),
         ({"a/x.mcap": b"x", "b/x.mcap": b"x"}, "more than one dive recording"),
         ({"x.mcap": b"x", "y.mcap": b"x"}, "2 storage files and no metadata.yaml"),
+        ({"x_0.mcap": b"x", "x_2.mcap": b"x"}, "order is not known"),
+        ({"x_0.mcap": b"x", "y_1.mcap": b"x"}, "order is not known"),
     ],
 )
 def test_archives_of_something_else_are_refused(

@@ -87,6 +87,8 @@ def test_the_session_is_written_as_mcap(
     found = checked(session)
     assert [content["label"] for _, content in found["/recognitions"]] == ["line", "circle"]
     assert len(found["/video"]) == len(found["/pose"]) > 0
+    ended = osg_studio("recognize", session, "--language", language, "--json")
+    assert [take["label"] for take in json.loads(ended.out)["takes"]] == ["line", "circle"]
     left = {each.name for each in tmp_path.iterdir()}
     assert left == {"circle", "dive", "line", "session.mcap", "shapes.json"}
 

@@ -7,6 +7,7 @@ import pytest
 
 from app.evaluation.labelled_files import labelled_files
 from app.evaluation.labelled_takes import collect_takes
+from app.recognition import Recording
 from tests.command_line import OsgStudio
 from tests.recognition.damaged_clips import write_clip
 
@@ -53,3 +54,21 @@ def test_a_folder_without_clips_is_refused_in_one_line(
     assert ended.code == 2
     assert "holds no video" in ended.error
     assert ended.error.count("\n") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("installed_models")
+def test_clips_are_extracted_turned_and_kept_apart_from_those_that_are_not(
+    osg_studio: OsgStudio, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = tmp_path / "kept"
+    monkeypatch.setattr("app.cli.extract.recordings_dir", lambda: kept)
+    season = tmp_path / "season"
+    season.mkdir()
+    write_clip(season / "1.mp4", frames=3)
+    sizes = []
+    for turn in (0, 90):
+        ended = osg_studio("extract", season, "--workers", 1, "--turn", turn)
+        assert ended.code == 0, ended.error
+        sizes.append(Recording.load(ended.out.rstrip().split("\t")[1]).poses.frame_size)
+    assert sizes == [(64, 48), (48, 64)]

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.clip_sources import ReadOptions
 from app.evaluation.labelled_files import labelled_files
 from app.evaluation.labelled_takes import collect_takes
-from app.keypoint_files import KeypointOptions
 from app.recognition import Recording
 from app.recognition.poses.skeletons import BODY_25
 from tests.evaluation.takes import drawn_takes
@@ -51,7 +51,7 @@ def test_keypoint_files_are_takes_too_with_what_they_do_not_tell_given(tmp_path:
     (tmp_path / "circle").mkdir()
     write_openpose(tmp_path / "circle" / "dive 1", poses, BODY_25)
     files = labelled_files(tmp_path)
-    (take,) = collect_takes(files, keypoints=KeypointOptions(frame_rate=20)).takes
+    (take,) = collect_takes(files, options=ReadOptions(frame_rate=20)).takes
     assert (take.label, take.source) == ("circle", str(tmp_path / "circle" / "dive 1"))
     assert take.poses.duration == pytest.approx(19 / 20)
     (problem,) = collect_takes(files).problems.values()

@@ -26,6 +26,7 @@ from tests.keypoint_files.files import (
     write_numbered,
     write_rows,
 )
+from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import circle, recording
 
 POSES = recording(circle, frames=10, jitter=0.05)
@@ -367,3 +368,37 @@ def test_json_of_the_browser_s_mediapipe_is_read(tmp_path: Path) -> None:
     content = [{"poseLandmarks": frame} for frame in OBJECTS]
     (tmp_path / "pose.json").write_text(json.dumps(content))
     same(read_keypoints(tmp_path / "pose.json", OPTIONS).recording.poses)
+
+
+@pytest.mark.parametrize("named", ["left_hand_{}_{}", "LH_{}.{}", "{1}_hand_left_{0}"])
+def test_hands_of_a_table_are_read_and_show_a_salute(tmp_path: Path, named: str) -> None:
+    width, height = POSES.frame_size
+    fingers = hand_xy(salute()) / (width, height)
+    heads = [f"pose_{number}_{axis}" for number in range(33) for axis in ("x", "y", "visibility")]
+    heads += [named.format(number, axis) for number in range(21) for axis in "xy"]
+    body = [
+        [value for x, y in moment.tolist() for value in (x, y, 0.9)] for moment in fractions(POSES)
+    ]
+    rows = [
+        [*points, *(fingers.ravel().tolist() if index < 3 else [""] * 42)]
+        for index, points in enumerate(body)
+    ]
+    read = read_keypoints(write_rows(tmp_path / "pose.csv", [heads, *rows]), OPTIONS)
+    same(read.recording.poses)
+    assert read.has_hands
+    assert [len(hands) for hands in read.recording.hands] == [1] * 3 + [0] * (len(POSES) - 3)
+    assert read.recording.hands[0][0].side == "left"
+    assert (read.recording.salute > 0.5).tolist() == [True] * 3 + [False] * (len(POSES) - 3)
+    assert not any("left out" in warning for warning in read.recording.warnings)
+
+
+def test_columns_of_hands_that_are_never_seen_change_nothing(tmp_path: Path) -> None:
+    heads = [f"pose_{number}_{axis}" for number in range(33) for axis in "xy"]
+    heads += [
+        f"{side}_hand_{n}_{axis}" for side in ("left", "right") for n in range(21) for axis in "xy"
+    ]
+    rows = [[*moment.ravel().tolist(), *[""] * 84] for moment in fractions(POSES)]
+    read = read_keypoints(write_rows(tmp_path / "pose.csv", [heads, *rows]), OPTIONS)
+    same(read.recording.poses)
+    assert not read.has_hands
+    assert not any("left out" in warning for warning in read.recording.warnings)

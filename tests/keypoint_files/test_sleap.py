@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 
 from app.keypoint_files import KeypointOptions, read_keypoints
+from app.recognition import PoseSequence
 from app.recognition.errors import KeypointFileError
-from tests.keypoint_files.files import sleap_labels
+from tests.keypoint_files.files import sleap_labels, write_rows
 from tests.recognition.strategies import BODY, circle, recording
 
 POSES = recording(circle, frames=8, landmarks=tuple(BODY))
@@ -66,3 +67,64 @@ def test_without_the_library_the_extra_is_named(
     (tmp_path / "dive.slp").touch()
     with pytest.raises(KeypointFileError, match=r"pip install 'osg-studio\[keypoints\]'"):
         read_keypoints(tmp_path / "dive.slp", AT_30)
+
+
+def write_old_analysis(path: Path, people: list[PoseSequence]) -> Path:
+    """Write an analysis as SLEAP did before 1.1.4: no scores."""
+    h5py = importlib.import_module("h5py")
+    with h5py.File(path, "w") as file:
+        file["node_names"] = [name.encode() for name in people[0].landmarks]
+        file["track_names"] = [f"track_{number}".encode() for number in range(len(people))]
+        file["tracks"] = np.stack([each.xy.transpose(2, 1, 0) for each in people])
+        file["track_occupancy"] = np.ones((len(people[0]), len(people)))
+    return path
+
+
+@pytest.mark.usefixtures("library")
+def test_an_older_analysis_without_scores_is_read(tmp_path: Path) -> None:
+    read = read_keypoints(write_old_analysis(tmp_path / "dive.h5", [FAR, POSES]), AT_30)
+    np.testing.assert_allclose(read.recording.poses.xy, POSES.xy)
+    assert "of 2 people track 'track_1' stands out most and is followed" in read.recording.warnings
+    assert read.recording.people is not None
+    assert read.recording.people.tolist() == [2] * len(POSES)
+    strange = replace(POSES, landmarks=POSES.landmarks[:1], xy=POSES.xy[:, :1])
+    path = write_old_analysis(tmp_path / "strange.h5", [strange])
+    with importlib.import_module("h5py").File(path, "a") as file:
+        file["node_names"][:] = [b"nose"]
+        del file["tracks"]
+        file["tracks"] = np.zeros((1, 3, 1, 8))
+    with pytest.raises(KeypointFileError, match="cannot be read as SLEAP's"):
+        read_keypoints(path, AT_30)
+
+
+def analysis_rows(people: list[PoseSequence], name: str = "track_{}") -> list[list[object]]:
+    """Return SLEAP's analysis as a table: a row a frame and track."""
+    landmarks = people[0].landmarks
+    heads = [f"{each}.{axis}" for each in landmarks for axis in ("x", "y", "score")]
+    rows: list[list[object]] = [["track", "frame_idx", "instance.score", *heads]]
+    for frame in range(len(people[0])):
+        for number, each in enumerate(people):
+            points = np.column_stack([each.xy[frame], np.full(len(landmarks), 0.9)])
+            rows.append([name.format(number), frame, 0.9, *points.ravel().tolist()])
+    return rows
+
+
+def test_a_table_of_several_tracks_gives_the_most_prominent_one(tmp_path: Path) -> None:
+    rows = analysis_rows([FAR, POSES])
+    del rows[6]  # the second track in the third frame
+    read = read_keypoints(write_rows(tmp_path / "dive.csv", rows), AT_30)
+    poses = read.recording.poses
+    kept = [0, 1, *range(3, len(POSES))]
+    np.testing.assert_allclose(poses.xy[kept], POSES.xy[kept])
+    assert np.isnan(poses.xy[2]).all()
+    np.testing.assert_allclose(np.diff(poses.time), 1 / 30)
+    assert "of 2 people track 'track_1' stands out most and is followed" in read.recording.warnings
+    assert read.recording.people is not None
+    assert read.recording.people.tolist() == [2, 2, 1, *[2] * (len(POSES) - 3)]
+
+
+def test_a_table_of_people_without_names_is_refused_in_one_line(tmp_path: Path) -> None:
+    rows = analysis_rows([FAR, POSES], name="")
+    rows[-1][0] = "other"
+    with pytest.raises(KeypointFileError, match="two rows of nobody by name at one time"):
+        read_keypoints(write_rows(tmp_path / "dive.csv", rows), AT_30)

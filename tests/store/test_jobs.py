@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.store import ClipStore, Database, JobStatus, JobStore, NotFound, identity_of
+from app.store import Clip, ClipStore, Database, JobStatus, JobStore, NotFound, identity_of
 from app.store.jobs import MAX_ATTEMPTS
 from tests.store.conftest import add_clip
 
@@ -26,6 +26,21 @@ def test_a_job_that_completes_notes_frames_and_warnings(
     assert job.started is not None
     assert job.finished is not None
     assert clips.get(job.clip_id).clip.frames == 42
+
+
+@pytest.mark.parametrize(
+    ("measured", "kept"), [(None, 2.0), (2.3, 2.0), (6.7, 6.7), (1.2, 1.2), (0.0, 0.0)]
+)
+def test_a_stated_duration_that_is_wrong_is_replaced_by_the_measured_one(
+    database: Database, jobs: JobStore, job_id: str, measured: float | None, kept: float
+) -> None:
+    clip_id = jobs.get(job_id).clip_id
+    with database.writing() as session:
+        session.get_one(Clip, clip_id).duration = 2.0
+    assert jobs.start(job_id)
+    jobs.complete(job_id, 42, [], seconds=measured)
+    with database.reading() as session:
+        assert session.get_one(Clip, clip_id).duration == kept
 
 
 @pytest.mark.parametrize("status", [JobStatus.CANCELLED, JobStatus.FAILED])

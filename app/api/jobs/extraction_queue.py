@@ -20,7 +20,7 @@ from app.api.jobs.job import JobCancelled, JobRunner, Progress, Report, run_task
 from app.api.workers.tasks import Record
 from app.api.workers.worker_messages import Failed, Finished
 from app.api.workers.worker_processes import Workers
-from app.clip_sources import ReadOptions, source_named
+from app.clip_sources import ReadOptions
 from app.settings import Settings
 from app.store import (
     Clip,
@@ -33,7 +33,6 @@ from app.store import (
     StoreUnavailable,
 )
 from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
-from app.store.models import VIDEO
 
 RENEW_SECONDS = 10.0
 """Seconds between two renewals: a server may miss three before another one takes over its jobs."""
@@ -190,16 +189,18 @@ class ExtractionQueue:
         except NotFound:
             return None
         place = self._clips.place
+        for picture in (POSTER, FILMSTRIP):  # of an earlier job, before its pictures were turned
+            place(clip.id, picture).unlink(missing_ok=True)
         file = await persist(self._clips.received, clip)
         so_far = place(clip.id, SO_FAR)
         task = Record(
             source=clip.source,
             file=file,
-            known=await run_in_threadpool(self._find_known, file),
+            known=None if clip.turn else await run_in_threadpool(self._find_known, file),
             options=options_of(clip).model_copy(update={"water": self._settings.water}),
-            video=place(clip.id, VIDEO) if source_named(clip.source).makes_video else None,
+            video=place(clip.id, clip.video_name) if clip.video_is_made else None,
             recording=place(clip.id, RECORDING),
-            so_far=so_far,
+            so_far=None if clip.video_is_made else so_far,
             poster=place(clip.id, POSTER),
             filmstrip=place(clip.id, FILMSTRIP),
         )
@@ -207,9 +208,11 @@ class ExtractionQueue:
         so_far.unlink(missing_ok=True)
         try:
             match ended := await run_task(self._workers, task, report):
-                case Finished(frames=frames, warnings=warnings, salute_warnings=of_salutes):
+                case Finished() as found:
                     await persist(self._clips.keep_found, clip)
-                    await persist(self._jobs.complete, job.id, frames, warnings, of_salutes)
+                    warnings = found.warnings, found.salute_warnings
+                    complete = partial(self._jobs.complete, seconds=found.seconds)
+                    await persist(complete, job.id, found.frames, *warnings)
                 case Failed(code=code, detail=detail):
                     failed = partial(self._jobs.finish, code=code, error=detail)
                     await persist(failed, job.id, JobStatus.FAILED)

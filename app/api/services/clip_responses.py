@@ -21,6 +21,7 @@ def view_clip(found: ClipWithJob) -> ClipView:
     hidden = {"idempotency_key", "deleted", "topics", "source", "options"}
     return ClipView(
         **clip.model_dump(exclude=hidden),
+        turn=clip.turn,
         shows_pictures=shows_pictures(clip),
         topics=json.loads(clip.topics),
         status=JobStatus(job.status),

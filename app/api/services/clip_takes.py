@@ -72,7 +72,7 @@ def find_takes(
         takes = _spot(recording, state.revision.document)
     else:
         takes = _segment(recording, trigger)
-    return takes if recording.changed is None else tuple(take for take in takes if take.closed)
+    return takes if recording.whole else tuple(take for take in takes if take.closed)
 
 
 @lru_cache(CACHED_CLIPS)

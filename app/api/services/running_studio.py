@@ -99,19 +99,22 @@ Stored = TypeVar("Stored")
 
 @dataclass(frozen=True)
 class RecordingFile:
-    """File of a recording.
+    """File of a recording, as a key of caches.
 
     Attributes
     ----------
     path
         The file.
-    changed
-        For a recording so far, which is replaced now and then: nanoseconds of its last change.
+    written
+        Nanoseconds of its last change: a clip may be read again.
+    whole
+        Whether it has all frames; else the others are being read.
 
     """
 
     path: Path
-    changed: int | None = None
+    written: int
+    whole: bool = True
 
 
 @dataclass(frozen=True)
@@ -228,7 +231,7 @@ class Studio:
         if so_far and found.job.status == JobStatus.RUNNING:
             with suppress(OSError):
                 file = self.clips.place(clip_id, SO_FAR)
-                return RecordingFile(file, file.stat().st_mtime_ns)
+                return RecordingFile(file, file.stat().st_mtime_ns, whole=False)
         if found.job.status != JobStatus.DONE:
             reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
             raise ProblemError(
@@ -238,7 +241,7 @@ class Studio:
                 "wait for its job, or start it again",
                 job_id=found.job.id,
             )
-        return RecordingFile(self.clips.recording(clip_id))
+        return whole_recording(self.clips.recording(clip_id))
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""
@@ -254,6 +257,11 @@ class Studio:
 
         """
         return _recognizers.get(state.revision.document, profile)
+
+
+def whole_recording(path: Path) -> RecordingFile:
+    """Return the file of a recording with all frames, which `load_recording` finds missing."""
+    return RecordingFile(path, path.stat().st_mtime_ns if path.is_file() else 0)
 
 
 @lru_cache(CACHED_RECORDINGS)

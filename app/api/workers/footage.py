@@ -10,7 +10,7 @@ from pathlib import Path
 from app.api.workers.tasks import FindLandmarks
 from app.api.workers.worker_messages import Answered, Failed, Progressed
 from app.api.workers.worker_processes import Workers
-from app.clip_sources import source_of
+from app.clip_sources import ReadOptions, source_of
 from app.evaluation.kept_recordings import kept_recording
 from app.recognition.errors import OsgError
 
@@ -64,6 +64,8 @@ class Footage:
         Starts the processes.
     progress
         Called after every progress.
+    options
+        How they are read.
 
     """
 
@@ -73,10 +75,12 @@ class Footage:
         keep_in: Path,
         workers: Workers,
         progress: Callable[[FootageProgress], None],
+        options: ReadOptions | None = None,
     ) -> None:
         self._keep_in = keep_in
         self._workers = workers
         self._progress = progress
+        self._options = options or ReadOptions()
         self._sizes = {clip: clip.stat().st_size for clip in clips}
         self._read = dict.fromkeys(clips, 0)
         self._locks: dict[Path, asyncio.Lock] = {}
@@ -106,13 +110,18 @@ class Footage:
         return ended
 
     async def _find(self, clip: Path) -> Extracted:
-        recording = await asyncio.to_thread(kept_recording, clip, self._keep_in)
+        turn = self._options.turn
+        recording = await asyncio.to_thread(kept_recording, clip, self._keep_in, turn)
         # Two clips of the same content have one recording.
         async with self._locks.setdefault(recording, asyncio.Lock()):
             if recording.is_file():
                 return Extracted(clip, recording)
             task = FindLandmarks(
-                source=source_of(clip).name, file=clip, recording=recording, threads=THREADS
+                source=source_of(clip).name,
+                file=clip,
+                options=self._options,
+                recording=recording,
+                threads=THREADS,
             )
 
             async def hear(step: Progressed | Answered) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 import cv2
+import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter
 
 from app.api.workers.executor import TaskFiles
@@ -425,8 +426,15 @@ def _save(recorded: Recording, target: Path, report: Report) -> None:
     frames = len(recorded.poses)
     report(Progressed(stage="saving", done=frames, total=frames))
     recorded.save(target)
-    of_salutes = recorded.salute_warnings
-    report(Finished(frames=frames, warnings=recorded.warnings, salute_warnings=of_salutes))
+    time = recorded.poses.time
+    report(
+        Finished(
+            frames=frames,
+            seconds=float(time[-1] + np.median(np.diff(time))) if frames > 1 else None,
+            warnings=recorded.warnings,
+            salute_warnings=recorded.salute_warnings,
+        )
+    )
 
 
 def _recognize(

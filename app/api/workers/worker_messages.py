@@ -120,10 +120,14 @@ class Answered(_Said):
 
 
 class Finished(_Said):
-    """The work is done: files are on disk; `result` is what it found, if that is no file."""
+    """The work is done: files are on disk; `result` is what it found, if that is no file.
+
+    A clip that was read has `frames` over so many `seconds`, the last one included.
+    """
 
     kind: Literal["finished"] = "finished"
     frames: Count = 0
+    seconds: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
     warnings: tuple[Line, ...] = ()
     salute_warnings: tuple[Line, ...] = ()
     result: Any = None

@@ -22,12 +22,38 @@ from app.recognition.recording.hand_sides import place_hands
 from app.recognition.recording.people import People, keep_person, see_people
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import ENTER_SCORE
-from app.recognition.recording.video import FrameSource, VideoFrame, VideoInfo, read_frames
+from app.recognition.recording.video import (
+    FrameSource,
+    Turn,
+    VideoFrame,
+    VideoInfo,
+    read_frames,
+)
 from app.recognition.recording.video_limits import VideoLimits
 
 FEW_HANDS: Final = 0.25
 """Share of frames with a hand below which fingers cannot be told: a salute is held for half a
 second, and a hand found in every fourth frame is not seen to hold anything."""
+
+TURNED_SHARE: Final = 0.8
+"""Share of the frames with a body in which it must lie in one direction, to be called turned."""
+
+TURNED_DEGREES: Final = 35.0
+"""Farthest of a torso from a quarter turn: divers lean a little, whatever way up they are."""
+
+LEAST_TORSO: Final = 0.5
+"""Least length of a torso in shoulder widths: that of somebody who points at the camera is short,
+and its direction says nothing."""
+
+FEWEST_TURNED: Final = 10
+"""Fewest frames with a body from which it is told."""
+
+HEAD_POINTS: Final[dict[Turn, str]] = {
+    90: "lies on the side, the head to the left,",
+    180: "is upside down",
+    270: "lies on the side, the head to the right,",
+}
+"""How a diver is seen in a picture that must be turned by so much."""
 
 NOBODY: Final = FrameLandmarks(None, ())
 
@@ -58,6 +84,7 @@ def record(
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
     keep_so_far: KeepSoFar | None = None,
+    turn: Turn = 0,
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -81,6 +108,8 @@ def record(
         (`WaterSight`), always, or never.
     keep_so_far
         Called now and then with what is recorded until then.
+    turn
+        By how much the pictures are turned before anything is found in them.
 
     Raises
     ------
@@ -90,7 +119,7 @@ def record(
         When the default estimator's models are not installed.
 
     """
-    with read_frames(clip, limits) as reader:
+    with read_frames(clip, limits, turn) as reader:
         return record_frames(
             reader,
             estimator=estimator,
@@ -135,6 +164,34 @@ def extract_poses(
 ) -> PoseSequence:
     """Find the body in every frame of a clip; see `record`, which also keeps the hands."""
     return record(clip, estimator=estimator, progress=progress, water=water).poses
+
+
+def find_turn(poses: PoseSequence) -> Turn:
+    """Return by how much the picture must be turned for the person to stand upright in it.
+
+    0 where shoulders and hips do not lie sideways or upside down in nearly all frames.
+    """
+    if not {*_SHOULDERS, *_HIPS} <= set(poses.landmarks):
+        return 0
+    shoulders, hips = poses.select(_SHOULDERS).xy, poses.select(_HIPS).xy
+    up = shoulders.mean(axis=1) - hips.mean(axis=1)
+    width = np.hypot(*(shoulders[:, 0] - shoulders[:, 1]).T)
+    length = np.hypot(*up.T)
+    # The comparisons are False for NaN.
+    up = up[(length > 0) & (length >= LEAST_TORSO * width)]
+    if len(up) < FEWEST_TURNED:
+        return 0
+    # Clockwise in the picture, whose y points down, from upwards.
+    lean = np.degrees(np.arctan2(up[:, 0], -up[:, 1]))
+    for turn in HEAD_POINTS:
+        off = np.abs((lean + turn + 180) % 360 - 180)
+        if (off <= TURNED_DEGREES).mean() >= TURNED_SHARE:
+            return turn
+    return 0
+
+
+_SHOULDERS: Final = ("left_shoulder", "right_shoulder")
+_HIPS: Final = ("left_hip", "right_hip")
 
 
 def build_frame_sequence(
@@ -212,15 +269,17 @@ class _Collector:
                 moments[row] = self._build_moment(self._times[row], found)
                 kept_hands[row] = _sort_hands(found)
         hands = tuple(kept_hands)
+        poses = join_sequences(moments)
         missing = sum(place is None for place in choice.index)
         return Recording(
-            poses=join_sequences(moments),
+            poses=poses,
             hands=hands,
             salute=choice.salute,
             warnings=(
                 *warnings,
                 *choice.notes,
                 *self._warn_of_body(missing, several=bool(choice.notes)),
+                *_warn_of_turn(poses),
             ),
             people=choice.count,
             salute_warnings=self._warn_of_salutes(hands, choice.salute),
@@ -267,6 +326,15 @@ class _Collector:
         return (
             f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
             "salute with the palm or back of the hand towards the camera",
+        )
+
+
+def _warn_of_turn(poses: PoseSequence) -> Iterator[str]:
+    if turn := find_turn(poses):
+        yield (
+            f"the diver {HEAD_POINTS[turn]} in the picture, so gestures shown upright are not "
+            f"recognised; turn the picture by {turn} degrees clockwise (--turn {turn} on the "
+            "command line)"
         )
 
 

@@ -13,7 +13,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol
 
 import av
 import numpy as np
@@ -32,6 +32,7 @@ from app.recognition.recording.video_limits import VideoLimits
 __all__ = [
     "FrameReader",
     "FrameSource",
+    "Turn",
     "VideoFrame",
     "VideoInfo",
     "VideoLimits",
@@ -43,6 +44,9 @@ __all__ = [
 CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts")
 """Names of the FFmpeg demuxers that may open a clip: what phones, action and dive cameras, screen
 recorders and browsers write. None of them is a playlist."""
+
+Turn = Literal[0, 90, 180, 270]
+"""Degrees, clockwise, by which pictures are turned after what their container states."""
 
 ALPHA_BACKGROUND = 128
 """Grey, 0 to 255, behind transparent pixels: halfway, so that dark and bright divers stand out."""
@@ -71,8 +75,8 @@ class VideoInfo:
     frames
         Number of frames, or None when the container does not state it (Matroska never does).
     rotation
-        Degrees, counter-clockwise, by which the stored picture is turned to be upright:
-        0, 90, 180 or 270.
+        Degrees, counter-clockwise, by which the stored picture is turned to be upright, as the
+        container and the reader's `Turn` say: 0, 90, 180 or 270.
     codec
         FFmpeg's name of the video codec.
 
@@ -135,6 +139,8 @@ class FrameReader(Iterator[VideoFrame]):
         The file.
     limits
         Checked from the metadata when opened, and again for every decoded frame.
+    turn
+        By how much the pictures are turned, of a clip whose container does not say it.
 
     Attributes
     ----------
@@ -148,7 +154,7 @@ class FrameReader(Iterator[VideoFrame]):
 
     """
 
-    def __init__(self, path: str | Path, limits: VideoLimits | None = None) -> None:
+    def __init__(self, path: str | Path, limits: VideoLimits | None = None, turn: Turn = 0) -> None:
         self._path = Path(path)
         self._limits = limits or VideoLimits()
         self._count = 0
@@ -170,7 +176,7 @@ class FrameReader(Iterator[VideoFrame]):
                     f"{self._path.name}: no frame of its {_codec(self._stream)} video can be "
                     "read, the file is damaged or cut short; record or export it again"
                 )
-            self.info = _info(self._container, self._stream, self._first)
+            self.info = _info(self._container, self._stream, self._first, turn)
             self._limits.require_pixels(self.info.width, self.info.height)
         except BaseException as error:
             self.close()
@@ -281,7 +287,7 @@ class FrameReader(Iterator[VideoFrame]):
         return np.ascontiguousarray(np.rot90(image, self.info.rotation // 90))
 
 
-def probe(path: str | Path, limits: VideoLimits | None = None) -> VideoInfo:
+def probe(path: str | Path, limits: VideoLimits | None = None, turn: Turn = 0) -> VideoInfo:
     """Read a clip's metadata, and decode its first frame as a test.
 
     Raises
@@ -290,13 +296,13 @@ def probe(path: str | Path, limits: VideoLimits | None = None) -> VideoInfo:
         When the file is no video, holds no readable frame, or breaks a limit.
 
     """
-    with FrameReader(path, limits) as reader:
+    with FrameReader(path, limits, turn) as reader:
         return reader.info
 
 
-def read_frames(path: str | Path, limits: VideoLimits | None = None) -> FrameReader:
+def read_frames(path: str | Path, limits: VideoLimits | None = None, turn: Turn = 0) -> FrameReader:
     """Read a clip frame by frame; see `FrameReader`."""
-    return FrameReader(path, limits)
+    return FrameReader(path, limits, turn)
 
 
 def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
@@ -417,13 +423,15 @@ def _stated_seconds(container: InputContainer, stream: VideoStream) -> float | N
     return None if container.duration is None else container.duration / av.time_base
 
 
-def _info(container: InputContainer, stream: VideoStream, frame: DecodedFrame) -> VideoInfo:
+def _info(
+    container: InputContainer, stream: VideoStream, frame: DecodedFrame, turn: Turn
+) -> VideoInfo:
     width, height = frame.width, frame.height
     aspect = float(stream.sample_aspect_ratio or 1)
     # Anything beyond is a broken header: anamorphic video squeezes by two at most.
     if 0.25 <= aspect <= 4:
         width = max(1, round(width * aspect))
-    rotation = round(frame.rotation / 90) * 90 % 360
+    rotation = (round(frame.rotation / 90) * 90 - turn) % 360
     if rotation in (90, 270):
         width, height = height, width
     return VideoInfo(

@@ -29,7 +29,7 @@ from app.store.backup.checked_copy import copy_checked
 from app.store.backup.rows import copy_rows, snapshot
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
-from app.store.models import VIDEO, JobStatus, SignIn
+from app.store.models import UPRIGHT, VIDEO, JobStatus, SignIn
 from app.store.objects import ObjectStore, SharedFolder
 
 FORMAT = "osg-studio/backup"
@@ -319,7 +319,7 @@ def _files_by_clip(database: Path) -> dict[str, list[str]]:
             [JobStatus.DONE.value],
         ).fetchall()
     # The files of an unfinished job are left out: the job writes them again.
-    made = (VIDEO, RECORDING, POSTER, FILMSTRIP)
+    made = (VIDEO, *UPRIGHT.values(), RECORDING, POSTER, FILMSTRIP)
     return {
         clip_id: list(dict.fromkeys([source, *(made if done else ())]))
         for clip_id, source, done in rows
@@ -328,7 +328,8 @@ def _files_by_clip(database: Path) -> dict[str, list[str]]:
 
 def _add(archive: zipfile.ZipFile, name: str, path: Path) -> str | None:
     """Add a file and return its SHA-256; pictures may be missing, and are left out."""
-    if name.endswith((POSTER, FILMSTRIP, f"/{VIDEO}")) and not path.is_file():
+    optional = (POSTER, FILMSTRIP, *(f"/{each}" for each in (VIDEO, *UPRIGHT.values())))
+    if name.endswith(optional) and not path.is_file():
         return None
     with path.open("rb") as file, archive.open(name, "w", force_zip64=True) as packed:
         return _copy(file, packed)

@@ -95,11 +95,11 @@ const hasPoster = (clip) =>
  */
 function posterOf(clip, element) {
   const known = element?.querySelector(".poster:not(.blank)");
-  if (known) return known;
+  if (known?.getAttribute("src") === api.clips.poster(clip)) return known;
   if (!hasPoster(clip)) return h("div", { className: "poster blank" });
   const poster = h("img", {
     className: "poster",
-    src: api.clips.poster(clip.id),
+    src: api.clips.poster(clip),
     alt: "",
     loading: "lazy",
     width: 64,

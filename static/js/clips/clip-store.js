@@ -33,6 +33,13 @@ export const reloadClip = (id) =>
   });
 
 /**
+ * A key of what was read of a clip: another one once its pictures are turned.
+ *
+ * @param {Clip} clip
+ */
+export const versionOf = ({ id, turn }) => `${id} ${turn}`;
+
+/**
  * Show another clip; the clip on display keeps its take, range and recognition.
  *
  * @param {string | null} id

@@ -17,7 +17,7 @@ export function filmstrip(clip, { thumbnails }, width, height) {
   if (!thumbnails || !width) return null;
   const each = height * (clip.width / clip.height);
   const count = Math.max(1, Math.ceil(width / each));
-  const source = `url(${api.clips.filmstrip(clip.id)})`;
+  const source = `url(${api.clips.filmstrip(clip)})`;
   return h(
     "div",
     { className: "filmstrip", "aria-hidden": "true" },

@@ -147,7 +147,7 @@ export interface components {
             height: number;
             /**
              * Duration
-             * @description Seconds, where the container says
+             * @description Seconds, where the container says; once its poses are found, as measured
              */
             duration: number | null;
             /**
@@ -177,6 +177,11 @@ export interface components {
              * @description Whether its video shows the diver; else it shows the keypoints that came
              */
             shows_pictures: boolean;
+            /**
+             * Turn
+             * @description Degrees, clockwise, by which its pictures were turned
+             */
+            turn: number;
             /** Job Id */
             job_id: string;
             /**
@@ -2475,6 +2480,12 @@ export interface components {
              * @description How many the filmstrip has
              */
             thumbnails: number;
+            /**
+             * Turn
+             * @description Degrees, clockwise, by which the picture must be turned for the diver to be upright
+             * @enum {integer}
+             */
+            turn: 0 | 90 | 180 | 270;
         };
         /**
          * TopicChoice
@@ -2597,6 +2608,18 @@ export interface components {
              * @description Whether bad keypoints are repaired before they are looked at. Left out: as the profile does.
              */
             keypoints_repaired?: boolean | null;
+        };
+        /**
+         * TurnChoice
+         * @description By how much the pictures of a clip are to be turned.
+         */
+        TurnChoice: {
+            /**
+             * Degrees
+             * @description Clockwise, from how they are shown now
+             * @enum {integer}
+             */
+            degrees: 90 | 180 | 270;
         };
         /**
          * ViewRequest

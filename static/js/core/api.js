@@ -121,6 +121,15 @@ export const audit = {
   list: (query) => request("GET", `/audit?${new URLSearchParams(query)}`),
 };
 
+/**
+ * The address of a clip's pictures, another one once they are turned: browsers keep them.
+ *
+ * @param {Clip} clip
+ * @param {"video" | "poster" | "filmstrip"} which
+ */
+const picture = (clip, which) =>
+  `${BASE}/clips/${id(clip.id)}/${which}${clip.turn ? `?turned=${clip.turn}` : ""}`;
+
 export const clips = {
   /**
    * A page of the clips, newest first: those after a clip, those whose name contains `q`, those in
@@ -143,8 +152,8 @@ export const clips = {
   /** @type {(clip: string, by?: string | null, soFar?: boolean) => Promise<Timeline>} */
   timeline: (clip, by = null, soFar = false) =>
     request("GET", `/clips/${id(clip)}/timeline${triggered(by, soFar)}`),
-  /** @type {(clip: string) => string} */
-  filmstrip: (clip) => `${BASE}/clips/${id(clip)}/filmstrip`,
+  /** @type {(clip: Clip) => string} */
+  filmstrip: (clip) => picture(clip, "filmstrip"),
   /** @type {(clip: string) => Promise<Clip>} */
   get: (clip) => request("GET", `/clips/${id(clip)}`),
   /** @type {(clip: string) => Promise<Poses>} */
@@ -160,8 +169,10 @@ export const clips = {
   retry: (clip) => request("POST", `/clips/${id(clip)}/jobs`),
   /** @type {(clip: string, topic: string) => Promise<unknown>} */
   chooseTopic: (clip, topic) => request("POST", `/clips/${id(clip)}/topic`, { body: { topic } }),
-  /** @type {(clip: string) => string} */
-  poster: (clip) => `${BASE}/clips/${id(clip)}/poster`,
+  /** @type {(clip: string, degrees: 90 | 180 | 270) => Promise<ClipAccepted>} */
+  turn: (clip, degrees) => request("POST", `/clips/${id(clip)}/turn`, { body: { degrees } }),
+  /** @type {(clip: Clip) => string} */
+  poster: (clip) => picture(clip, "poster"),
   /**
    * Write a session on the server; its progress comes as events of that `name`.
    *
@@ -175,8 +186,8 @@ export const clips = {
    * @type {(clip: string, name: string) => string}
    */
   session: (clip, name) => `${BASE}/clips/${id(clip)}/session.mcap?export=${id(name)}`,
-  /** @type {(clip: string) => string} */
-  video: (clip) => `${BASE}/clips/${id(clip)}/video`,
+  /** @type {(clip: Clip) => string} */
+  video: (clip) => picture(clip, "video"),
 };
 
 export const jobs = {

@@ -309,12 +309,12 @@ export function take({ language, gesture, drawn, pick }) {
     source = loaded;
     const { id } = source;
     element.classList.remove("bare");
-    picture.show(source.poses, id);
+    const clip = state.clips.find((each) => each.id === id);
+    picture.show(source.poses, clip ?? null);
     scrub.max = String(source.poses.time.length - 1);
     strip.querySelector(".filmstrip")?.remove();
     draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
     go(span()[0]);
-    const clip = state.clips.find((each) => each.id === id);
     if (clip && source.id && strip.clientWidth)
       strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
   }

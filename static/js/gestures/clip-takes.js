@@ -1,19 +1,20 @@
 // The takes of the library's clips, for making gestures: loaded a few clips at a time.
 
 import { takesLanguage } from "../clips/salutes.js";
+import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { triggerKey } from "../languages/language-trigger.js";
 
-/** @import { Take } from "../core/types.d.ts" */
+/** @import { Clip, Take } from "../core/types.d.ts" */
 
 const AT_ONCE = 4; // A library has hundreds of clips; other requests must not wait.
 
 /** @type {Map<string, Take[]>} */
 export const takesByClip = new Map(); // they change with the language's trigger alone
 /** @type {Set<string>} */
-const asked = new Set();
+const asked = new Set(); // by `versionOf` the clip
 /** @type {Set<string>} */
 const failed = new Set();
 let foundBy = ""; // the trigger by which they were found
@@ -40,10 +41,10 @@ export function loadTakesOfClips(wanted, found) {
     failed.clear();
   }
   const by = takesLanguage(state.gestures);
-  for (const { id, status } of state.clips) {
+  for (const clip of state.clips) {
     if (loading === AT_ONCE || !wanted()) return;
-    if (status !== "done" || asked.has(id)) continue;
-    loadOne(id, by, key).then((away) => {
+    if (clip.status !== "done" || asked.has(versionOf(clip))) continue;
+    loadOne(clip, by, key).then((away) => {
       found();
       if (!away) loadTakesOfClips(wanted, found);
     });
@@ -53,24 +54,25 @@ export function loadTakesOfClips(wanted, found) {
 /**
  * Load the takes of one clip; an answer for a former trigger is dropped.
  *
- * @param {string} id
+ * @param {Clip} clip
  * @param {string | null} by  the language whose trigger it is
  * @param {string} key  of that trigger
  * @returns {Promise<boolean>} whether the server is away, which does not count as a failure of this
  * clip
  */
-async function loadOne(id, by, key) {
-  asked.add(id);
+async function loadOne(clip, by, key) {
+  const asking = versionOf(clip);
+  asked.add(asking);
   loading += 1;
   try {
-    const list = await api.clips.takes(id, by);
-    if (foundBy === key) takesByClip.set(id, list);
+    const list = await api.clips.takes(clip.id, by);
+    if (foundBy === key) takesByClip.set(clip.id, list);
     return false;
   } catch (error) {
     const away = api.isAway(error);
     if (foundBy === key) {
-      if (away) asked.delete(id);
-      else failed.add(id);
+      if (away) asked.delete(asking);
+      else failed.add(asking);
     }
     if (!away) complain(error, "Loading the takes");
     return away;

@@ -104,7 +104,7 @@ function makeRow(row) {
     box,
     h("img", {
       className: "poster",
-      src: api.clips.poster(clip.id),
+      src: api.clips.poster(clip),
       alt: "",
       loading: "lazy",
       width: 64,

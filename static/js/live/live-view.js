@@ -166,7 +166,7 @@ function listening({ language, gestures, problem: trouble }) {
 }
 
 async function showSource() {
-  if (fromClip()) await showClip(video(), api.clips.video(chosenClip().id));
+  if (fromClip()) await showClip(video(), api.clips.video(chosenClip()));
   else await showCamera(video(), byId("live-cameras").value, () => lost(cameraLost(INSTEAD)));
   mirror(byId("live-picture"), video());
   drawing?.remove();

@@ -1,6 +1,7 @@
 // The picture of the clip: flat or as a space-time cube by viser, or drawn by the page itself.
 
 import { figure } from "./pose-picture.js";
+import { versionOf } from "../clips/clip-store.js";
 import { byId, h, svg } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
@@ -8,7 +9,7 @@ import { isReadable, selectedClip, selectedRange, state } from "../core/state.js
 import { posesOf } from "./tracks.js";
 import { movingWrists, strokeOver } from "./wrist-motion.js";
 
-/** @import { Poses, State } from "../core/types.d.ts" */
+/** @import { Clip, Poses, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
@@ -113,22 +114,22 @@ export function drawByViser() {
   draw();
 }
 
-/** @param {string} clip whose picture is built, unless another one is wanted by then */
+/** @param {Clip} clip whose picture is built, unless another one is wanted by then */
 async function build(clip) {
-  const poses = await posesOf(clip);
-  if (!poses || state.clip !== clip || shown?.clip === clip) return;
+  const [poses, wanted] = [await posesOf(clip), versionOf(clip)];
+  if (!poses || state.clip !== clip.id || shown?.clip === wanted) return;
   const picture = figure(() => {});
   picture.show(poses, clip);
   byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
-  shown = { clip, poses, picture };
+  shown = { clip: wanted, poses, picture };
 }
 
 /** Draw the frame on display, where the page draws it. */
 export async function drawFlat() {
   const clip = selectedClip();
   if (!own || clip?.status !== "done") return;
-  if (shown?.clip !== clip.id) await build(clip.id);
-  if (shown?.clip !== clip.id) return;
+  if (shown?.clip !== versionOf(clip)) await build(clip);
+  if (shown?.clip !== versionOf(clip)) return;
   const { poses, picture } = shown;
   const range = selectedRange()?.shown ?? [0, poses.time.at(-1) ?? 0];
   /** @type {[number, number]} */
@@ -142,11 +143,12 @@ export async function drawFlat() {
  *
  * @param {State} state
  */
-export async function drawStroke({ why, result, clip }) {
+export async function drawStroke({ why, result }) {
   const box = byId("stroke-over");
   box.hidden = true;
-  if (!why || result?.id !== why.id || result.clip_id !== clip) return;
-  if (selectedClip()?.status !== "done") return; // The poses so far are not given.
+  const clip = selectedClip();
+  if (!why || result?.id !== why.id || result.clip_id !== clip?.id) return;
+  if (clip.status !== "done") return; // The poses so far are not given.
   const label = result.expected ?? result.nearest;
   const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
   const poses = alignment && (await posesOf(clip));

@@ -6,7 +6,7 @@ import { readable } from "../core/format.js";
 import { firstMoment, insideFrame } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 
-/** @import { Poses } from "../core/types.d.ts" */
+/** @import { Clip, Poses } from "../core/types.d.ts" */
 
 /** @typedef {{ poses: Poses, body: SVGSVGElement, trails: SVGGElement, circles: SVGCircleElement[] }} Content */
 
@@ -48,7 +48,7 @@ export function figure(onPick) {
 
   /**
    * @param {Poses} poses
-   * @param {string | null} clip
+   * @param {Clip | null} clip
    */
   function show(poses, clip) {
     const [width, height] = poses.frame_size;

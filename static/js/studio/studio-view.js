@@ -1,8 +1,9 @@
 // The studio view: the clip on display, its takes, and the outcome of its recognition.
 
 import { listWarnings, takesLanguage } from "../clips/salutes.js";
+import { reloadClip } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { askWhich, percent } from "../core/format.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
@@ -74,7 +75,7 @@ export function showSelection() {
   if (state.take === null && state.start === null) delete view.start;
   if (state.take === null && state.end === null) delete view.end;
   if (state.recognition) view.recognition_id = state.recognition;
-  const text = JSON.stringify(view);
+  const text = JSON.stringify([view, clip.turn]);
   if (text === shownView) return;
   viewTimer = setTimeout(
     () => {
@@ -239,6 +240,31 @@ export function drawOutcome({ result }) {
   );
 }
 
+/**
+ * The button that turns the pictures of a clip, or back those that were turned; null without need.
+ *
+ * @param {Clip} clip
+ */
+function turnNote(clip) {
+  const advised = state.timeline?.turn;
+  const degrees = /** @type {0 | 90 | 180 | 270} */ (advised || (360 - clip.turn) % 360);
+  if (!degrees) return null;
+  const turn = async () => {
+    await attempt("Turning the picture", () => api.clips.turn(clip.id, degrees));
+    await reloadClip(clip.id);
+  };
+  return h(
+    "li",
+    {},
+    advised ? "" : `The picture was turned by ${clip.turn}\u00b0. `,
+    h(
+      "button",
+      { type: "button", id: "turn-picture", className: "link", ...WRITES, onclick: turn },
+      advised ? `Turn the picture by ${degrees}\u00b0` : "Turn it back",
+    ),
+  );
+}
+
 /** Draw the bar above the frame. */
 export function drawStage() {
   const clip = selectedClip();
@@ -259,6 +285,7 @@ export function drawStage() {
   byId("save-gesture").disabled = !done || !state.takes;
   byId("clip-warnings").replaceChildren(
     ...listWarnings(clip, state.gestures).map((warning) => h("li", {}, warning)),
+    ...(done ? [turnNote(clip)] : []).filter((each) => each !== null),
   );
   byId("range-text").replaceChildren();
   drawTimeline();

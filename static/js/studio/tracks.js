@@ -1,6 +1,7 @@
 // The tracks of the wrists under the timeline's curves, in the flat view as beside the cube.
 
 import { nearestFrame } from "../clips/frame-times.js";
+import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
@@ -9,7 +10,7 @@ import { attempt } from "../core/toasts.js";
 import { linePath } from "./timeline-curves.js";
 import { movingWrists, tracksOf } from "./wrist-motion.js";
 
-/** @import { Poses } from "../core/types.d.ts" */
+/** @import { Clip, Poses } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.tracks"; // localStorage: whether the tracks were shown last.
 
@@ -44,10 +45,14 @@ export function toggleTracks() {
   drawTracks();
 }
 
-/** @param {string} clip whose poses are loaded once */
+/** @param {Clip} clip whose poses are loaded once */
 export function posesOf(clip) {
-  if (loaded?.clip !== clip)
-    loaded = { clip, poses: attempt("Loading the poses", () => api.clips.poses(clip)) };
+  const wanted = versionOf(clip);
+  if (loaded?.clip !== wanted)
+    loaded = {
+      clip: wanted,
+      poses: attempt("Loading the poses", () => api.clips.poses(clip.id)),
+    };
   return loaded.poses;
 }
 
@@ -87,7 +92,7 @@ export async function drawTracks() {
   box.hidden = !open;
   if (!open || clip?.status !== "done" || !state.timeline) return;
   const range = selectedRange()?.shown ?? [0, 0];
-  const poses = await posesOf(clip.id);
+  const poses = await posesOf(clip);
   if (!poses || !box.isConnected) return;
   const wrists = movingWrists(poses, [
     nearestFrame(poses.time, range[0]),

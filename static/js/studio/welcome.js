@@ -183,16 +183,17 @@ const noClip = () =>
  * @param {Clip} clip
  */
 function progressPanel(clip) {
-  // The video of a dive recording is made while its poses are found.
-  const video = clip.topics.length
-    ? null
-    : h("video", {
-        src: api.clips.video(clip.id),
-        muted: true,
-        playsInline: true,
-        preload: "auto",
-        "aria-hidden": "true",
-      });
+  // The video of a dive recording, or of turned pictures, is made while its poses are found.
+  const video =
+    clip.topics.length || clip.turn
+      ? null
+      : h("video", {
+          src: api.clips.video(clip),
+          muted: true,
+          playsInline: true,
+          preload: "auto",
+          "aria-hidden": "true",
+        });
   if (video)
     firstMoment(video).then((start) => {
       video.dataset.start = String(start);
@@ -225,7 +226,7 @@ function showPose(panel, clip, { time, pose }) {
     video &&
     !video.error &&
     (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
-  if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip.id), alt: "" }));
+  if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip), alt: "" }));
   const skeletonDrawing = /** @type {SVGSVGElement} */ (panel.querySelector(".skeleton"));
   if (!playable || time === null) return drawPose(skeletonDrawing, pose);
   if (!video.dataset.start) return undefined;

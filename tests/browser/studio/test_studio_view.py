@@ -269,3 +269,25 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     trial.get_by_role("button", name="Keep").click()
     expect(page.locator("#tuning")).to_be_visible()
     assert library.client.get(language).json()["tuning"]["weights"] == {"velocity": 0.0}
+
+
+def test_one_click_turns_the_picture_of_a_diver_who_lies_on_the_side(
+    open_page: OpenPage, server: Running, tmp_path: Path
+) -> None:
+    recording = recording_of("circle")
+    upright = recording.poses
+    width, height = upright.frame_size
+    lying = np.stack([upright.xy[..., 1], width - upright.xy[..., 0]], axis=-1)
+    poses = replace(upright, xy=lying, frame_size=(height, width))
+    clip = add_clip(server, name="lying.mp4", recording=replace(recording, poses=poses))
+    page = open_page({"clip": clip}, scene=False)
+    button = page.get_by_role("button", name="Turn the picture by 90°")
+    with page.expect_response(lambda answer: answer.url.endswith(f"/{clip}/turn")) as answered:
+        button.click()
+    assert answered.value.status == 202
+    expect(page.locator("#clips .chosen .clip-open")).to_have_attribute(
+        "title", f"lying.mp4, {width} \u00d7 {height} pixels"
+    )
+    expect(page.locator("#clip-warnings")).to_contain_text("was turned by 90°", timeout=60_000)
+    expect(page.get_by_role("button", name="Turn it back")).to_be_visible()
+    expect(button).to_have_count(0)

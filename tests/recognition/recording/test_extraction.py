@@ -1,5 +1,7 @@
 """From a clip to a recording: every frame counted, nothing invented, cancelled at once."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -11,7 +13,12 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.extraction import FIRST_SECONDS, extract_poses, record
+from app.recognition.recording.extraction import (
+    FIRST_SECONDS,
+    extract_poses,
+    find_turn,
+    record,
+)
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.recording.video import VideoFrame
@@ -295,3 +302,42 @@ def test_a_real_diver_is_followed_in_every_frame(shared_data: Path) -> None:
     assert recording.poses.duration == pytest.approx(6.0, abs=0.01)
     assert recording.poses.seen.all(axis=1).mean() > 0.9
     assert takes_in(recording) == ()
+
+
+@pytest.mark.parametrize("turn", [0, 90, 180, 270])
+@pytest.mark.parametrize("lean", [-25, 0, 25])
+def test_a_diver_sideways_or_upside_down_is_told_from_shoulders_and_hips(
+    sample_recording: Callable[[str], Recording], turn: int, lean: int
+) -> None:
+    poses = sample_recording("line-test-1").poses
+    # The picture was turned counter-clockwise, as that of a camera held another way.
+    angle = np.radians(lean - turn)
+    turned = poses.xy @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    assert find_turn(replace(poses, xy=turned)) == turn
+
+
+def test_who_points_at_the_camera_or_turns_about_is_not_called_sideways(
+    sample_recording: Callable[[str], Recording],
+) -> None:
+    poses = sample_recording("line-test-1").poses
+    lying = poses.xy[..., ::-1]
+    half = np.where(np.arange(len(poses))[:, None, None] % 2, lying, poses.xy)
+    assert find_turn(replace(poses, xy=half)) == 0
+    assert find_turn(replace(poses, xy=lying * [0.1, 1.0])) == 0
+    assert find_turn(replace(poses, xy=np.full_like(poses.xy, np.nan))) == 0
+
+
+def test_a_clip_of_a_diver_on_the_side_says_how_to_turn_it(tmp_path: Path) -> None:
+    class Lying(ScriptedEstimator):
+        def estimate(self, image: Image, time: float) -> FrameLandmarks:
+            found = super().estimate(image, time)
+            assert found.body is not None
+            found.body.xy[[POSE_LANDMARKS.index(f"{side}_hip") for side in ("left", "right")]] = 50
+            found.body.xy[[POSE_LANDMARKS.index("left_hip")], 1] = 10
+            found.body.xy[[POSE_LANDMARKS.index("right_hip")], 1] = 20
+            return found
+
+    clip = write_clip(tmp_path / "clip.mp4")
+    (warning, *_) = record(clip, estimator=Lying()).warnings
+    assert "the head to the left" in warning
+    assert "--turn 90" in warning

@@ -18,6 +18,7 @@ from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.video import (
     FrameReader,
+    Turn,
     VideoFrame,
     VideoLimits,
     over_background,
@@ -143,6 +144,23 @@ def test_pictures_come_upright(tmp_path: Path, rotation: int, red_corner: tuple[
     assert (info.width < info.height) == (rotation % 180 == 90)
     corners = [(row, column) for row in (2, -3) for column in (2, -3)]
     assert [corner for corner in corners if is_red(image, *corner)] == [red_corner]
+
+
+@pytest.mark.parametrize("rotation", [0, 90])
+@pytest.mark.parametrize(("turn", "red_corner"), [(90, (2, -3)), (180, (-3, -3)), (270, (-3, 2))])
+def test_pictures_are_turned_clockwise_after_what_the_file_states(
+    tmp_path: Path, turn: Turn, red_corner: tuple[int, int], rotation: int
+) -> None:
+    clip = write_clip(tmp_path / "clip.mp4", rotation=rotation)
+    before, info = probe(clip), probe(clip, turn=turn)
+    assert ((info.width, info.height) == (before.height, before.width)) == (turn != 180)
+    with read_frames(clip, turn=turn) as frames:
+        image = next(frames).image
+    assert image.shape == (info.height, info.width, 3)
+    with read_frames(clip) as frames:
+        upright = next(frames).image
+    assert np.array_equal(image, np.rot90(upright, -turn // 90))
+    assert rotation or is_red(image, *red_corner)
 
 
 def test_pixels_that_are_not_square_are_stretched(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -32,7 +32,9 @@ class ClipView(BaseModel):
     )
     width: int = Field(description="Pixels of the upright picture")
     height: int
-    duration: float | None = Field(description="Seconds, where the container says")
+    duration: float | None = Field(
+        description="Seconds, where the container says; once its poses are found, as measured"
+    )
     frames: int | None = Field(description="Frames decoded; before that, as the container says")
     size: int = Field(description="Bytes")
     media_type: str
@@ -45,6 +47,7 @@ class ClipView(BaseModel):
     shows_pictures: bool = Field(
         description="Whether its video shows the diver; else it shows the keypoints that came"
     )
+    turn: int = Field(description="Degrees, clockwise, by which its pictures were turned")
     job_id: str
     created: datetime
 
@@ -55,6 +58,14 @@ class TopicChoice(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     topic: Annotated[str, Field(min_length=1, max_length=255)]
+
+
+class TurnChoice(BaseModel):
+    """By how much the pictures of a clip are to be turned."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    degrees: Literal[90, 180, 270] = Field(description="Clockwise, from how they are shown now")
 
 
 class PosesView(BaseModel):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import filecmp
 import json
+from functools import partial
 from typing import Annotated
 
 import numpy as np
@@ -14,17 +15,25 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.ranges import keep_single_range
-from app.api.http.schemas.clips import ClipAccepted, ClipView, PosesView, TakeView, TopicChoice
+from app.api.http.schemas.clips import (
+    ClipAccepted,
+    ClipView,
+    PosesView,
+    TakeView,
+    TopicChoice,
+    TurnChoice,
+)
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
-from app.api.services.clip_responses import view_clip
+from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
+from app.clip_sources.source import MADE_VIDEO
 from app.recognition.poses.sequence import PoseSequence
-from app.store import ClipWithJob, JobStatus
+from app.store import ClipWithJob, Job, JobStatus
 
 PIXEL_DIGITS = 2
 """Decimals of a coordinate: no pose model resolves a hundredth of a pixel."""
@@ -175,14 +184,46 @@ async def choose_topic(
     return await _another_job(request, clip_id, studio)
 
 
+@router.post("/{clip_id}/turn", status_code=202, responses=problem_responses(404, 409, 429))
+async def turn_clip(
+    request: Request, clip_id: str, choice: TurnChoice, studio: CurrentStudio
+) -> ClipAccepted:
+    """Turn the pictures of a clip whose camera was held another way, and extract its poses anew.
+
+    What was recognised in the clip before stays as it is.
+    """
+    found = await run_in_threadpool(studio.clips.get, clip_id)
+    if found.job.status != JobStatus.DONE:
+        raise ProblemError(409, "clip_not_ready", "wait until the poses of this clip are found")
+    if not shows_pictures(found.clip):
+        detail = "this clip holds keypoints and no pictures; turn them where they were made"
+        raise ProblemError(409, "no_pictures", detail)
+    await require_place_in_queue(request, studio)
+    # The job is stored first, because of two who turn at the same time only one may.
+    job = await _queue_again(request, clip_id, studio, anew=True)
+    await run_in_threadpool(studio.clips.turn, clip_id, choice.degrees)
+    return await _submit(job, studio)
+
+
 async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAccepted:
-    job = await run_in_threadpool(studio.jobs.retry, clip_id, client_of(request))
+    return await _submit(await _queue_again(request, clip_id, studio), studio)
+
+
+async def _queue_again(
+    request: Request, clip_id: str, studio: Studio, *, anew: bool = False
+) -> Job:
+    retry = partial(studio.jobs.retry, clip_id, client_of(request), anew=anew)
+    job = await run_in_threadpool(retry)
     if job is None:
         detail = "the poses of this clip are extracted, or are being extracted, already"
         raise ProblemError(409, "job_not_needed", detail)
+    return job
+
+
+async def _submit(job: Job, studio: Studio) -> ClipAccepted:
     await studio.extractions.submit(job)
-    studio.broadcast.publish("clips", id=clip_id)
-    return ClipAccepted(id=clip_id, job_id=job.id)
+    studio.broadcast.publish("clips", id=job.clip_id)
+    return ClipAccepted(id=job.clip_id, job_id=job.id)
 
 
 @router.get(
@@ -207,7 +248,7 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
     keep_single_range(request, video.stat().st_size if clip.video_is_made else clip.size)
     return FileResponse(
         video,
-        media_type=clip.media_type,
+        media_type=MADE_VIDEO if clip.video_is_made else clip.media_type,
         filename=f"{clip.name}.mp4" if clip.video_is_made else clip.name,
         content_disposition_type="inline",
         headers={"Cache-Control": "private, max-age=3600"},

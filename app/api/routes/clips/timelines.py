@@ -12,12 +12,15 @@ from pydantic import BaseModel, Field
 from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.values import SoFar, TriggerLanguage
+from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import trigger_of
 from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.api.workers.pictures import thumbnails_in
 from app.recognition import PoseError, Recording
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.recording.extraction import find_turn
+from app.recognition.recording.video import Turn
 
 router = APIRouter(prefix="/clips", tags=["clips"])
 
@@ -42,6 +45,10 @@ class TimelineView(BaseModel):
     )
     unit: str = Field(description="Of the speed's lengths: torso_length, or extent without a torso")
     thumbnails: int = Field(description="How many the filmstrip has")
+    turn: Turn = Field(
+        description="Degrees, clockwise, by which the picture must be turned for the diver to be "
+        "upright"
+    )
 
 
 @router.get(
@@ -66,6 +73,7 @@ def get_timeline(
         "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
         "unit": unit,
         "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,
+        "turn": find_turn(recording.poses) if shows_pictures(studio.clips.get(clip_id).clip) else 0,
     }
     return Response(json.dumps(content, allow_nan=False), media_type="application/json")
 

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
+from app.recognition.recording.video import probe
 from app.settings import Limits, Settings
 from app.store import Clip
 from tests.api.recordings import add_recorded_clip, recording_of
@@ -53,6 +54,17 @@ def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: 
     poster = client.get(f"{CLIPS}/{clip_id}/poster")
     assert poster.headers["content-type"] == "image/jpeg"
     assert poster.content[:2] == b"\xff\xd8"
+
+
+@pytest.mark.usefixtures("installed_models")
+def test_a_duration_that_a_browser_did_not_write_is_measured(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    clip = write_clip(tmp_path / "dive.webm", codec="libvpx", options={"live": "1"})
+    clip_id = upload(client, clip, "dive.webm").json()["id"]
+    assert client.get(f"{CLIPS}/{clip_id}").json()["duration"] is None
+    until(lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "done")
+    assert client.get(f"{CLIPS}/{clip_id}").json()["duration"] == pytest.approx(12 / 25)
 
 
 @pytest.mark.withstands(row="H25")
@@ -241,3 +253,37 @@ def test_takes_give_seconds_of_salutes_and_stroke(client: httpx.Client, studio: 
 def test_an_id_that_names_nothing_is_404(client: httpx.Client, clip_id: str) -> None:
     assert_problem(client.get(f"{CLIPS}/{clip_id}"), 404, "not_found")
     assert_problem(client.delete(f"{CLIPS}/{clip_id}"), 404, "not_found")
+
+
+@pytest.mark.usefixtures("installed_models")
+def test_a_turned_clip_is_read_again_and_shown_upright(
+    client: httpx.Client, small_clip: Path, studio: Studio, tmp_path: Path
+) -> None:
+    clip_id = upload(client, small_clip).json()["id"]
+    turn = f"{CLIPS}/{clip_id}/turn"
+    done = lambda: client.get(f"{CLIPS}/{clip_id}").json()["status"] == "done"  # noqa: E731
+    until(done)
+    assert client.get(f"{CLIPS}/{clip_id}/poses").json()["frame_size"] == [64, 48]
+    assert client.post(turn, json={"degrees": 45}).status_code == 422
+    assert client.post(turn, json={"degrees": 90}).status_code == 202
+    until(done)
+    clip = client.get(f"{CLIPS}/{clip_id}").json()
+    assert (clip["width"], clip["height"], clip["turn"]) == (48, 64, 90)
+    assert client.get(f"{CLIPS}/{clip_id}/poses").json()["frame_size"] == [48, 64]
+    video = client.get(f"{CLIPS}/{clip_id}/video")
+    assert video.headers["content-type"] == "video/mp4"
+    shown = tmp_path / "shown"
+    shown.write_bytes(video.content)
+    assert (probe(shown).width, probe(shown).height, probe(shown).frames) == (48, 64, 12)
+    # The received file stays, and turning the picture back shows it again.
+    assert client.post(turn, json={"degrees": 270}).status_code == 202
+    until(done)
+    assert client.get(f"{CLIPS}/{clip_id}").json()["turn"] == 0
+    assert client.get(f"{CLIPS}/{clip_id}/video").content == small_clip.read_bytes()
+
+
+def test_only_pictures_that_were_read_can_be_turned(client: httpx.Client, small_clip: Path) -> None:
+    clip_id = upload(client, small_clip).json()["id"]
+    refused = client.post(f"{CLIPS}/{clip_id}/turn", json={"degrees": 90})
+    assert_problem(refused, 409, "clip_not_ready")
+    assert_problem(client.post(f"{CLIPS}/none/turn", json={"degrees": 90}), 404, "not_found")
