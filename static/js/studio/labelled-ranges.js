@@ -13,7 +13,8 @@ import { addToTestSet } from "../languages/test-set.js";
 const KEY = "osg-studio.ranges"; // sessionStorage: they survive a reload.
 const ASKS = "What this range shows";
 
-const field = h("input", { placeholder: ASKS, "aria-label": ASKS, autocomplete: "off" });
+const names = { placeholder: ASKS, "aria-label": ASKS };
+const field = h("input", { type: "text", autocomplete: "off", ...names });
 const form = h("form", { className: "joined" }, field, h("button", {}, "Add range"));
 const send = h("button", WRITES);
 
@@ -105,5 +106,5 @@ export function drawRanges({ takes, take, start, end, timeline }) {
   send.hidden = !here().length;
   send.textContent = areTests()
     ? `Keep ${plural(here().length, "range")} as tests`
-    : `Save ${plural(here().length, "range")} as gestures`;
+    : `Save ${plural(here().length, "gesture")}`;
 }

@@ -160,7 +160,7 @@ def test_ranges_are_labelled_while_the_clip_plays_and_saved_together(
     expect(label).to_have_value("wave")
     label.fill("hello")
     add.click()
-    page.get_by_role("button", name="Save 2 ranges as gestures").click()
+    page.get_by_role("button", name="Save 2 gestures").click()
     cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
     expect(cards).to_have_count(4)
     expect(bars).to_have_count(0)
