@@ -102,7 +102,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     expect(drawn.get_by_role("img", name="The right wrist in this take")).to_be_visible()
     # The explanation of the trial arrives only after the trial was discarded.
     held: list[Route] = []
-    page.route("**/explanation", lambda route: held.append(route))
+    page.route("**/explanation?*", lambda route: held.append(route))
     page.get_by_label(re.compile("^Weight of velocity:")).select_option("2")
     trial = why.get_by_role("status")
     expect(trial).to_contain_text("with 2 times the weight on the voter velocity")
@@ -110,7 +110,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     expect(page.locator("#outcome")).to_contain_text("Recognised as circle, expected line")
     while not held:
         page.wait_for_timeout(10)
-    with page.expect_response("**/explanation") as told:
+    with page.expect_response("**/explanation?*") as told:
         held[0].continue_()
     told.value.finished()
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
