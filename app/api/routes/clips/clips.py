@@ -79,9 +79,9 @@ async def upload_clip(
 ) -> ClipAccepted:
     """Store a clip and queue the extraction of its poses.
 
-    Another program's keypoint file is taken too (CSV, JSON, SLEAP, OpenPose's folder as zip); its
-    video is the skeleton, drawn. What the file lacks is refused as `frame_rate_needed` or
-    `frame_size_needed`.
+    Another program's keypoint file is taken too (CSV, JSON, SLEAP, .pose, OpenPose's folder as
+    zip); its video is the skeleton, drawn. What the file lacks is refused as `frame_rate_needed`
+    or `frame_size_needed`.
 
     A dive recording (rosbag2) is taken too: of the topic named, or of the only one that can be
     used. Where there are several, the job fails with the code `topic_needed` and the clip lists
