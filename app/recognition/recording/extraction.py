@@ -313,8 +313,7 @@ def _warn_of_turn(poses: PoseSequence) -> Iterator[str]:
     if turn := find_turn(poses):
         yield (
             f"the diver {HEAD_POINTS[turn]} in the picture, so gestures shown upright are not "
-            f"recognised; turn the picture by {turn} degrees clockwise (--turn {turn} on the "
-            "command line)"
+            f"recognised; turn the picture by {turn} degrees clockwise (--turn {turn})"
         )
 
 
