@@ -23,17 +23,20 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
     return copy
 
 
-def thinned(clip: Path, copy: Path) -> Path:
-    """Write every third frame of a clip at a third of its rate, and return the copy's path."""
+def thinned(clip: Path, copy: Path, times: int = 1) -> Path:
+    """Write every third frame of a clip at a third of its rate, and return the copy's path.
+
+    With `times`, the clip follows itself.
+    """
     with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
         stream = source.streams.video[0]
         assert stream.average_rate is not None
         rate = Fraction(stream.average_rate) / 3
         written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
         written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
-        for number, frame in enumerate(source.decode(stream)):
-            if number % 3 == 0:
-                frame.pts, frame.time_base = number // 3, 1 / rate
-                target.mux(written.encode(frame))
+        kept = [frame for number, frame in enumerate(source.decode(stream)) if number % 3 == 0]
+        for number, frame in enumerate(times * kept):
+            frame.pts, frame.time_base = number, 1 / rate
+            target.mux(written.encode(frame))
         target.mux(written.encode())
     return copy

@@ -29,7 +29,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import BagError, OsgError, TopicError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import Observer, Progress
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
 
 
 class BagSource:
@@ -97,6 +97,7 @@ class BagSource:
         estimator: PoseEstimator | None = None,
         progress: Progress | None = None,
         observer: Observer | None = None,
+        keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Find body and hands in the pictures of a topic, or read its keypoints."""
         found = record_bag(

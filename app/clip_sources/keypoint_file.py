@@ -33,7 +33,7 @@ from app.recognition.errors import (
     OsgError,
 )
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import Observer, Progress
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
 from app.recognition.recording.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
@@ -115,6 +115,7 @@ class KeypointFileSource:
         estimator: PoseEstimator | None = None,
         progress: Progress | None = None,
         observer: Observer | None = None,
+        keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Read the keypoints, and draw the skeleton if there is a video or an observer."""
         read = _read(path, options)

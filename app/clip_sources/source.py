@@ -13,7 +13,7 @@ from app.keypoint_files import Ending, KeypointOptions
 from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.extraction import Observer, Progress
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 
@@ -263,6 +263,7 @@ class ClipSource(Protocol):
         estimator: PoseEstimator | None = None,
         progress: Progress | None = None,
         observer: Observer | None = None,
+        keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Read the landmarks of every frame.
 
@@ -273,8 +274,9 @@ class ClipSource(Protocol):
         video
             Path of the video that players show, unless the file itself is that video; None writes
             none.
-        estimator, progress, observer
-            See `app.recognition.recording.extraction.record`.
+        estimator, progress, observer, keep_so_far
+            See `app.recognition.recording.extraction.record`; where a video is written nothing is
+            kept until the end, since it cannot be shown before.
 
         Raises
         ------

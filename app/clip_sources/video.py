@@ -18,7 +18,7 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import Observer, Progress, record_frames
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record_frames
 from app.recognition.recording.video import FrameReader, VideoFrame, probe, read_frames
 
 
@@ -83,6 +83,7 @@ class VideoSource:
         estimator: PoseEstimator | None = None,
         progress: Progress | None = None,
         observer: Observer | None = None,
+        keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Find body and hands in every frame."""
         with read_frames(path, turn=options.turn) as frames, copying(frames, video) as copy:
@@ -98,6 +99,7 @@ class VideoSource:
                 progress=progress,
                 observer=observe,
                 water=options.water,
+                keep_so_far=keep_so_far if video is None else None,
             )
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)

@@ -28,6 +28,9 @@ from app.store.quotas import NO_QUOTA, Quota, Usage, release_in
 RECORDING, POSTER, FILMSTRIP = "recording.npz", "poster.jpg", "filmstrip.jpg"
 """Files of a clip beside the video and the received file, which its source names."""
 
+SO_FAR = "so-far.npz"
+"""A recording of the first frames, on the machine whose job finds the others."""
+
 _FOUND = RECORDING, POSTER, FILMSTRIP
 
 TOPIC_NEEDED = "topic_needed"

@@ -82,7 +82,7 @@ function drawEverything() {
   follow(["quota", "clips", "uploads"], followQuota);
   follow(["samples"], drawSampleClips);
   follow(
-    ["samples", "languages", "clips", "uploads", "jobs", "clip", "loaded", "role"],
+    ["samples", "languages", "clips", "uploads", "jobs", "clip", "takes", "loaded", "role"],
     drawWelcome,
   );
   follow(["languages", "language", "loaded"], drawPicker);
@@ -107,11 +107,15 @@ function drawEverything() {
 /** Binds loading to the selection. */
 function loadWithSelection() {
   let ready = "";
-  follow(["clips", "clip", "gestures"], () => {
+  follow(["clips", "clip", "gestures", "jobs"], () => {
     const clip = selectedClip();
-    const now = clip ? `${clip.id} ${clip.status} ${triggerKey(state)}` : "";
-    if (now === ready) return;
-    ready = now;
+    const kept = clip && state.jobs.get(clip.job_id)?.kept;
+    const now = clip ? `${clip.id} ${triggerKey(state)}` : "";
+    const read = clip ? `${now} ${clip.status} ${clip.status === "running" ? kept : ""}` : "";
+    if (read === ready) return;
+    // Takes of another clip, or by another trigger, must not be shown while these are loading.
+    if (!clip || !ready.startsWith(now)) update({ takes: null, timeline: null });
+    ready = read;
     loadTakes();
   });
   follow(["recognition"], loadResult);

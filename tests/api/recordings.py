@@ -60,11 +60,19 @@ def recording_of(*shapes: str) -> Recording:
 
 
 def add_recorded_clip(
-    studio: Studio, recording: Recording, name: str = "dive.mp4", *, clip_id: str | None = None
+    studio: Studio,
+    recording: Recording,
+    name: str = "dive.mp4",
+    *,
+    clip_id: str | None = None,
+    running: bool = False,
 ) -> str:
-    """Store a clip whose job is done, under an id if one is given, and return its id."""
+    """Store a clip whose job is done, under an id if one is given, and return its id.
+
+    With `running`, the job has read these frames so far.
+    """
     from app.store import Clip
-    from app.store.clips import RECORDING
+    from app.store.clips import RECORDING, SO_FAR
 
     partial = studio.clips.new_partial()
     partial.write_bytes(bytes(range(256)) * 4)
@@ -73,7 +81,9 @@ def add_recorded_clip(
     clip.id = clip_id or clip.id
     added = studio.clips.add(clip, partial, "test")
     studio.jobs.start(added.job.id)
-    recording.save(studio.clips.place(clip.id, RECORDING))
+    recording.save(studio.clips.place(clip.id, SO_FAR if running else RECORDING))
+    if running:
+        return clip.id
     studio.clips.keep_found(clip)
     studio.jobs.complete(
         added.job.id, len(recording.poses), recording.warnings, recording.salute_warnings

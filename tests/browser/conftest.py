@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -57,6 +58,9 @@ PATIENCE_MS = 90_000
 """Longest wait for an expected element: enough for a loaded machine."""
 
 IMAGES = ROOT / "docs" / "images"
+
+FILM_SIZE = (1080, 675)
+"""Width and height of the README's animation, pixels."""
 
 WATCH_POLICY = """
 addEventListener("securitypolicyviolation", (event) => {
@@ -252,3 +256,36 @@ def picture(tmp_path: Path) -> Callable[[Page, str], Path]:
         return path
 
     return take
+
+
+Film = Callable[[Page, float], None]
+"""``film(page, seconds)``: shows the page as it is for some seconds."""
+
+
+@pytest.fixture
+def film() -> Iterator[Film]:
+    """Return a function that adds a picture to the README's animation.
+
+    The animation is written when ``OSG_UPDATE_IMAGES`` is set.
+    """
+    pictures: list[Image.Image] = []
+    durations: list[int] = []
+
+    def show(page: Page, seconds: float) -> None:
+        if UPDATES_IMAGES:
+            taken = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+            pictures.append(taken.resize(FILM_SIZE, Image.Resampling.LANCZOS))
+            durations.append(round(1000 * seconds))
+
+    yield show
+    if pictures:
+        first, *others = pictures
+        first.save(
+            IMAGES / "first-minute.webp",
+            save_all=True,
+            append_images=others,
+            duration=durations,
+            loop=0,
+            quality=80,
+            method=6,
+        )

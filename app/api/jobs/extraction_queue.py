@@ -32,7 +32,7 @@ from app.store import (
     StoreError,
     StoreUnavailable,
 )
-from app.store.clips import FILMSTRIP, POSTER, RECORDING
+from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
 
 RENEW_SECONDS = 10.0
 """Seconds between two renewals: a server may miss three before another one takes over its jobs."""
@@ -192,6 +192,7 @@ class ExtractionQueue:
         for picture in (POSTER, FILMSTRIP):  # of an earlier job, before its pictures were turned
             place(clip.id, picture).unlink(missing_ok=True)
         file = await persist(self._clips.received, clip)
+        so_far = place(clip.id, SO_FAR)
         task = Record(
             source=clip.source,
             file=file,
@@ -199,18 +200,24 @@ class ExtractionQueue:
             options=options_of(clip).model_copy(update={"water": self._settings.water}),
             video=place(clip.id, clip.video_name) if clip.video_is_made else None,
             recording=place(clip.id, RECORDING),
+            so_far=so_far,
             poster=place(clip.id, POSTER),
             filmstrip=place(clip.id, FILMSTRIP),
         )
         # Stored after the end of the worker, because storing may have to wait for the database.
-        match ended := await run_task(self._workers, task, report):
-            case Finished() as found:
-                await persist(self._clips.keep_found, clip)
-                warnings = found.warnings, found.salute_warnings
-                complete = partial(self._jobs.complete, seconds=found.seconds)
-                await persist(complete, job.id, found.frames, *warnings)
-            case Failed(code=code, detail=detail):
-                await persist(self._jobs.finish, job.id, JobStatus.FAILED, code=code, error=detail)
+        so_far.unlink(missing_ok=True)
+        try:
+            match ended := await run_task(self._workers, task, report):
+                case Finished() as found:
+                    await persist(self._clips.keep_found, clip)
+                    warnings = found.warnings, found.salute_warnings
+                    complete = partial(self._jobs.complete, seconds=found.seconds)
+                    await persist(complete, job.id, found.frames, *warnings)
+                case Failed(code=code, detail=detail):
+                    failed = partial(self._jobs.finish, code=code, error=detail)
+                    await persist(failed, job.id, JobStatus.FAILED)
+        finally:
+            so_far.unlink(missing_ok=True)
         return ended
 
     async def _give_up(self, job_id: str) -> None:

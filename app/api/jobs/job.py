@@ -61,6 +61,8 @@ class Progress:
         first frame; None in the other stages.
     pose
         The body in that frame, or None if it shows nobody.
+    kept
+        Recordings of the frames so far that were written.
 
     """
 
@@ -70,6 +72,7 @@ class Progress:
     eta_s: float | None = None
     time: float | None = None
     pose: Pose | None = None
+    kept: int = 0
 
 
 def progress_of(event: Event) -> Progress | None:
@@ -151,7 +154,7 @@ async def run_task(
         if isinstance(message, Progressed):
             eta = left.estimate(message.done, message.total, time.monotonic())
             progress = (message.stage, message.done, message.total, eta)
-            report(Progress(*progress, message.time, message.pose))
+            report(Progress(*progress, message.time, message.pose, message.kept))
         # A repeated process gives its earlier answers again.
         elif keep is not None and message.index == answered:
             await run_in_threadpool(keep, message.index, message.take)

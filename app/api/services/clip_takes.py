@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
-from app.api.services.running_studio import Studio, load_recording, written_at
+from app.api.services.running_studio import RecordingFile, Studio, load_recording
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter
@@ -54,8 +53,12 @@ def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
     return studio.language(studio.languages.get(language_id)).trigger
 
 
-def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tuple[TakeRange, ...]:
+def find_takes(
+    studio: Studio, clip_id: str, state: LanguageState | None, *, so_far: bool = False
+) -> tuple[TakeRange, ...]:
     """Return the takes of a clip by a language's trigger; without a trigger, the spotted gestures.
+
+    With `so_far`, those that have ended in a clip whose other frames are being read.
 
     Raises
     ------
@@ -63,25 +66,26 @@ def find_takes(studio: Studio, clip_id: str, state: LanguageState | None) -> tup
         As `Studio.recording_file`.
 
     """
-    file = studio.recording_file(clip_id)
-    written = written_at(file)
+    recording = studio.recording_file(clip_id, so_far=so_far)
     trigger = SALUTE if state is None else studio.language(state).trigger
     if state is not None and trigger.spots:
-        return _spot(file, written, state.revision.document)
-    return _segment(file, written, trigger)
+        takes = _spot(recording, state.revision.document)
+    else:
+        takes = _segment(recording, trigger)
+    return takes if recording.whole else tuple(take for take in takes if take.closed)
 
 
 @lru_cache(CACHED_CLIPS)
-def _segment(file: Path, written: int, trigger: Trigger) -> tuple[TakeRange, ...]:
+def _segment(recording: RecordingFile, trigger: Trigger) -> tuple[TakeRange, ...]:
     """Find the takes between held triggers."""
     return tuple(
         TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
-        for take in takes_in(load_recording(file, written), trigger=trigger)
+        for take in takes_in(load_recording(recording), trigger=trigger)
     )
 
 
 @lru_cache(CACHED_CLIPS)
-def _spot(file: Path, written: int, document: str) -> tuple[TakeRange, ...]:
+def _spot(recording: RecordingFile, document: str) -> tuple[TakeRange, ...]:
     """Spot a language's gestures; return none if none of them can be spotted."""
     try:
         spotter = Spotter(Recognizer(Language.from_json(document)))
@@ -89,5 +93,5 @@ def _spot(file: Path, written: int, document: str) -> tuple[TakeRange, ...]:
         return ()
     return tuple(
         TakeRange(found.start, found.end, True, found.start, found.end)
-        for found in spotter.listen(load_recording(file, written).poses)
+        for found in spotter.listen(load_recording(recording).poses)
     )

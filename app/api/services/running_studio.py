@@ -7,7 +7,7 @@ import logging
 import time
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
-from contextlib import ExitStack, asynccontextmanager, contextmanager
+from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from functools import lru_cache, partial, wraps
@@ -56,6 +56,7 @@ from app.store import (
     UploadStore,
     identity_of,
 )
+from app.store.clips import SO_FAR
 from app.store.models import now
 from app.store.objects import open_object_store
 from app.store.server_messages import open_messages
@@ -94,6 +95,27 @@ logger = logging.getLogger(__name__)
 
 Made = TypeVar("Made")
 Stored = TypeVar("Stored")
+
+
+@dataclass(frozen=True)
+class RecordingFile:
+    """File of a recording.
+
+    Attributes
+    ----------
+    path
+        The file.
+    changed
+        Nanoseconds of its last change: it is replaced when pictures are turned, and one so far now
+        and then.
+    whole
+        Whether it has all frames of the clip.
+
+    """
+
+    path: Path
+    changed: int
+    whole: bool = True
 
 
 @dataclass(frozen=True)
@@ -184,13 +206,19 @@ class Studio:
             self.languages.purge_for(quota.owner, self.clips.purge_for(quota.owner, error.excess))
         return store()
 
-    def recording(self, clip_id: str) -> Recording:
-        """Return the recording of a clip; errors as in `recording_file`."""
-        file = self.recording_file(clip_id)
-        return load_recording(file, written_at(file))
+    def recording(self, clip_id: str, *, so_far: bool = False) -> Recording:
+        """Return the recording of a clip; see `recording_file`."""
+        return load_recording(self.recording_file(clip_id, so_far=so_far))
 
-    def recording_file(self, clip_id: str) -> Path:
+    def recording_file(self, clip_id: str, *, so_far: bool = False) -> RecordingFile:
         """Return the file of a clip's recording.
+
+        Parameters
+        ----------
+        clip_id
+            The clip's.
+        so_far
+            Whether the first frames suffice while the others are being read.
 
         Raises
         ------
@@ -201,6 +229,10 @@ class Studio:
 
         """
         found = self.clips.get(clip_id)
+        if so_far and found.job.status == JobStatus.RUNNING:
+            with suppress(OSError):
+                file = self.clips.place(clip_id, SO_FAR)
+                return RecordingFile(file, file.stat().st_mtime_ns, whole=False)
         if found.job.status != JobStatus.DONE:
             reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
             raise ProblemError(
@@ -210,7 +242,8 @@ class Studio:
                 "wait for its job, or start it again",
                 job_id=found.job.id,
             )
-        return self.clips.recording(clip_id)
+        file = self.clips.recording(clip_id)
+        return RecordingFile(file, file.stat().st_mtime_ns if file.is_file() else 0)
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""
@@ -228,15 +261,10 @@ class Studio:
         return _recognizers.get(state.revision.document, profile)
 
 
-def written_at(file: Path) -> int:
-    """Return when a file was written, for the key of a cache: clips may be read again."""
-    return file.stat().st_mtime_ns if file.is_file() else 0
-
-
 @lru_cache(CACHED_RECORDINGS)
-def load_recording(file: Path, written: int) -> Recording:
-    """Load a recording that was `written_at` this time, or return it from the cache."""
-    return Recording.load(file)
+def load_recording(file: RecordingFile) -> Recording:
+    """Load a recording, or return it from the cache."""
+    return Recording.load(file.path)
 
 
 class DocumentCache(Generic[Made]):

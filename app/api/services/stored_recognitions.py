@@ -64,7 +64,9 @@ def recognize_range(
         When the sender may not keep another recognition.
 
     """
-    recording = studio.recording(clip_id)
+    recording = studio.recording(clip_id, so_far=end is not None)
+    if end is not None and end > recording.poses.time[-1]:
+        recording = studio.recording(clip_id)  # refused while these frames are being read
     language = studio.language(state)
     profile = profile or language.profile
     require_landmarks_of(studio.clips.get(clip_id).clip, recording.poses, language)
@@ -112,7 +114,7 @@ every remedy."""
 def load_context(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
     """Return the context in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
-    recording = studio.recording(record.clip_id)
+    recording = studio.recording(record.clip_id, so_far=True)
     view = view_recognition(record)
     recognizer = make_recognizer(studio, state, record.profile, view.tuning, view.trial)
     language = recognizer.language

@@ -156,7 +156,7 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
 
 
 def _request_for(studio: Studio, take: LabelledTake) -> TakeToRecognize:
-    recording, clip = studio.recording_file(take.clip_id), studio.clips.get(take.clip_id).clip
+    recording, clip = studio.recording_file(take.clip_id).path, studio.clips.get(take.clip_id).clip
     return TakeToRecognize(
         recording=recording,
         start=take.start,

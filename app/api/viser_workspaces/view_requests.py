@@ -40,7 +40,7 @@ def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:
 
     """
     clip = studio.clips.get(request.clip_id).clip
-    recording = studio.recording(clip.id)
+    recording = studio.recording(clip.id, so_far=True)
     record = studio.recognitions.get(request.recognition_id) if request.recognition_id else None
     start, end = request.start, request.end
     if record is not None and start is None and end is None:

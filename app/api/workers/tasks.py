@@ -110,12 +110,14 @@ class Probe(_ClipTask):
 class Record(_ClipTask):
     """Writes a clip's recording, poster, filmstrip and, of what is no video, the video.
 
+    Of a video, `so_far` is written now and then with the frames until then.
     With `known`, the recording of a sample clip that comes with the program, no models run.
     """
 
     kind: Literal["record"] = "record"
     known: Annotated[Path | None, READS] = None
     video: Annotated[Path | None, WRITES] = None
+    so_far: Annotated[Path | None, WRITES] = None
     recording: Writes
     poster: Writes
     filmstrip: Writes
@@ -137,8 +139,18 @@ class Record(_ClipTask):
             if partial is not None:
                 poster.add(frame.time, frame.image)
 
+        def keep(recording: Recording) -> None:
+            if self.so_far is not None:
+                recording.save(self.so_far)
+                steps.kept += 1
+
         recorded = self.reader.record(
-            self.file, self.options, video=partial, progress=steps.progress, observer=observe
+            self.file,
+            self.options,
+            video=partial,
+            progress=steps.progress,
+            observer=observe,
+            keep_so_far=keep,
         )
         if partial is not None and self.video is not None:
             partial.replace(self.video)
@@ -385,6 +397,7 @@ class _Steps:
     def __init__(self, report: Report, stage: str) -> None:
         self._report, self._stage = report, stage
         self._reported = 0.0
+        self.kept = 0
         self.newest: tuple[VideoFrame, Body | None] | None = None
 
     def progress(self, done: int, total: int) -> None:
@@ -397,7 +410,16 @@ class _Steps:
             height, width = frame.image.shape[:2]
             seconds = round(frame.time, 3)
             pose = pose_in(body.xy, width, height) if body else None
-        self._report(Progressed(stage=self._stage, done=done, total=total, time=seconds, pose=pose))
+        self._report(
+            Progressed(
+                stage=self._stage,
+                done=done,
+                total=total,
+                time=seconds,
+                pose=pose,
+                kept=self.kept,
+            )
+        )
 
 
 def _save(recorded: Recording, target: Path, report: Report) -> None:

@@ -81,6 +81,8 @@ class Progressed(_Said):
         Time of the newest frame, in seconds after the first; None if no frame is shown.
     pose
         The body in that frame; None if it shows nobody.
+    kept
+        Recordings of the frames so far that were written, each in place of the one before.
 
     """
 
@@ -90,6 +92,7 @@ class Progressed(_Said):
     total: Count
     time: float | None = None
     pose: Pose | None = None
+    kept: Count = 0
 
 
 class RecognizedTake(_Said):

@@ -63,6 +63,16 @@ Raising an exception in it cancels the work."""
 Observer = Callable[[VideoFrame, FrameLandmarks], None]
 """``observer(frame, found)``: a frame of the clip and its landmarks. Raising an exception in it
 cancels the work."""
+KeepSoFar = Callable[[Recording], None]
+"""``keep_so_far(recording)``: what is recorded until now. The person whose body counts is chosen
+over these frames; the end of the clip may show that it is another one."""
+
+FIRST_SECONDS: Final = 2.0
+"""Seconds of a clip before the first recording so far, and between two of them at least."""
+
+GROWTH: Final = 1.3
+"""How much longer each recording so far is than the one before: all of them together cost less
+than five times the last one."""
 
 
 def record(
@@ -74,6 +84,7 @@ def record(
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
     turn: Turn = 0,
+    keep_so_far: KeepSoFar | None = None,
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -97,6 +108,8 @@ def record(
         (`WaterSight`), always, or never.
     turn
         By how much the pictures are turned before anything is found in them.
+    keep_so_far
+        Called now and then with what is recorded until then.
 
     Raises
     ------
@@ -108,7 +121,12 @@ def record(
     """
     with read_frames(clip, limits, turn) as reader:
         return record_frames(
-            reader, estimator=estimator, progress=progress, observer=observer, water=water
+            reader,
+            estimator=estimator,
+            progress=progress,
+            observer=observer,
+            water=water,
+            keep_so_far=keep_so_far,
         )
 
 
@@ -119,6 +137,7 @@ def record_frames(
     progress: Progress | None = None,
     observer: Observer | None = None,
     water: WaterCorrection = "auto",
+    keep_so_far: KeepSoFar | None = None,
 ) -> Recording:
     """Find body and hands in the frames of an open source; see `record`.
 
@@ -131,9 +150,9 @@ def record_frames(
 
     """
     if estimator is not None:
-        return _record(frames, estimator, progress, observer, water)
+        return _record(frames, estimator, progress, observer, water, keep_so_far)
     with closing(create_estimator()) as own:
-        return _record(frames, own, progress, observer, water)
+        return _record(frames, own, progress, observer, water, keep_so_far)
 
 
 def extract_poses(
@@ -241,15 +260,16 @@ class _Collector:
         self._hands.append(_sort_hands(found))
 
     def recording(self, warnings: tuple[str, ...]) -> Recording:
-        """Return the recording of the person whose body counts, chosen over all frames."""
+        """Return the recording of the person whose body counts, chosen over all frames so far."""
         choice = self._people.choose()
+        moments, kept_hands = list(self._moments), list(self._hands)
         for row, place in enumerate(choice.index):
             if row in self._crowded or place is None:
                 found = keep_person(self._crowded.get(row, NOBODY), place)
-                self._moments[row] = self._build_moment(self._times[row], found)
-                self._hands[row] = _sort_hands(found)
-        hands = tuple(self._hands)
-        poses = join_sequences(self._moments)
+                moments[row] = self._build_moment(self._times[row], found)
+                kept_hands[row] = _sort_hands(found)
+        hands = tuple(kept_hands)
+        poses = join_sequences(moments)
         missing = sum(place is None for place in choice.index)
         return Recording(
             poses=poses,
@@ -327,17 +347,21 @@ def _record(
     progress: Progress | None,
     observer: Observer | None,
     water: WaterCorrection,
+    keep_so_far: KeepSoFar | None,
 ) -> Recording:
     sight = WaterSight(estimator, water)
     sight.reset()
     collector = _Collector(frames.info, estimator)
-    done = 0
+    done, due = 0, FIRST_SECONDS
     for frame in read_ahead(frames):
         found = sight.estimate(frame.image, frame.time)
         collector.add(frame.time, found)
         if observer is not None:
             observer(frame, found)
         done = frame.index + 1
+        if keep_so_far is not None and frame.time >= due:
+            due = max(frame.time + FIRST_SECONDS, GROWTH * frame.time)
+            keep_so_far(collector.recording(frames.warnings))
         if progress is not None:
             progress(done, _expected_frames(frames.info, frame))
     if progress is not None:

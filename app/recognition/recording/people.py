@@ -103,6 +103,7 @@ class People:
         self._time: list[float] = []
         self._seen: list[tuple[SeenPerson, ...]] = []
         self._who: list[tuple[int, ...]] = []
+        self._joined: list[tuple[int, ...]] = []
         self._stray: list[float] = []
 
     def add(self, time: float, people: Sequence[SeenPerson], stray: float = 0.0) -> None:
@@ -131,10 +132,10 @@ class People:
         self._stray.append(stray)
 
     def choose(self) -> Choice:
-        """Choose whose body counts, over all frames."""
+        """Choose whose body counts, over all frames so far."""
         self._join_tracks()
         count = np.array([len(people) for people in self._seen], dtype=np.int64)
-        tracks = sorted({track for who in self._who for track in who})
+        tracks = sorted({track for who in self._joined for track in who})
         marks, notes = list[_Salutes](), list[str]()
         if len(tracks) > 1:
             marks, notes = self._find_marks({track: self._find_held(track) for track in tracks})
@@ -144,7 +145,7 @@ class People:
             notes = ["the body is that of the person who stands out most"]
         index, salute = [], []
         for time, who, people, stray in zip(
-            self._time, self._who, self._seen, self._stray, strict=True
+            self._time, self._joined, self._seen, self._stray, strict=True
         ):
             owner = _find_owner_at(marks, time)
             index.append(who.index(owner) if owner in who else None)
@@ -178,7 +179,7 @@ class People:
                 people.append(joined)
             joined.append(track)
             names[track] = joined[0]
-        self._who = [tuple(names[track] for track in who) for who in self._who]
+        self._joined = [tuple(names[track] for track in who) for who in self._who]
 
     def _count_together(self, count: npt.NDArray[np.int64]) -> int:
         """Return how many people are seen at once, for a while or in most frames."""
@@ -195,7 +196,7 @@ class People:
         """Return when a person's held salutes begin and end; short interruptions do not count."""
         scores = [
             people[who.index(track)].salute if track in who else 0.0
-            for who, people in zip(self._who, self._seen, strict=True)
+            for who, people in zip(self._joined, self._seen, strict=True)
         ]
         if max(scores, default=0.0) < ENTER_SCORE:
             return []
@@ -259,7 +260,9 @@ class People:
 
     def _prominence_in(self, track: int, rows: Sequence[int]) -> float:
         seen = [
-            self._seen[row][self._who[row].index(track)] for row in rows if track in self._who[row]
+            self._seen[row][self._joined[row].index(track)]
+            for row in rows
+            if track in self._joined[row]
         ]
         if not seen:
             return 0.0

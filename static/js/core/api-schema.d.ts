@@ -1063,6 +1063,11 @@ export interface components {
                 number,
                 number
             ] | null)[] | null;
+            /**
+             * Kept
+             * @description How often the poses so far were kept, to be shown before the end of the job
+             */
+            kept: number;
             /** Error */
             error: string | null;
             /** Error Code */

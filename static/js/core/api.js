@@ -104,7 +104,11 @@ const gestureAt = (language, label, part = "") =>
   `/languages/${id(language.id)}/gestures${part}?label=${id(label)}`;
 
 /** @param {string | null} language whose trigger is used; null: the salute */
-const triggered = (language) => (language ? `?language_id=${id(language)}` : "");
+const triggered = (language, soFar = false) => {
+  const query = new URLSearchParams(soFar ? { so_far: "true" } : {});
+  if (language) query.set("language_id", language);
+  return query.size ? `?${query}` : "";
+};
 
 export const session = {
   /** @type {() => Promise<Session>} */
@@ -145,16 +149,18 @@ export const clips = {
       total: Number(response.headers.get("X-Total-Count")),
     };
   },
-  /** @type {(clip: string, by?: string | null) => Promise<Timeline>} */
-  timeline: (clip, by = null) => request("GET", `/clips/${id(clip)}/timeline${triggered(by)}`),
+  /** @type {(clip: string, by?: string | null, soFar?: boolean) => Promise<Timeline>} */
+  timeline: (clip, by = null, soFar = false) =>
+    request("GET", `/clips/${id(clip)}/timeline${triggered(by, soFar)}`),
   /** @type {(clip: Clip) => string} */
   filmstrip: (clip) => picture(clip, "filmstrip"),
   /** @type {(clip: string) => Promise<Clip>} */
   get: (clip) => request("GET", `/clips/${id(clip)}`),
   /** @type {(clip: string) => Promise<Poses>} */
   poses: (clip) => request("GET", `/clips/${id(clip)}/poses`),
-  /** @type {(clip: string, by?: string | null) => Promise<Take[]>} */
-  takes: (clip, by = null) => request("GET", `/clips/${id(clip)}/takes${triggered(by)}`),
+  /** @type {(clip: string, by?: string | null, soFar?: boolean) => Promise<Take[]>} */
+  takes: (clip, by = null, soFar = false) =>
+    request("GET", `/clips/${id(clip)}/takes${triggered(by, soFar)}`),
   /** @type {(clip: string) => Promise<unknown>} */
   remove: (clip) => request("DELETE", `/clips/${id(clip)}`),
   /** @type {(clip: string) => Promise<Clip>} */

@@ -166,6 +166,15 @@ function writeUrl(another) {
 export const selectedClip = () => values.clips.find((clip) => clip.id === values.clip) ?? null;
 
 /**
+ * Whether the clip on display can be shown: its poses are found, or takes have ended in the frames
+ * so far.
+ */
+export function isReadable() {
+  const status = selectedClip()?.status;
+  return status === "done" || (status === "running" && Boolean(values.takes?.length));
+}
+
+/**
  * Seconds the clip lasts, by its last frame; before its poses are found, by its container.
  *
  * @param {Clip} clip

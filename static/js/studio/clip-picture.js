@@ -6,7 +6,7 @@ import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
-import { selectedClip, selectedRange, state } from "../core/state.js";
+import { isReadable, selectedClip, selectedRange, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { movingWrists } from "./wrist-motion.js";
 
@@ -71,7 +71,7 @@ export function followChoice({ changed, play }) {
     text: "Space-time cube, or the flat picture",
     group: "Playback",
     run: toggleCube,
-    when: () => selectedClip()?.status === "done" && !byId("view-studio").hidden,
+    when: () => isReadable() && !byId("view-studio").hidden,
   });
   draw();
 }

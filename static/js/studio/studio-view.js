@@ -5,7 +5,7 @@ import { reloadClip } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { askWhich, percent } from "../core/format.js";
-import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
@@ -15,7 +15,7 @@ import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
 
-/** @import { Clip, Recognition, SelectedRange, State } from "../core/types.d.ts" */
+/** @import { Clip, Recognition, SelectedRange, State, Take, Timeline } from "../core/types.d.ts" */
 
 const SETTLED = 250; // ms without a move of the range's handles before the scene is built anew.
 
@@ -23,21 +23,40 @@ let viewTimer = 0;
 let asking = 0; // Counts the requests for takes.
 let shownView = "";
 
-/** Load the takes of the clip on display as soon as it has any. */
+/**
+ * Load the takes of the clip on display; while its frames are being read, those that have ended.
+ */
 export async function loadTakes() {
   const clip = selectedClip();
-  // Takes of the previous clip must not be shown for this one while its own are loading.
-  update({ takes: null, timeline: null });
-  if (!clip || clip.status !== "done") return undefined;
-  const by = takesLanguage(state.gestures);
   asking += 1;
   const mine = asking;
-  const loaded = await attempt("Loading the takes", () =>
-    Promise.all([api.clips.takes(clip.id, by), api.clips.timeline(clip.id, by)]),
-  );
+  const soFar = clip?.status === "running" && Boolean(state.jobs.get(clip.job_id)?.kept);
+  if (!clip || (clip.status !== "done" && !soFar)) return update({ takes: null, timeline: null });
+  const loaded = await (soFar
+    ? takesOf(clip, true).catch(() => null) // Frames that another server reads are not here yet.
+    : attempt("Loading the takes", () => takesOf(clip, false)));
   // An answer for the previous trigger may arrive last.
   if (!loaded || mine !== asking) return undefined;
-  const [takes, timeline] = loaded;
+  return keepTakes(...loaded, soFar);
+}
+
+/**
+ * @param {Clip} clip
+ * @param {boolean} soFar
+ */
+function takesOf(clip, soFar) {
+  const by = takesLanguage(state.gestures);
+  return Promise.all([api.clips.takes(clip.id, by, soFar), api.clips.timeline(clip.id, by, soFar)]);
+}
+
+/**
+ * @param {Take[]} takes
+ * @param {Timeline} timeline
+ * @param {boolean} soFar
+ */
+function keepTakes(takes, timeline, soFar) {
+  if (soFar && !takes.length) return undefined;
+  if (!soFar) shownView = ""; // What was shown may have been only the beginning.
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
   const byHand = state.start !== null || state.end !== null;
   return update({ takes, timeline, take: kept ?? (takes.length && !byHand ? 0 : null) });
@@ -47,7 +66,7 @@ export async function loadTakes() {
 export function showSelection() {
   clearTimeout(viewTimer);
   const clip = selectedClip();
-  if (!clip || clip.status !== "done" || !state.takes) return;
+  if (!clip || !isReadable() || !state.takes) return;
   const { shown } = /** @type {SelectedRange} */ (selectedRange());
   /** @type {{ clip_id: string, start?: number, end?: number, recognition_id?: string }} */
   const view = { clip_id: clip.id, start: shown[0], end: shown[1] };
@@ -55,7 +74,7 @@ export function showSelection() {
   if (state.take === null && state.start === null) delete view.start;
   if (state.take === null && state.end === null) delete view.end;
   if (state.recognition) view.recognition_id = state.recognition;
-  const text = JSON.stringify([view, clip.turn]);
+  const text = JSON.stringify(view);
   if (text === shownView) return;
   viewTimer = setTimeout(
     () => {
@@ -251,15 +270,18 @@ export function drawStage() {
   byId("clip-bar").hidden = !clip;
   document.title = clip ? `${clip.name} \u2013 OSG Studio` : "OSG Studio";
   if (!clip) return;
-  const ready = clip.status === "done";
+  const done = clip.status === "done";
+  const ready = isReadable();
   byId("clip-name").textContent = clip.name;
-  byId("clip-meta").textContent = ready
+  byId("clip-meta").textContent = done
     ? ""
     : clip.status === "failed"
       ? (clip.error ?? "")
-      : "Its takes appear as soon as the poses are found.";
-  for (const id of ["save-gesture", "recognise", "expected"])
-    byId(id).disabled = !ready || !state.takes;
+      : ready
+        ? "Still being read: more takes may follow. Save a gesture when it is done."
+        : "Its takes appear as soon as they have ended.";
+  for (const id of ["recognise", "expected"]) byId(id).disabled = !ready || !state.takes;
+  byId("save-gesture").disabled = !done || !state.takes;
   byId("clip-warnings").replaceChildren(...notesOn(clip));
   byId("range-text").replaceChildren();
   drawTimeline();

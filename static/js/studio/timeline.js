@@ -5,7 +5,7 @@ import { byId, h, icon } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
-import { selectedClip, selectedRange, state, update } from "../core/state.js";
+import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
@@ -265,7 +265,7 @@ export function drawTimeline() {
   const box = byId("timeline");
   const clip = selectedClip();
   const range = /** @type {SelectedRange} */ (selectedRange());
-  if (clip?.status !== "done" || !state.takes || !state.timeline) return box.replaceChildren();
+  if (!clip || !isReadable() || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
   const track = box.querySelector(".track");
   const lengths = h("div", {

@@ -3,7 +3,7 @@
 import { byId, h, icon } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { isReadable, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
 import { setEnd, setStart } from "./timeline.js";
@@ -122,8 +122,7 @@ export function buildTransport() {
     cubeButton(),
   );
   followChoice({ changed: showFlat, play: toggle });
-  const when = () =>
-    selectedClip()?.status === "done" && state.position !== null && !byId("view-studio").hidden;
+  const when = () => isReadable() && state.position !== null && !byId("view-studio").hidden;
   /**
    * @param {string[]} names
    * @param {string} text
@@ -152,7 +151,7 @@ export function buildTransport() {
  */
 export function drawTransport({ position }) {
   const bar = byId("transport");
-  bar.hidden = !position || selectedClip()?.status !== "done";
+  bar.hidden = !position || !isReadable();
   if (bar.hidden || !position) return;
   const { playing, frame, frames, time } = position;
   const toggles = byId("do-play");

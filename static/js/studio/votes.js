@@ -4,7 +4,7 @@
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
-import { selectedClip, state } from "../core/state.js";
+import { isReadable, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
 import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./vote-support.js";
@@ -248,8 +248,7 @@ let drawn = null;
  */
 export function drawVotes({ result }) {
   const box = byId("votes");
-  const clip = selectedClip();
-  box.hidden = clip?.status !== "done";
+  box.hidden = !isReadable();
   const key = result
     ? `${result.id} ${JSON.stringify(state.gestures?.tuning ?? null)}`
     : `undecided ${state.gestures?.labels.length}`;

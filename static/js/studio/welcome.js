@@ -9,7 +9,7 @@ import { byId, h, icon, WRITES } from "../core/dom.js";
 import { drawAt, firstMoment } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { mayWrite } from "../core/session.js";
-import { selectedClip, state, update, whenLoaded } from "../core/state.js";
+import { isReadable, selectedClip, state, update, whenLoaded } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.js";
@@ -254,13 +254,20 @@ function showProgress(panel, clip, job) {
 }
 
 /**
+ * Whether a clip has nothing to show but its progress.
+ *
+ * @param {Clip} clip
+ */
+const isBeingRead = (clip) => BUSY.has(clip.status) && !isReadable();
+
+/**
  * The panel as `{ key, panel }`, or null when the workspace has something to show.
  *
  * @param {State} state
  * @param {Clip | null} clip
  */
 function contentOf({ clips, uploads, samples, languages, loaded, role }, clip) {
-  if (clip && BUSY.has(clip.status)) return { key: clip.job_id, panel: () => progressPanel(clip) };
+  if (clip && isBeingRead(clip)) return { key: clip.job_id, panel: () => progressPanel(clip) };
   if (clip && needsTopic(clip)) return { key: `topics ${clip.id}`, panel: () => topicsPanel(clip) };
   if (clip || !loaded || uploads.length) return null;
   if (clips.length) return { key: "unchosen", panel: noClip };
@@ -286,5 +293,5 @@ export function drawWelcome(values) {
     box.dataset.shows = key;
     box.replaceChildren(...(content ? [content.panel()] : []));
   }
-  if (clip && BUSY.has(clip.status)) showProgress(box, clip, values.jobs.get(clip.job_id));
+  if (clip && isBeingRead(clip)) showProgress(box, clip, values.jobs.get(clip.job_id));
 }

@@ -5,7 +5,7 @@ import { byId, h, svg, WRITES } from "../core/dom.js";
 import { moment, readable } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { mcapExport } from "../clips/mcap-export.js";
-import { selectedClip, state, update } from "../core/state.js";
+import { isReadable, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
@@ -335,7 +335,7 @@ const askExpected = (labels) => [
 export function drawWhy({ why, result, trial }) {
   const box = byId("why");
   const trying = trial && result?.id === trial.result ? trialBar(trial, result) : null;
-  const done = selectedClip()?.status === "done";
+  const done = isReadable();
   byId("reasons").hidden = !done;
   box.hidden = !done || !result; // Without a result the decision says what to do.
   if (!done || !result) {

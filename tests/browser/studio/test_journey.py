@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,8 +15,10 @@ from app.recognition import Language
 from app.recognition.voters.registry import MOTION_VOTERS
 from app.ui.workspace import initial_frame
 from tests.api.running import Running
-from tests.browser.conftest import OpenPage
+from tests.api.running_workers import hold_worker, linux
+from tests.browser.conftest import Film, OpenPage
 from tests.browser.files import drop
+from tests.short_clips import thinned
 
 EXTRACTION_MS = 300_000
 """Longest wait for the poses of a clip of six seconds on a loaded machine."""
@@ -50,6 +54,8 @@ def upload(page: Page, clip: Path) -> None:
     expect(take).to_be_visible(timeout=EXTRACTION_MS)
     expect(take).to_have_attribute("aria-pressed", "true")
     expect(bones).to_have_count(0)
+    # Takes come before the end; a gesture is saved after it.
+    expect(page.locator("#save-gesture")).to_be_enabled(timeout=EXTRACTION_MS)
 
 
 def first_shown(page: Page, server: Running) -> int:
@@ -173,3 +179,57 @@ def test_poses_that_are_being_found_can_be_cancelled_and_found_after_all(
     expect(item.get_by_role("progressbar")).to_be_visible()
     item.get_by_role("button", name="Cancel cancelled.mp4").click()
     expect(item.get_by_role("progressbar")).to_have_count(0)
+
+
+@linux
+def test_a_take_is_recognised_while_the_rest_of_its_clip_is_read(
+    open_page: OpenPage, sample_clips: Path, installed_models: None, tmp_path: Path
+) -> None:
+    page = open_page(scene=False)
+    page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
+    clip = thinned(sample_clips / "line-test-2.mp4", tmp_path / "dive.mp4", times=4)
+    drop(page, clip)
+    take = page.get_by_role("button", name=re.compile("^Take 1"))
+    expect(take).to_be_visible(timeout=EXTRACTION_MS)
+    worker = hold_worker(os.getpid())
+    expect(page.locator("#clip-meta")).to_contain_text("Still being read")
+    expect(page.locator("#save-gesture")).to_be_disabled()
+    few = page.get_by_role("button", name=re.compile("^Take ")).count()
+    page.get_by_role("button", name="Recognise").click()
+    expect(page.locator("#outcome")).to_contain_text("line")
+    os.kill(worker, signal.SIGCONT)
+    expect(page.locator("#save-gesture")).to_be_enabled(timeout=EXTRACTION_MS)
+    assert page.get_by_role("button", name=re.compile("^Take ")).count() > few
+    expect(page.locator("#outcome")).to_contain_text("line")
+
+
+def test_a_dropped_clip_is_misread_explained_and_read_right_after_a_try(
+    open_page: OpenPage, sample_clips: Path, installed_models: None, tmp_path: Path, film: Film
+) -> None:
+    page = open_page(size=(1440, 900))
+    page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
+    expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
+    film(page, 1.0)
+    drop(page, thinned(sample_clips / "unfinished-triangle.mp4", tmp_path / "triangle at 6 m.mp4"))
+    bones = page.locator("#welcome .skeleton .bones")
+    expect(bones).to_have_attribute("d", re.compile("^M"), timeout=EXTRACTION_MS)
+    for _ in range(6):
+        film(page, 0.3)
+    expect(page.locator("#save-gesture")).to_be_enabled(timeout=EXTRACTION_MS)
+    page.get_by_label("Expected", exact=True).select_option("triangle")
+    lab_of(page)
+    expect(page.locator("#lab-loading")).to_be_hidden()
+    film(page, 1.2)
+    page.get_by_role("button", name="Recognise").click()
+    outcome = page.locator("#outcome")
+    expect(outcome).to_contain_text("Recognised as wedge, expected triangle")
+    why = page.get_by_role("region", name="Why")
+    change = why.get_by_role("button", name="with this take as another demonstration")
+    expect(change).to_be_visible()
+    film(page, 2.8)
+    change.hover()
+    film(page, 0.8)
+    change.click()
+    expect(outcome).to_contain_text("Recognised as triangle, as expected")
+    expect(why.get_by_role("status")).to_contain_text("as another demonstration")
+    film(page, 2.4)

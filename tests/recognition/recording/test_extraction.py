@@ -13,7 +13,7 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.extraction import extract_poses, find_turn, record
+from app.recognition.recording.extraction import FIRST_SECONDS, extract_poses, find_turn, record
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.recording.video import VideoFrame
@@ -228,6 +228,22 @@ def test_an_observer_sees_every_frame_before_it_is_counted(clip: Path) -> None:
     assert [index for index, found in enumerate(seen) if found.body is None] == [7]
     bodies = [found.body.xy for found in seen if found.body is not None]
     assert np.array_equal(np.stack(bodies), np.delete(recording.poses.xy, 7, axis=0))
+
+
+def test_recordings_so_far_are_the_first_frames_and_change_nothing(tmp_path: Path) -> None:
+    clip = write_clip(tmp_path / "long.mp4", frames=200)
+    bodiless = frozenset({3, 100})
+    whole = record(clip, estimator=ScriptedEstimator(bodiless=bodiless))
+    kept: list[Recording] = []
+    found = record(clip, estimator=ScriptedEstimator(bodiless=bodiless), keep_so_far=kept.append)
+    assert np.array_equal(found.poses.xy, whole.poses.xy, equal_nan=True)
+    assert len(kept) >= 2
+    ends = [float(each.poses.time[-1]) for each in kept]
+    assert ends[0] >= FIRST_SECONDS
+    assert (np.diff(ends) >= FIRST_SECONDS).all()
+    for each in kept:
+        first = whole.poses.xy[: len(each.poses)]
+        assert np.array_equal(each.poses.xy, first, equal_nan=True)
 
 
 def test_an_exception_in_an_observer_cancels(clip: Path) -> None:

@@ -83,10 +83,13 @@ def frames(*divers: Diver, seconds: float) -> list[tuple[float, FrameLandmarks]]
     return result
 
 
-def choose(seen: list[tuple[float, FrameLandmarks]]) -> Choice:
+def choose(seen: list[tuple[float, FrameLandmarks]], *, asked_at: int = 0) -> Choice:
+    """Return the choice over all frames; at one of them it may be asked for before."""
     people = People()
-    for time, found in seen:
+    for row, (time, found) in enumerate(seen):
         people.add(time, *see_people(found))
+        if row == asked_at:
+            people.choose()
     return people.choose()
 
 
@@ -167,6 +170,16 @@ def test_a_take_between_salutes_of_two_divers_is_told() -> None:
     choice = choose(seen)
     assert owners(seen, choice, second, first) == [1] * 5 * RATE + [0] * 2 * RATE
     assert "salutes at 1.0 s and 5.0 s are of different divers" in choice.notes[0]
+
+
+@pytest.mark.parametrize("asked_at", [RATE, 4 * RATE, 9 * RATE])
+def test_a_choice_over_the_first_frames_does_not_change_the_choice_over_all(asked_at: int) -> None:
+    late = Diver(100, salutes=((7, 8), (10, 11)), draws=((8.5, 9.5),), seen=((6, 99),))
+    early = Diver(700, salutes=((1, 2), (4, 5)), seen=((0, 5.5),))
+    seen = frames(early, late, seconds=12)
+    once, again = choose(seen), choose(seen, asked_at=asked_at)
+    assert (once.index, once.notes) == (again.index, again.notes)
+    assert np.array_equal(once.salute, again.salute)
 
 
 def test_who_is_hidden_for_a_while_is_known_again() -> None:

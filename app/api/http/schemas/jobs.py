@@ -29,6 +29,9 @@ class JobView(BaseModel):
         "`landmarks` in a clip's poses) x and y as fractions of the picture's width and height, "
         "x right, y down; null: not seen. Null as a whole where nobody is in the frame"
     )
+    kept: int = Field(
+        description="How often the poses so far were kept, to be shown before the end of the job"
+    )
     error: str | None
     error_code: str | None
     created: datetime

@@ -45,6 +45,15 @@ TriggerLanguage = Annotated[
 ]
 
 
+SoFar = Annotated[
+    bool,
+    Query(
+        description="Whether the first frames suffice while the clip's job reads the others; "
+        "left out: 409 until it is done"
+    ),
+]
+
+
 class Body(BaseModel):
     """Base of request bodies: unknown members are mistakes, and are said to be."""
 

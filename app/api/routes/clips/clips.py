@@ -23,7 +23,7 @@ from app.api.http.schemas.clips import (
     TopicChoice,
     TurnChoice,
 )
-from app.api.http.schemas.values import TriggerLanguage
+from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
@@ -279,11 +279,14 @@ def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
 @router.get("/{clip_id}/takes", responses=problem_responses(404, 409))
 @computed_briefly
 def get_takes(
-    clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
+    clip_id: str,
+    studio: CurrentStudio,
+    language_id: TriggerLanguage = None,
+    so_far: SoFar = False,
 ) -> list[TakeView]:
     """List what lies between the salutes, or other triggers of a language."""
     state = None if language_id is None else studio.languages.get(language_id)
-    return [TakeView(**vars(take)) for take in find_takes(studio, clip_id, state)]
+    return [TakeView(**vars(take)) for take in find_takes(studio, clip_id, state, so_far=so_far)]
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

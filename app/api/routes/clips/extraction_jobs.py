@@ -75,6 +75,7 @@ def view_job(job: Job, progress: Progress | None) -> JobView:
         eta_s=shown.eta_s,
         time=shown.time,
         pose=shown.pose,
+        kept=shown.kept,
     )
 
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel, Field
 
 from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
-from app.api.http.schemas.values import TriggerLanguage
+from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import trigger_of
 from app.api.services.running_studio import CurrentStudio, computed_briefly
@@ -56,10 +56,13 @@ class TimelineView(BaseModel):
 )
 @computed_briefly
 def get_timeline(
-    clip_id: str, studio: CurrentStudio, language_id: TriggerLanguage = None
+    clip_id: str,
+    studio: CurrentStudio,
+    language_id: TriggerLanguage = None,
+    so_far: SoFar = False,
 ) -> Response:
     """Return the curves along the clip, one value a frame."""
-    recording = studio.recording(clip_id)
+    recording = studio.recording(clip_id, so_far=so_far)
     trigger = trigger_of(studio, language_id)
     scores = np.maximum(*trigger.score(recording.poses, recording.salute))
     has_thumbnails = studio.clips.filmstrip(clip_id).is_file()

@@ -42,6 +42,29 @@ def test_a_take_is_recognised_with_every_voters_distances(
     assert client.get(f"{RECOGNITIONS}/{result['id']}").json() == result
 
 
+def test_a_take_is_recognised_while_the_rest_of_its_clip_is_read(
+    client: httpx.Client, studio: Studio, spoken: str
+) -> None:
+    recording = recording_of("circle")
+    clip_id = add_recorded_clip(studio, recording, running=True)
+    place, end = f"/api/v1/clips/{clip_id}", float(recording.poses.time[-1])
+    assert_problem(client.get(f"{place}/takes"), 409, "clip_not_ready")
+    (take,) = client.get(f"{place}/takes", params={"so_far": True}).json()
+    asked = {"clip_id": clip_id, "language_id": spoken, "start": take["start"]}
+    asked["expected"] = "circle"
+    answer = client.post(RECOGNITIONS, json={**asked, "end": take["end"]}).json()
+    assert answer["label"] == "circle"
+    explanation = client.get(f"{RECOGNITIONS}/{answer['id']}/explanation")
+    assert explanation.status_code == 200, explanation.text
+    # The whole clip is not there yet, and neither is what comes after the frames so far.
+    for later in ({}, {"end": end + 1.0}):
+        assert_problem(client.post(RECOGNITIONS, json={**asked, **later}), 409, "clip_not_ready")
+    saved = client.post(
+        f"/api/v1/languages/{spoken}/gestures", json={"label": "loop", "clip_id": clip_id}
+    )
+    assert_problem(saved, 409, "clip_not_ready")
+
+
 def test_a_take_between_two_gestures_is_kept_with_the_pair_and_older_records_have_none(
     client: httpx.Client, studio: Studio, circle_clip: str
 ) -> None:
