@@ -275,8 +275,8 @@ class ClipSource(Protocol):
             Path of the video that players show, unless the file itself is that video; None writes
             none.
         estimator, progress, observer, keep_so_far
-            See `app.recognition.recording.extraction.record`; where a video is written nothing is
-            kept until the end, since it cannot be shown before.
+            See `app.recognition.recording.extraction.record`; only videos that are shown as they
+            are keep anything before the end.
 
         Raises
         ------

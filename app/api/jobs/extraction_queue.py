@@ -200,7 +200,7 @@ class ExtractionQueue:
             options=options_of(clip).model_copy(update={"water": self._settings.water}),
             video=place(clip.id, clip.video_name) if clip.video_is_made else None,
             recording=place(clip.id, RECORDING),
-            so_far=so_far,
+            so_far=None if clip.video_is_made else so_far,
             poster=place(clip.id, POSTER),
             filmstrip=place(clip.id, FILMSTRIP),
         )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from app.api.http.schemas.gestures import NewDemonstration
-from app.api.services.running_studio import Studio
+from app.api.services.running_studio import RecordingFile, Studio, whole_recording
 from app.recognition import Language, OsgError
 from app.recognition.explanation.demonstration_faults import (
     ClipOutline,
@@ -27,8 +27,8 @@ def count_triggers_in_clip(
     studio: Studio, clip_id: str, start: float, end: float, trigger: Trigger = SALUTE
 ) -> int:
     """Return how many triggers a range of a clip contains; 0 while its poses are not extracted."""
-    path = _find_recording(studio, clip_id)
-    return 0 if path is None else _outline_of(path, trigger).count_triggers(start, end)
+    file = _find_recording(studio, clip_id)
+    return 0 if file is None else _outline_of(file, trigger).count_triggers(start, end)
 
 
 def faults_of_source(
@@ -51,12 +51,12 @@ def faults_of_source(
         The language's.
 
     """
-    path = _find_recording(studio, source.clip_id)
-    if path is None:
+    file = _find_recording(studio, source.clip_id)
+    if file is None:
         return ()
     counts = gesture.switches.hand_shape == "on"
     where = (source.start, source.end, source.keep_transit)
-    return _faults_of(path, where, trigger, gesture.salient, counts)
+    return _faults_of(file, where, trigger, gesture.salient, counts)
 
 
 def faults_of_language(
@@ -77,21 +77,21 @@ def faults_of_language(
     }
 
 
-def _find_recording(studio: Studio, clip_id: str) -> str | None:
+def _find_recording(studio: Studio, clip_id: str) -> RecordingFile | None:
     """Return the file of a clip's recording; None while its poses are not extracted."""
     if studio.clips.get(clip_id).job.status != JobStatus.DONE:
         return None
-    return str(studio.clips.recording(clip_id))
+    return whole_recording(studio.clips.recording(clip_id))
 
 
 @lru_cache(CACHED_CLIPS)
-def _outline_of(path: str, trigger: Trigger) -> ClipOutline:
-    return ClipOutline.of(Recording.load(path), trigger)
+def _outline_of(file: RecordingFile, trigger: Trigger) -> ClipOutline:
+    return ClipOutline.of(Recording.load(file.path), trigger)
 
 
 @lru_cache(CACHED_CLIPS)
 def _faults_of(
-    path: str,
+    file: RecordingFile,
     where: tuple[float | None, float | None, bool],
     trigger: Trigger,
     salient: Sequence[str],
@@ -100,10 +100,10 @@ def _faults_of(
     start, end, keep_transit = where
     try:
         return find_demonstration_faults(
-            Recording.load(path),
+            Recording.load(file.path),
             start,
             end,
-            outline=_outline_of(path, trigger),
+            outline=_outline_of(file, trigger),
             trigger=trigger,
             keep_transit=keep_transit,
             salient=salient,

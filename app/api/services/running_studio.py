@@ -99,22 +99,21 @@ Stored = TypeVar("Stored")
 
 @dataclass(frozen=True)
 class RecordingFile:
-    """File of a recording.
+    """File of a recording, as a key of caches.
 
     Attributes
     ----------
     path
         The file.
-    changed
-        Nanoseconds of its last change: it is replaced when pictures are turned, and one so far now
-        and then.
+    written
+        Nanoseconds of its last change: a clip may be read again.
     whole
-        Whether it has all frames of the clip.
+        Whether it has all frames; else the others are being read.
 
     """
 
     path: Path
-    changed: int
+    written: int
     whole: bool = True
 
 
@@ -242,8 +241,7 @@ class Studio:
                 "wait for its job, or start it again",
                 job_id=found.job.id,
             )
-        file = self.clips.recording(clip_id)
-        return RecordingFile(file, file.stat().st_mtime_ns if file.is_file() else 0)
+        return whole_recording(self.clips.recording(clip_id))
 
     def language(self, state: LanguageState) -> Language:
         """Return the language that a revision holds."""
@@ -259,6 +257,11 @@ class Studio:
 
         """
         return _recognizers.get(state.revision.document, profile)
+
+
+def whole_recording(path: Path) -> RecordingFile:
+    """Return the file of a recording with all frames, which `load_recording` finds missing."""
+    return RecordingFile(path, path.stat().st_mtime_ns if path.is_file() else 0)
 
 
 @lru_cache(CACHED_RECORDINGS)

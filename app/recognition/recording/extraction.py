@@ -83,8 +83,8 @@ def record(
     observer: Observer | None = None,
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
-    turn: Turn = 0,
     keep_so_far: KeepSoFar | None = None,
+    turn: Turn = 0,
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -106,10 +106,10 @@ def record(
     water
         Whether colour and contrast are corrected before estimation: as the models find most
         (`WaterSight`), always, or never.
-    turn
-        By how much the pictures are turned before anything is found in them.
     keep_so_far
         Called now and then with what is recorded until then.
+    turn
+        By how much the pictures are turned before anything is found in them.
 
     Raises
     ------

@@ -13,7 +13,12 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.extraction import FIRST_SECONDS, extract_poses, find_turn, record
+from app.recognition.recording.extraction import (
+    FIRST_SECONDS,
+    extract_poses,
+    find_turn,
+    record,
+)
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.recording.video import VideoFrame
