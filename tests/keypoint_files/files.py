@@ -256,7 +256,10 @@ def write_results(path: Path, people: Sequence[PoseSequence], kind: str) -> Path
 def write_browser(path: Path, poses: PoseSequence) -> Path:
     """Write frames of MediaPipe's own JavaScript."""
     frames = [
-        {"poseLandmarks": [{"x": x, "y": y, "visibility": 0.9} for x, y in moment.tolist()]}
+        {
+            "poseLandmarks": [{"x": x, "y": y, "visibility": 0.9} for x, y in moment.tolist()],
+            "leftHandLandmarks": [{"x": x, "y": y} for x, y in moment[:21].tolist()],
+        }
         for moment in fractions(poses)
     ]
     path.write_text(json.dumps(frames))

@@ -393,3 +393,22 @@ def test_columns_of_hands_that_are_never_seen_change_nothing(tmp_path: Path) -> 
     same(read.recording.poses)
     assert not read.has_hands
     assert not any("left out" in warning for warning in read.recording.warnings)
+
+
+@pytest.mark.parametrize("key", ["rightHandLandmarks", "right_hand_landmarks"])
+def test_hands_in_json_are_read_and_show_a_salute(tmp_path: Path, key: str) -> None:
+    hand = hand_xy(salute()) / np.array(POSES.frame_size)
+    fingers = [{"x": x, "y": y, "z": 0.0} for x, y in hand.tolist()]
+    content: list[dict[str, Any]] = [
+        {"poseLandmarks": frame, key: fingers if index < 3 else None}
+        for index, frame in enumerate(OBJECTS)
+    ]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    read = read_keypoints(tmp_path / "pose.json", OPTIONS)
+    same(read.recording.poses)
+    assert [len(hands) for hands in read.recording.hands] == [1] * 3 + [0] * (len(POSES) - 3)
+    assert read.recording.hands[0][0].side == "right"
+    assert (read.recording.salute > 0.5).tolist() == [True] * 3 + [False] * (len(POSES) - 3)
+    content[0][key] = fingers[:20]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    assert not read_keypoints(tmp_path / "pose.json", OPTIONS).recording.hands[0]
