@@ -27,6 +27,7 @@ import { followTestSet } from "./languages/test-set.js";
 import { showJoint, showMoment } from "./studio/alignment.js";
 import { drawGestures } from "./gestures/gesture-cards.js";
 import { drawTableButton, openGestureTable } from "./gestures/gesture-table.js";
+import { drawRanges } from "./studio/labelled-ranges.js";
 import { rememberFrame } from "./studio/playback.js";
 import {
   answerQuestion,
@@ -41,7 +42,7 @@ import { drawTakesButton, openTakeTable } from "./export/take-table.js";
 import { drawNow } from "./studio/timeline.js";
 import { drawTracks } from "./studio/tracks.js";
 import { offerTour, startTour } from "./studio/tour.js";
-import { drawFlat, drawRatio } from "./studio/clip-picture.js";
+import { drawFlat, drawRatio, drawStroke } from "./studio/clip-picture.js";
 import { drawTransport } from "./studio/transport.js";
 import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";
@@ -91,6 +92,7 @@ function drawEverything() {
   follow(["gestures"], drawTrigger);
   follow(["gestures", "languages", "loaded", "result", "clip", "clips"], drawGestures);
   follow(["clips", "clip", "takes", "take", "start", "end", "gestures"], drawStage);
+  follow(["clips", "clip", "takes", "take", "start", "end", "gestures", "ranges"], drawRanges);
   follow(["clips", "clip", "timeline", "takes", "take", "start", "end"], drawTracks);
   follow(["position", "clips", "clip"], drawTransport);
   follow(["position"], drawNow);
@@ -101,7 +103,8 @@ function drawEverything() {
   follow(["joint"], showJoint);
   follow(["result"], drawOutcome);
   follow(["why", "result", "trial", "clips", "clip"], drawWhy);
-  follow(["why", "timeline"], drawCosts);
+  follow(["why", "result", "timeline"], drawCosts);
+  follow(["why", "result", "clip", "clips"], drawStroke);
 }
 
 /** Binds loading to the selection. */

@@ -379,8 +379,9 @@ export const recognitions = {
   analysisUrl: (recognition) => `${BASE}/recognitions/${id(recognition)}/analysis`,
   /** @type {(recognition: string) => Promise<{ caption: string, image: string }[]>} */
   images: (recognition) => request("GET", `/recognitions/${id(recognition)}/images`),
-  /** @type {(recognition: string) => Promise<Explanation>} */
-  explain: (recognition) => request("GET", `/recognitions/${id(recognition)}/explanation`),
+  /** @type {(recognition: string, expected: string) => Promise<Explanation>} */
+  explain: (recognition, expected) =>
+    request("GET", `/recognitions/${id(recognition)}/explanation?expected=${id(expected)}`),
 };
 
 export const workspaces = {

@@ -58,6 +58,7 @@ const values = {
   testing: null,
   labelled: null,
   pending: [],
+  ranges: [],
   clip: null,
   take: null,
   start: null,

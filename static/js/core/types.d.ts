@@ -409,6 +409,8 @@ export interface State {
   /** The language whose test set changed on the server. */
   labelled: { id: string } | null;
   pending: PendingClip[];
+  /** Ranges of clips that were labelled by hand and wait to be saved together. */
+  ranges: { label: string; clip_id: string; start: number; end: number }[];
   clip: string | null;
   take: number | null;
   start: number | null;

@@ -193,10 +193,12 @@ async function saveIntoNew(name, drafts) {
 }
 
 /**
+ * Save gestures into a language, in one step that can be undone.
+ *
  * @param {string} id
- * @param {ReturnType<typeof draftOf>[]} drafts
+ * @param {{ label: string, clip_id: string, start?: number, end?: number }[]} drafts
  */
-async function saveInto(id, drafts) {
+export async function saveInto(id, drafts) {
   await choose(id);
   const title = plural(drafts.length, "gesture");
   await edit("Saving the gestures", `Addition of ${title}`, (language) =>

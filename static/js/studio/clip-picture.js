@@ -2,15 +2,14 @@
 
 import { figure } from "./pose-picture.js";
 import { versionOf } from "../clips/clip-store.js";
-import * as api from "../core/api.js";
-import { byId, h } from "../core/dom.js";
+import { byId, h, svg } from "../core/dom.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { bind } from "../core/key-bindings.js";
 import { isReadable, selectedClip, selectedRange, state } from "../core/state.js";
-import { attempt } from "../core/toasts.js";
-import { movingWrists } from "./wrist-motion.js";
+import { posesOf } from "./tracks.js";
+import { movingWrists, strokeOver } from "./wrist-motion.js";
 
-/** @import { Clip, Poses } from "../core/types.d.ts" */
+/** @import { Clip, Poses, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
 
@@ -85,8 +84,6 @@ export function drawRatio() {
 
 /** @type {{ clip: string, poses: Poses, picture: ReturnType<typeof figure> } | null} */
 let shown = null;
-/** @type {string | null} */
-let loading = null;
 
 /**
  * Draw the flat picture by the page, and show the reason; `retry` tries viser again if that may
@@ -106,7 +103,7 @@ export function drawByPage(reason, retry = null) {
       retry ? h("button", { type: "button", onclick: retry }, "Try again") : null,
     ),
   );
-  shown = loading = null;
+  shown = null;
   draw();
   drawFlat();
 }
@@ -117,36 +114,66 @@ export function drawByViser() {
   draw();
 }
 
-/**
- * Load the poses of a clip and build its picture; null when another clip is wanted by now.
- *
- * @param {Clip} clip
- */
-async function load(clip) {
+/** @param {Clip} clip whose picture is built, unless another one is wanted by then */
+async function build(clip) {
+  const poses = await posesOf(clip);
   const wanted = versionOf(clip);
-  if (loading === wanted) return null;
-  loading = wanted;
-  const poses = await attempt("Loading the poses", () => api.clips.poses(clip.id));
-  if (!poses || loading !== wanted) return null;
+  const now = selectedClip();
+  if (!poses || !now || versionOf(now) !== wanted || shown?.clip === wanted) return;
   const picture = figure(() => {});
   picture.show(poses, clip);
   byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
-  return { clip: wanted, poses, picture };
+  shown = { clip: wanted, poses, picture };
 }
 
 /** Draw the frame on display, where the page draws it. */
 export async function drawFlat() {
   const clip = selectedClip();
   if (!own || clip?.status !== "done") return;
-  if (shown?.clip !== versionOf(clip)) {
-    const loaded = await load(clip);
-    if (!loaded) return;
-    shown = loaded;
-  }
+  if (shown?.clip !== versionOf(clip)) await build(clip);
+  if (shown?.clip !== versionOf(clip)) return;
   const { poses, picture } = shown;
   const range = selectedRange()?.shown ?? [0, poses.time.at(-1) ?? 0];
   /** @type {[number, number]} */
   const frames = [nearestFrame(poses.time, range[0]), nearestFrame(poses.time, range[1])];
   const frame = Math.min(state.position?.frame ?? frames[0], poses.time.length - 1);
   picture.draw(frame, frames, movingWrists(poses, frames));
+}
+
+/**
+ * Draw the stroke of the expected gesture, or of the nearest one, dashed over the shown stroke.
+ *
+ * @param {State} state
+ */
+export async function drawStroke({ why, result, clip }) {
+  const box = byId("stroke-over");
+  box.hidden = true;
+  if (!why || result?.id !== why.id || result.clip_id !== clip) return;
+  const selected = selectedClip();
+  if (selected?.status !== "done") return; // The poses so far are not given.
+  const label = result.expected ?? result.nearest;
+  const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
+  const poses = alignment && (await posesOf(selected));
+  if (!poses || state.why !== why) return;
+  const paths = strokeOver(alignment, poses).map((path) => `M${path.filter(Boolean).join("L")}`);
+  const chosen = label === result.label ? "chosen" : "nearest";
+  const role = result.expected === null ? chosen : "expected";
+  box.hidden = !paths.length;
+  box.classList.toggle("is-expected", role === "expected");
+  box.replaceChildren(
+    svg(
+      "svg",
+      {
+        viewBox: `0 0 ${poses.frame_size.join(" ")}`,
+        role: "img",
+        "aria-label": `The stroke of ${label}, ${role}, over the one shown`,
+      },
+      ...["halo", "", "begin"].flatMap((kind) =>
+        paths.map((d) =>
+          svg("path", { class: kind, d: kind === "begin" ? `${d.split("L")[0]}h0` : d }),
+        ),
+      ),
+    ),
+    h("p", { className: "stroke-legend" }, h("i"), h("b", {}, label), ` ${role}`),
+  );
 }

@@ -16,7 +16,8 @@ let cut = false; // whether the connection to this workspace's clock has broken
 /** @type {Wish[]} */
 let unsent = []; // commands from before the connection opened
 /** @type {number | null} */
-let wantedFrame = null; // from the URL, until the clip is shown
+let wantedFrame = null; // from the URL or the former view, until the clip is shown
+let wantedSpeed = 0;
 
 /**
  * Follow the clock of a workspace, and of another one when that one is gone.
@@ -68,18 +69,21 @@ function ask(wish) {
 }
 
 /**
- * Keep the frame number from a link, for `frameShown`.
+ * Keep a frame number, and the speed at which to play on, for `frameShown`.
  *
  * @param {number | null} frame
+ * @param {number} [speed]
  */
-export function rememberFrame(frame) {
+export function rememberFrame(frame, speed = 0) {
   wantedFrame = frame;
+  wantedSpeed = speed;
 }
 
 /** Called when the clip is on display: go to the frame from the link, once. */
 export function frameShown() {
   if (wantedFrame !== null) seek(wantedFrame);
-  wantedFrame = null;
+  if (wantedSpeed) play(wantedSpeed);
+  rememberFrame(null);
 }
 
 /**

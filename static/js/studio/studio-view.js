@@ -9,6 +9,7 @@ import { isReadable, selectedClip, selectedRange, state, update } from "../core/
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
+import { buildRanges } from "./labelled-ranges.js";
 import { frameShown } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
@@ -85,7 +86,8 @@ export function showSelection() {
   );
 }
 
-function query() {
+/** The range on which the buttons act, as the API takes it. */
+export function rangeOf() {
   const { start, end } = /** @type {SelectedRange} */ (selectedRange());
   const whole = state.take === null && state.start === null && state.end === null;
   return whole && !state.takes?.length
@@ -128,9 +130,6 @@ async function saveGesture() {
   await go("gesture", { gesture: null });
 }
 
-/** The range on which the buttons act, as the API takes it. */
-export const rangeOf = () => query();
-
 /**
  * Recognise what is selected; `extra` overrides parts of the request.
  *
@@ -138,7 +137,7 @@ export const rangeOf = () => query();
  */
 export async function recogniseWith(extra = {}) {
   const body = {
-    ...query(),
+    ...rangeOf(),
     language_id: state.language,
     expected: byId("expected").value || null,
     ...extra,
@@ -293,4 +292,5 @@ export function stageButtons() {
     saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
   buildTransport();
+  buildRanges(hasLanguage);
 }

@@ -6,7 +6,7 @@ import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
-import { seek } from "./playback.js";
+import { rememberFrame, seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
 
@@ -18,14 +18,16 @@ import { tracksArea } from "./tracks.js";
  */
 const percent = (seconds, duration) => `${Math.min(100, Math.max(0, (100 * seconds) / duration))}%`;
 
-/** @param {number} duration */
-function tickStep(duration) {
-  return [0.5, 1, 2, 5, 10, 30, 60, 120].find((step) => duration / step <= 10) ?? 300;
-}
+const LEAST_SECONDS = 0.5; // in sight at the largest zoom
+const SALUTES_ROOM = 76; // px between two takes, for the salutes of both
+const MOST_ZOOM = 40; // Each screenful of it has thumbnails of its own.
+
+let zoom = 1; // The timeline's width, as a multiple of its room.
 
 /** @param {number} duration */
 function ruler(duration) {
-  const step = tickStep(duration);
+  const least = duration / zoom / 10; // Ten fit into what is in sight.
+  const step = [0.1, 0.5, 1, 2, 5, 10, 30, 60, 120].find((each) => each >= least) ?? 300;
   const ticks = [];
   for (let second = 0; second <= duration - step / 3; second += step) {
     ticks.push(
@@ -80,51 +82,33 @@ function takeButton(take, index, duration) {
 const held = () => heldName(state.gestures);
 
 /**
- * Where a salute opens or closes a take.
+ * Where a salute opens and where one closes a take.
  *
- * @param {number} seconds
- * @param {"opens" | "closes"} kind
- * @param {number} duration
- */
-function saluteMark(seconds, kind, duration) {
-  return h(
-    "span",
-    {
-      className: `salute ${kind}`,
-      title: held(),
-      style: { left: percent(seconds, duration) },
-    },
-    icon("salute"),
-  );
-}
-
-/**
  * @param {Take} take
  * @param {number} duration
  */
-const saluteMarks = (take, duration) =>
-  [
-    saluteMark(take.start, "opens", duration),
-    take.closed ? saluteMark(take.end, "closes", duration) : null,
-  ].filter((mark) => mark !== null);
+const saluteMarks = ({ start, end, closed }, duration) =>
+  [["opens", start], ...(closed ? [["closes", end]] : [])].map(([kind, seconds]) =>
+    h(
+      "span",
+      {
+        className: `salute ${kind}`,
+        title: held(),
+        style: { left: percent(Number(seconds), duration) },
+      },
+      icon("salute"),
+    ),
+  );
 
 /** When the last frame is shown: the right edge of the timeline. */
 const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
 
 const lastMoment = () => timeOfFrames().at(-1) || 1;
 
-/**
- * The frame that is nearest to a moment.
- *
- * @param {number} seconds
- */
+/** @param {number} seconds */
 const frameAt = (seconds) => nearestFrame(timeOfFrames(), seconds);
 
-/**
- * How many frames a key moves a handle on.
- *
- * @type {Record<string, number>}
- */
+/** @type {Record<string, number>} how many frames a key moves a handle on */
 const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 };
 
 /** @param {"start" | "end"} which */
@@ -197,13 +181,20 @@ function move(which, frame) {
   update({ take: null, recognition: null, start: time[moved[0]], end: time[moved[1]] });
 }
 
-/** Let the range start, or end, at the frame on display. */
-export const setStart = () => {
-  if (state.timeline && state.position) move("start", state.position.frame);
-};
-export const setEnd = () => {
-  if (state.timeline && state.position) move("end", state.position.frame);
-};
+/**
+ * Let the range start, or end, at the frame on display; a clip that plays goes on.
+ *
+ * @param {"start" | "end"} which
+ */
+function moveHere(which) {
+  if (!state.timeline || !state.position) return;
+  const { frame, playing, speed } = state.position;
+  if (frameAt(/** @type {SelectedRange} */ (selectedRange())[which]) === frame) return;
+  rememberFrame(frame, playing ? speed : 0);
+  move(which, frame);
+}
+export const setStart = () => moveHere("start");
+export const setEnd = () => moveHere("end");
 
 /**
  * @param {SelectedRange} range
@@ -260,6 +251,33 @@ function redrawTrack(track, content, takes) {
   takes[focused]?.focus();
 }
 
+/**
+ * Say what is selected, and warn of salutes in it.
+ *
+ * @param {SelectedRange} range
+ * @param {Take[]} takes
+ */
+function drawNote(range, takes) {
+  const inside = salutesIn(/** @type {Timeline} */ (state.timeline), range.start, range.end);
+  const warning = range.take ? "" : saluteWarning(inside, held());
+  const back = () => update({ take: 0, start: null, end: null, recognition: null });
+  byId("range-text").replaceChildren(
+    h(
+      "p",
+      { className: "range-text" },
+      h("span", { role: "status" }, summary(range, takes)),
+      warning ? h("span", { className: "salute-warning", role: "alert" }, warning) : null,
+      state.take === null && takes.length
+        ? h(
+            "button",
+            { type: "button", className: "link", onclick: back },
+            `Back to ${plural(takes.length, "take")}`,
+          )
+        : null,
+    ),
+  );
+}
+
 /** Draw the timeline of the clip on display. */
 export function drawTimeline() {
   const box = byId("timeline");
@@ -268,45 +286,27 @@ export function drawTimeline() {
   if (!clip || !isReadable() || !state.takes || !state.timeline) return box.replaceChildren();
   const duration = lastMoment();
   const track = box.querySelector(".track");
-  const lengths = h("div", {
-    className: "range",
-    style: {
-      left: percent(range.start, duration),
-      width: percent(range.end - range.start, duration),
-    },
-  });
+  const [left, width] = [range.start, range.end - range.start].map((part) =>
+    percent(part, duration),
+  );
+  const lengths = h("div", { className: "range", style: { left, width } });
   const takes = state.takes.map((take, index) => takeButton(take, index, duration));
   // Takes found without a trigger have nothing held at their ends.
   const marked = held() === "gesture" ? [] : state.takes;
-  const salutes = marked.flatMap((take) => saluteMarks(take, duration));
-  const warning = range.take
-    ? ""
-    : saluteWarning(salutesIn(state.timeline, range.start, range.end), held());
-  const note = h(
-    "p",
-    { className: "range-text" },
-    h("span", { role: "status" }, summary(range, state.takes)),
-    warning ? h("span", { className: "salute-warning", role: "alert" }, warning) : null,
-    state.take === null && state.takes.length
-      ? h(
-          "button",
-          {
-            type: "button",
-            className: "link",
-            onclick: () => update({ take: 0, start: null, end: null, recognition: null }),
-          },
-          `Back to ${plural(state.takes.length, "take")}`,
-        )
-      : null,
-  );
-  byId("range-text").replaceChildren(note);
-  if (track && box.dataset.clip === clip.id) {
+  const second = (track?.clientWidth ?? 0) / duration;
+  const salutes = marked
+    .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
+    .flatMap((take) => saluteMarks(take, duration));
+  drawNote(range, state.takes);
+  // While a clip is being read, its end moves.
+  const drawn = `${clip.id} ${duration}`;
+  if (track && box.dataset.clip === drawn) {
     redrawTrack(track, [lengths, ...salutes, ...takes], takes);
     placeHandles(track, range);
     return undefined;
   }
-  box.dataset.clip = clip.id;
-  const behind = h("div", { className: "curve-area" }, curves(state.timeline));
+  box.dataset.clip = drawn;
+  zoom = 1;
   const lane = h(
     "div",
     { className: "track", role: "group", "aria-label": "Takes" },
@@ -320,23 +320,78 @@ export function drawTimeline() {
     "div",
     { className: "along" },
     lane,
-    behind,
+    h("div", { className: "labelled-ranges", id: "labelled-ranges" }),
+    h("div", { className: "curve-area" }, curves(state.timeline)),
     tracksArea(),
     h("i", { className: "now", id: "now" }),
   );
+  const zoomed = h("div", { className: "zoomed" }, along, ruler(duration));
+  const seen = h("div", { className: "seen" }, zoomed);
+  // A pinch on a touchpad arrives as a wheel with Ctrl.
+  seen.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey) return;
+    event.preventDefault();
+    zoomBy(2 ** (-event.deltaY / 200), event.clientX);
+  });
   box.replaceChildren(
-    along,
-    h("div", { className: "under" }, ruler(duration), legend(held().replace("Vulcan ", ""))),
+    seen,
+    h(
+      "div",
+      { className: "under" },
+      ZOOMS.map(({ sign, key, text: title, zoom: onclick }) =>
+        h(
+          "button",
+          { type: "button", "aria-label": title, title: `${title} (${key})`, onclick },
+          sign,
+        ),
+      ),
+      legend(held().replace("Vulcan ", "")),
+    ),
   );
-  lane.prepend(filmstrip(clip, state.timeline, lane.clientWidth, lane.clientHeight) ?? "");
   placeHandles(lane, range);
   scrub(along);
+  zoomBy(1);
   return drawNow();
+}
+
+/**
+ * Enlarge the timeline about a place of the screen, or about the moment on display.
+ *
+ * @param {number} factor
+ * @param {number} [clientX]
+ */
+function zoomBy(factor, clientX) {
+  const clip = selectedClip();
+  const [seen, zoomed, track] = [".seen", ".zoomed", ".track"].map(
+    (each) => /** @type {HTMLElement | null} */ (byId("timeline").querySelector(each)),
+  );
+  if (!seen || !zoomed || !track || !clip || !state.timeline) return;
+  const { left, width } = zoomed.getBoundingClientRect();
+  const place = clientX ?? left + (width * (state.position?.time ?? 0)) / lastMoment();
+  const share = (place - left) / width;
+  const inSight = place - seen.getBoundingClientRect().left;
+  zoom = Math.max(1, Math.min(MOST_ZOOM, lastMoment() / LEAST_SECONDS, zoom * factor));
+  zoomed.style.width = `${100 * zoom}%`;
+  seen.scrollLeft = share * zoomed.clientWidth - Math.min(seen.clientWidth, Math.max(0, inSight));
+  zoomed.querySelector(".ruler")?.replaceWith(ruler(lastMoment()));
+  track.querySelector(".filmstrip")?.remove();
+  track.prepend(filmstrip(clip, state.timeline, track.clientWidth, track.clientHeight) ?? "");
+  drawTimeline();
 }
 
 /** Show where the clock stands. */
 export function drawNow() {
   const line = document.getElementById("now");
-  if (line && state.position && state.timeline)
-    line.style.left = percent(state.position.time, lastMoment());
+  if (!line || !state.position || !state.timeline) return;
+  line.style.left = percent(state.position.time, lastMoment());
+  const seen = line.closest(".seen");
+  const beyond = seen ? line.offsetLeft - seen.scrollLeft : 0;
+  if (seen && (beyond < 0 || beyond > seen.clientWidth))
+    seen.scrollLeft = line.offsetLeft - seen.clientWidth / 4;
 }
+
+/** The buttons and keys that zoom. */
+export const ZOOMS = [
+  { sign: "\u2212", key: "-", text: "Show more of the timeline", zoom: () => zoomBy(0.5) },
+  { sign: "+", key: "+", text: "Enlarge the timeline", zoom: () => zoomBy(2) },
+];

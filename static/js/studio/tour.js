@@ -23,25 +23,25 @@ const STEPS = [
   },
   {
     title: "1. Give it a clip",
-    text: "Drop clips anywhere in the window: Vulcan salute, the gesture, Vulcan salute. Sample clips are below the list.",
-    places: [".drop label", "#clips"],
+    text: "Drop clips anywhere in the window. Sample clips are below the list.",
+    places: [".drop label"],
   },
   {
     title: "2. Save the take as a gesture",
-    text: "The take between two salutes appears on the timeline. Save it as a gesture, or recognise it.",
-    places: ["#clip-bar", "#stage"],
+    text: "The timeline marks what lies between two salutes. Save it as a gesture, or recognise it.",
+    places: ["#clip-bar", "#save-gesture", ".question"],
     onClip: true,
   },
   {
     title: "3. Ask why",
-    text: "Every voter has a distance to every gesture: see which voters were wrong, and which change would help.",
-    places: ["#why", ".lab"],
+    text: "After an answer you see what differs, where, and which change would help.",
+    places: ["#why", "#recognise", ".question"],
     onClip: true,
   },
   {
-    title: "4. Keep it in a language",
-    text: "Gestures make a language. Every change is kept and can be undone; Export writes the file for the robot.",
-    places: ["#views a:nth-child(2)", ".picker"],
+    title: "4. Export the language",
+    text: "Gestures make a language. Export writes it as one file for the robot.",
+    places: ["#export"],
   },
 ];
 
@@ -52,23 +52,8 @@ let pointed = null; // what the card points at
 /** @type {HTMLElement | null} */
 let came = null; // where the focus was
 let at = 0; // the step on display
+let listening = new AbortController();
 let offering = false; // whether it offers the example
-
-const seen = () => {
-  try {
-    return localStorage.getItem(KEY) !== null;
-  } catch {
-    return true;
-  }
-};
-
-function remember() {
-  try {
-    localStorage.setItem(KEY, "seen");
-  } catch {
-    /* a browser without storage shows it again */
-  }
-}
 
 /** @param {Element} element */
 const visible = (element) => element.checkVisibility() && element.getBoundingClientRect().width > 0;
@@ -80,46 +65,34 @@ const placeOf = (step) =>
 /** @param {Step} step */
 const offersExample = ({ onClip }) => Boolean(onClip) && !selectedClip();
 
-/** Place the card so that it does not cover its target, as far as the window has room. */
+/** Place the card beside its target, where the window has room for both. */
 function position() {
   if (!card) return;
-  const [ring, place] = [byId("tour-ring"), pointed];
-  const { width, height } = card.getBoundingClientRect();
-  const { innerWidth: w, innerHeight: t } = window;
-  /**
-   * @param {number} value
-   * @param {number} most
-   */
-  const clamp = (value, most) => Math.max(GAP, Math.min(value, most - GAP));
-  if (!place) {
-    Object.assign(card.style, {
-      left: `${clamp(w - width - GAP, w - width)}px`,
-      top: `${clamp(t - height - GAP, t - height)}px`,
-    });
-    return;
+  const { offsetWidth: width, offsetHeight: height } = card;
+  const [mostLeft, mostTop] = [innerWidth - width - GAP, innerHeight - height - GAP];
+  /** @type {number[][]} */
+  const spots = [];
+  if (pointed) {
+    const box = pointed.getBoundingClientRect();
+    const [left, top] = [Math.min(box.left, mostLeft), Math.min(box.top, mostTop)];
+    spots.push([left, box.bottom + GAP], [left, box.top - GAP - height]);
+    spots.push([box.right + GAP, top], [box.left - GAP - width, top]);
+    const size = `width: ${box.width + 8}px; height: ${box.height + 8}px`;
+    byId("tour-ring").style.cssText = `left: ${box.left - 4}px; top: ${box.top - 4}px; ${size}`;
   }
-  const box = place.getBoundingClientRect();
-  Object.assign(ring.style, {
-    left: `${box.left - 4}px`,
-    top: `${box.top - 4}px`,
-    width: `${box.width + 8}px`,
-    height: `${box.height + 8}px`,
-  });
-  const beside = box.right + GAP + width <= w;
-  const below = box.bottom + GAP + height <= t;
-  const above = box.top - GAP - height >= 0;
-  const left = beside && !below ? box.right + GAP : box.left;
-  const top = below
-    ? box.bottom + GAP
-    : beside
-      ? box.top
-      : above
-        ? box.top - GAP - height
-        : box.bottom - height - GAP;
-  Object.assign(card.style, {
-    left: `${clamp(left, w - width)}px`,
-    top: `${clamp(top, t - height)}px`,
-  });
+  const [left, top] = spots.find(
+    ([x, y]) => x >= 0 && y >= 0 && x <= mostLeft + GAP && y <= mostTop + GAP,
+  ) ?? [GAP, mostTop];
+  card.style.cssText = `left: ${left}px; top: ${top}px`;
+}
+
+/**
+ * A press on the page answers the first card: who begins by himself needs no tour.
+ *
+ * @param {PointerEvent} event
+ */
+function pressed({ target }) {
+  if (at === 0 && !card?.contains(/** @type {Node} */ (target))) end();
 }
 
 /** @param {KeyboardEvent} event */
@@ -129,14 +102,12 @@ function escape(event) {
 
 function end() {
   if (!card) return;
-  removeEventListener("resize", position);
-  removeEventListener("scroll", position, true);
-  removeEventListener("keydown", escape);
+  listening.abort();
   byId("tour-ring")?.remove();
   card.remove();
   card = null;
   came?.focus?.();
-  remember();
+  localStorage.setItem(KEY, "seen");
 }
 
 /**
@@ -146,6 +117,7 @@ function end() {
 function show(number, focus) {
   const step = STEPS[number];
   at = number;
+  card?.classList.toggle("intro", !number);
   offering = offersExample(step);
   const last = number === STEPS.length - 1;
   const place = placeOf(step);
@@ -205,9 +177,12 @@ function begin(focus) {
   // Early in the order of Tab, so that a keyboard finds it.
   document.body.prepend(h("div", { id: "tour-ring", className: "tour-ring", hidden: true }), card);
   show(0, focus);
-  addEventListener("resize", position);
-  addEventListener("scroll", position, true);
-  addEventListener("keydown", escape);
+  listening = new AbortController();
+  const { signal } = listening;
+  addEventListener("resize", position, { signal });
+  addEventListener("scroll", position, { signal, capture: true });
+  addEventListener("keydown", escape, { signal });
+  addEventListener("pointerdown", pressed, { signal });
 }
 
 /** Start the tour on request. */
@@ -219,5 +194,5 @@ export function startTour() {
 
 /** Start the tour on a first visit, without taking the focus. */
 export function offerTour() {
-  if (!seen()) begin(false);
+  if (localStorage.getItem(KEY) === null) begin(false);
 }

@@ -45,8 +45,8 @@ export function toggleTracks() {
   drawTracks();
 }
 
-/** @param {Clip} clip */
-function posesOf(clip) {
+/** @param {Clip} clip whose poses are loaded once */
+export function posesOf(clip) {
   const wanted = versionOf(clip);
   if (loaded?.clip !== wanted)
     loaded = {

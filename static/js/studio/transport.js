@@ -6,7 +6,7 @@ import { bind } from "../core/key-bindings.js";
 import { isReadable, state, update } from "../core/state.js";
 import { loop, play, step } from "./playback.js";
 import { cubeButton, followChoice } from "./clip-picture.js";
-import { setEnd, setStart } from "./timeline.js";
+import { setEnd, setStart, ZOOMS } from "./timeline.js";
 import { toggleTracks, tracksButton } from "./tracks.js";
 import { showFlat } from "./workspace.js";
 
@@ -57,11 +57,18 @@ const button = (name, label, keys, onclick) =>
       className: "quiet icon",
       id: `do-${name}`,
       "aria-label": label,
-      title: `${label} (${keys})`,
+      title: keys ? `${label} (${keys})` : label,
       onclick,
     },
     icon(name),
   );
+
+/**
+ * @param {string} text
+ * @param {string} title
+ * @param {() => unknown} onclick
+ */
+const edge = (text, title, onclick) => h("button", { type: "button", title, onclick }, text);
 
 /** Build the bar, and bind its keys. */
 export function buildTransport() {
@@ -92,31 +99,12 @@ export function buildTransport() {
       },
       SPEEDS.map((each) => h("option", { value: each, selected: each === 1 }, `${each}\u00d7`)),
     ),
-    h(
-      "button",
-      {
-        type: "button",
-        className: "quiet icon",
-        id: "do-loop",
-        "aria-label": "Repeat the range",
-        title: "Repeat the range",
-        onclick: () => loop(!state.position?.loop),
-      },
-      icon("loop"),
-    ),
+    button("loop", "Repeat the range", "", () => loop(!state.position?.loop)),
     h(
       "span",
       { className: "joined edges" },
-      h(
-        "button",
-        { type: "button", title: "Let the range start here ([)", onclick: setStart },
-        "Start here",
-      ),
-      h(
-        "button",
-        { type: "button", title: "Let the range end here (])", onclick: setEnd },
-        "End here",
-      ),
+      edge("Start here", "Let the range start here ([)", setStart),
+      edge("End here", "Let the range end here (])", setEnd),
     ),
     tracksButton(),
     cubeButton(),
@@ -140,6 +128,7 @@ export function buildTransport() {
   keys(["T"], "Next take", () => neighbour(1));
   keys(["Shift+T"], "Take before", () => neighbour(-1));
   keys(["G"], "Tracks of the wrists", toggleTracks);
+  for (const { key, text, zoom } of ZOOMS) keys([key, `Shift+${key}`], text, zoom);
   keys(["["], "Let the range start here", setStart);
   keys(["]"], "Let the range end here", setEnd);
 }

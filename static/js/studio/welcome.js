@@ -26,7 +26,7 @@ const STEPS = [
   ],
   [
     "Ask why",
-    "Recognise another clip, and see how far each voter, one way to compare movements, finds it from every gesture.",
+    "Recognise another clip, and see what differs from the gesture meant, where, and what would help.",
   ],
   ["Export", "Export the language for the robot as one JSON file."],
 ];
@@ -81,7 +81,7 @@ function question(samples, languages) {
     h(
       "span",
       {},
-      "This sample clip is recognised wrongly. See which voters were wrong, where, and which change would have helped.",
+      "This sample clip is recognised wrongly. See what differs, where, and what would have helped.",
     ),
   );
   button.onclick = () => ask(found, button);

@@ -11,6 +11,7 @@ import { go } from "../core/views.js";
 import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
 import { addToTestSet } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
+import { partsOf } from "./alignment-parts.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
@@ -21,14 +22,15 @@ const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 
 /**
- * Load the explanation, once there is an expected label.
+ * Load the explanation by the expected gesture, or by the nearest one where none is expected.
  *
  * @param {Pick<State, "result">} state
  */
 export async function loadWhy({ result }) {
-  if (!result || result.expected === null) return update({ why: null });
+  const label = result && (result.expected ?? result.nearest);
+  if (!label) return update({ why: null });
   if (state.why?.id === result.id) return undefined;
-  const why = await attempt("Explaining", () => api.recognitions.explain(result.id));
+  const why = await attempt("Explaining", () => api.recognitions.explain(result.id, label));
   // Another recognition may be on display by now, whose own reasons must stay.
   return state.result?.id === result.id ? update({ why }) : undefined;
 }
@@ -47,18 +49,8 @@ function costs({ alignments, expected }) {
       steps[step][part] += cost;
     }),
   );
-  const totals = alignment.parts.map((_, part) => steps.reduce((sum, step) => sum + step[part], 0));
-  const shown = totals
-    .map((total, part) => ({ total, part }))
-    .sort((one, other) => other.total - one.total)
-    .filter(({ total }) => total > 0)
-    .slice(0, MOST_PARTS);
-  return {
-    time: alignment.time,
-    steps,
-    lanes: shown.map(({ part }) => ({ part, name: alignment.parts[part] })),
-    label: expected,
-  };
+  const lanes = partsOf(alignment).filter(({ cost }) => cost > 0);
+  return { time: alignment.time, steps, lanes: lanes.slice(0, MOST_PARTS), label: expected };
 }
 
 /**
@@ -106,9 +98,9 @@ function lane({ time, steps }, { part, name }, most, last) {
  *
  * @param {State} state
  */
-export function drawCosts({ why, timeline }) {
+export function drawCosts({ why, result, timeline }) {
   const box = byId("costs");
-  const found = why && !why.right ? costs(why) : null;
+  const found = why && !why.right && result?.expected ? costs(why) : null;
   if (!timeline || !found?.lanes.length) return box.replaceChildren();
   const most =
     Math.max(...found.lanes.flatMap(({ part }) => found.steps.map((step) => step[part]))) || 1;

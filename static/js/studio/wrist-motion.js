@@ -1,6 +1,8 @@
 // The wrists that move in a range of a clip, and their places over time.
 
-/** @import { Poses } from "../core/types.d.ts" */
+import { nearestFrame } from "../clips/frame-times.js";
+
+/** @import { Alignment, Poses } from "../core/types.d.ts" */
 
 const STILL = 0.5; // Share of the larger wrist's path below which a wrist is no part of the stroke.
 const WRISTS = ["left_wrist", "right_wrist"];
@@ -68,4 +70,42 @@ export function tracksOf(poses, names) {
       y: places.map(([, y]) => (y === null ? null : (bottom - y) / extent)),
     };
   });
+}
+
+/**
+ * The stroke of an alignment's gesture, laid over the take as it was compared: by the size and the
+ * middles of the wrists that carry the take's normalised stroke onto the diver in the picture.
+ *
+ * @param {Pick<Alignment, "parts" | "time" | "query" | "gesture">} alignment
+ * @param {Pick<Poses, "landmarks" | "xy" | "time">} poses
+ * @returns {(number[] | null)[][]} one path per moving wrist, in pixels
+ */
+export function strokeOver({ parts, time, query, gesture }, poses) {
+  const frames = time.map((seconds) => nearestFrame(poses.time, seconds));
+  const names = movingWrists(poses, [frames[0], frames[frames.length - 1]]);
+  let [along, size] = [0, 0]; // of the least squares for the one scale
+  const wrists = names
+    .filter((name) => parts.includes(name))
+    .map((name) => {
+      const [part, places] = [parts.indexOf(name), placesOf(poses, name)];
+      const pairs = frames.flatMap((frame, step) => {
+        const [from, [x, y]] = [query[step][part], places[frame]];
+        return from && x !== null && y !== null ? [[...from, x, y]] : [];
+      });
+      const middle = [0, 1, 2, 3].map(
+        (axis) => pairs.reduce((sum, pair) => sum + pair[axis], 0) / (pairs.length || 1),
+      );
+      for (const pair of pairs)
+        for (const axis of [0, 1]) {
+          along += (pair[axis] - middle[axis]) * (pair[axis + 2] - middle[axis + 2]);
+          size += (pair[axis] - middle[axis]) ** 2;
+        }
+      return { part, middle };
+    });
+  return wrists.map(({ part, middle: [left, top, x, y] }) =>
+    gesture.map(({ [part]: at }) => {
+      const scale = along / (size || 1);
+      return at && [x + scale * (at[0] - left), y + scale * (at[1] - top)];
+    }),
+  );
 }

@@ -6,11 +6,11 @@ import re
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import FloatRect, Locator, Page, expect
 
-from tests.api.running import Running, client_of
+from tests.api.running import Running, client_of, until
 from tests.browser.conftest import OpenPage
-from tests.browser.library import Library, library_of
+from tests.browser.library import Library, add_clip, library_of
 
 WARNING = "This range contains 2 Vulcan salutes"
 
@@ -19,6 +19,18 @@ WARNING = "This range contains 2 Vulcan salutes"
 def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library]:
     with client_of(server.address) as client:
         yield library_of(server, client, request.node.name[:40])
+
+
+def box_of(locator: Locator) -> FloatRect:
+    """Return the place of an element that is drawn."""
+    box = locator.bounding_box()
+    assert box is not None
+    return box
+
+
+def frame_of(page: Page) -> int:
+    """Return the number of the frame on display."""
+    return int(re.findall(r"frame (\d+)", page.locator("#clock").inner_text())[0])
 
 
 def choose_whole_clip(page: Page) -> None:
@@ -65,3 +77,97 @@ def test_a_range_with_salutes_is_warned_of_before_and_after_it_is_saved(
     expect(page.get_by_role("region", name="Why")).to_contain_text(
         "The demonstration of 'whole clip' is the whole clip, with its salutes. Set its range."
     )
+
+
+def test_a_long_timeline_is_enlarged_and_its_labels_never_overlap(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, *["circle"] * 17, name="long dive.mp4")
+    page = open_page({"clip": clip, "language": library.language}, scene=False, size=(1024, 768))
+    expect(page.locator(".take")).to_have_count(17)
+    track = page.locator(".track")
+    width = box_of(track)["width"]
+    ticks = page.locator(".ruler span")
+    for _ in range(3):
+        for labels in (page.locator(".take-name:visible"), page.locator(".salute"), ticks):
+            boxes = sorted((box_of(each) for each in labels.all()), key=lambda box: box["x"])
+            ends = [box["x"] + box["width"] for box in boxes[:-1]]
+            assert all(end <= box["x"] + 0.5 for end, box in zip(ends, boxes[1:], strict=True)), (
+                labels
+            )
+        page.get_by_role("button", name="Enlarge the timeline").click()
+    assert box_of(track)["width"] == pytest.approx(8 * width, rel=0.01)
+    expect(page.locator(".take-name i").first).to_be_visible()
+    # The moment on display stays in sight, and the one under the pointer where it is.
+    expect(page.locator("#now")).to_be_in_viewport()
+    seen = box_of(page.locator(".seen"))
+    third = page.get_by_role("button", name=re.compile("^Take 3,"))
+    third.scroll_into_view_if_needed()
+    before = box_of(third)
+    page.mouse.move(before["x"] + before["width"] / 2, seen["y"] + 20)
+    page.keyboard.down("Control")
+    page.mouse.wheel(0, -200)
+    page.keyboard.up("Control")
+    after = box_of(third)
+    assert after["width"] == pytest.approx(2 * before["width"], rel=0.02)
+    assert after["x"] + after["width"] / 2 == pytest.approx(
+        before["x"] + before["width"] / 2, abs=3
+    )
+    for _ in range(5):
+        page.keyboard.press("-")
+    assert box_of(track)["width"] == pytest.approx(width, rel=0.01)
+
+
+def test_ranges_are_labelled_while_the_clip_plays_and_saved_together(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, *["circle"] * 5, name="long dive.mp4")
+    page = open_page({"clip": clip, "language": library.language}, scene=False)
+    expect(page.get_by_role("button", name=re.compile("^Take 1,"))).to_be_visible()
+    expect(page.locator("#clock")).to_have_text(re.compile(r"frame [1-9]\d* of 370"))
+    page.get_by_label("Speed", exact=True).select_option("0.25")
+    pause = page.get_by_role("button", name="Pause", exact=True)
+    label = page.get_by_role("textbox", name="Gesture in this range")
+    add = page.get_by_role("button", name="Add range")
+    expect(label).to_be_hidden()
+    page.locator("#clip-name").click()
+    page.keyboard.press("Space")
+    expect(pause).to_be_visible()
+    with page.expect_response(re.compile("/view$")):
+        page.keyboard.press("[")
+    expect(label).to_be_visible()
+    shown = frame_of(page)
+    until(lambda: shown + 3 < frame_of(page))
+    expect(pause).to_be_visible()
+    page.keyboard.press("k")
+    for name in ("wave", "nod"):
+        page.keyboard.press("[")
+        for _ in range(6):
+            page.keyboard.press("Shift+.")
+        page.keyboard.press("]")
+        label.fill(name)
+        label.press("Enter")
+        page.locator("#clip-name").click()
+        for _ in range(2):
+            page.keyboard.press("Shift+.")
+    bars = page.locator("#labelled-ranges button")
+    expect(bars).to_have_text(["wave", "nod"])
+    page.reload()
+    expect(bars).to_have_text(["wave", "nod"])
+    # A press takes one out, to be changed or dropped.
+    bars.first.click()
+    expect(bars).to_have_text(["nod"])
+    expect(label).to_have_value("wave")
+    label.fill("hello")
+    add.click()
+    page.get_by_role("button", name="Save 2 ranges as gestures").click()
+    cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
+    expect(cards).to_have_count(4)
+    expect(bars).to_have_count(0)
+    # Labels that the language has are takes to test.
+    label.fill("hello")
+    add.click()
+    page.get_by_role("button", name="Keep 1 range as tests").click()
+    expect(page.get_by_text("In the test set")).to_be_visible()
+    kept = library.client.get(f"/api/v1/languages/{library.language}/test-set").json()
+    assert [take["expected"] for take in kept["takes"]] == ["hello"]

@@ -72,7 +72,7 @@ def test_a_link_shows_the_same_and_a_reload_keeps_the_workspace(
     outcome = page.locator("#outcome")
     expect(outcome).to_contain_text("Recognised as circle, expected line")
     expect(page.get_by_role("table", name="Votes")).to_be_visible()
-    expect(page.get_by_label("Expected")).to_have_value("line")
+    expect(page.get_by_label("Expected", exact=True)).to_have_value("line")
     expect(page.get_by_role("button", name=re.compile("^Take 1"))).to_have_attribute(
         "aria-pressed", "true"
     )

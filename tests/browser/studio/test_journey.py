@@ -109,7 +109,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     # A clip of another diver is recognised; every voter's choice can be read. Not a circle again:
     # the language has two by now.
     upload(page, thin_clip("infinity-test-1"))
-    page.get_by_label("Expected").select_option("infinity")
+    page.get_by_label("Expected", exact=True).select_option("infinity")
     page.get_by_role("button", name="Recognise").click()
     lab = lab_of(page)
     table = page.get_by_role("table", name="Votes")
@@ -208,7 +208,7 @@ def test_a_dropped_clip_is_misread_explained_and_read_right_after_a_try(
 ) -> None:
     page = open_page(size=(1440, 900))
     page.get_by_label("Language", exact=True).select_option(label="Table 2: eight signs")
-    expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
+    expect(page.get_by_role("list", name="Gestures")).to_contain_text("triangle")
     film(page, 1.0)
     drop(page, thinned(sample_clips / "unfinished-triangle.mp4", tmp_path / "triangle at 6 m.mp4"))
     expect(page.locator("#welcome progress")).to_be_visible()

@@ -122,6 +122,43 @@ def test_answer_remedy_picture_drawings_and_first_voters_are_in_sight_without_sc
     expect(table.locator("tbody tr")).to_have_count(len(MOTION_VOTERS))
 
 
+def test_the_expected_stroke_is_dashed_over_the_shown_one_once_there_is_an_answer(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, size=(1440, 900), scene=False)
+    expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
+    over = page.locator("#stroke-over")
+    expect(over).to_be_hidden()
+    page.get_by_role("button", name="Recognise", exact=True).click()
+    expect(over.get_by_role("img")).to_have_accessible_name(
+        "The stroke of circle, chosen, over the one shown"
+    )
+    expect(over).to_have_text("circle chosen")
+    # The same circle is the language's: both strokes lie on each other in the picture.
+    drawn = over.locator("path").first.evaluate("""path => {
+        const { x, y, width, height } = path.getBBox();
+        return [x, y, x + width, y + height];
+    }""")
+    poses = library.client.get(f"/api/v1/clips/{library.clip}/poses").json()
+    (take,) = library.client.get(f"/api/v1/clips/{library.clip}/takes").json()
+    wrist = np.array(
+        [
+            points[poses["landmarks"].index("right_wrist")]
+            for points, at in zip(poses["xy"], poses["time"], strict=True)
+            if take["stroke_start"] <= at <= take["stroke_end"]
+        ],
+        dtype=float,
+    )
+    shown = [*np.nanmin(wrist, axis=0), *np.nanmax(wrist, axis=0)]
+    assert drawn == pytest.approx(shown, abs=0.1 * (shown[2] - shown[0]))
+    assert over.bounding_box() == page.locator("#lab-box").bounding_box()
+
+    page.get_by_role("button", name="line", exact=True).click()
+    expect(over).to_have_text("line expected")
+    page.keyboard.press("v")
+    expect(over).to_be_hidden()
+
+
 def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
     page = open_page(library.address, size=(1440, 900), scene=False)
     expect(page.get_by_role("button", name="Recognise", exact=True)).to_be_enabled()
@@ -164,8 +201,9 @@ def test_without_webgl_the_page_draws_the_same_picture_and_says_why(
     expect(picture.locator(".trails path")).to_have_attribute("d", re.compile("^M"))
     expect(clock).to_have_text(re.compile(r"frame \d+ of"))
     video = picture.locator("video")
-    # The trail lies over the number.
-    picture.locator(".figure-over").evaluate("(over) => { over.style.visibility = 'hidden'; }")
+    # The trail and the gesture's stroke lie over the number.
+    for over in (picture.locator(".figure-over"), page.locator("#stroke-over")):
+        over.evaluate("(over) => { over.style.visibility = 'hidden'; }")
 
     def on_clock() -> int:
         return int(re.findall(r"frame (\d+)", clock.inner_text())[0])
