@@ -116,10 +116,8 @@ export function drawByViser() {
 
 /** @param {Clip} clip whose picture is built, unless another one is wanted by then */
 async function build(clip) {
-  const poses = await posesOf(clip);
-  const wanted = versionOf(clip);
-  const now = selectedClip();
-  if (!poses || !now || versionOf(now) !== wanted || shown?.clip === wanted) return;
+  const [poses, wanted] = [await posesOf(clip), versionOf(clip)];
+  if (!poses || state.clip !== clip.id || shown?.clip === wanted) return;
   const picture = figure(() => {});
   picture.show(poses, clip);
   byId("flat").querySelector(".flat-picture")?.replaceChildren(picture.element);
@@ -145,15 +143,15 @@ export async function drawFlat() {
  *
  * @param {State} state
  */
-export async function drawStroke({ why, result, clip }) {
+export async function drawStroke({ why, result }) {
   const box = byId("stroke-over");
   box.hidden = true;
-  if (!why || result?.id !== why.id || result.clip_id !== clip) return;
-  const selected = selectedClip();
-  if (selected?.status !== "done") return; // The poses so far are not given.
+  const clip = selectedClip();
+  if (!why || result?.id !== why.id || result.clip_id !== clip?.id) return;
+  if (clip.status !== "done") return; // The poses so far are not given.
   const label = result.expected ?? result.nearest;
   const alignment = why.alignments.find((each) => each.voter === "path" && each.label === label);
-  const poses = alignment && (await posesOf(selected));
+  const poses = alignment && (await posesOf(clip));
   if (!poses || state.why !== why) return;
   const paths = strokeOver(alignment, poses).map((path) => `M${path.filter(Boolean).join("L")}`);
   const chosen = label === result.label ? "chosen" : "nearest";
@@ -166,7 +164,7 @@ export async function drawStroke({ why, result, clip }) {
       {
         viewBox: `0 0 ${poses.frame_size.join(" ")}`,
         role: "img",
-        "aria-label": `The stroke of ${label}, ${role}, over the one shown`,
+        "aria-label": `The stroke of ${label}, over the one shown`,
       },
       ...["halo", "", "begin"].flatMap((kind) =>
         paths.map((d) =>

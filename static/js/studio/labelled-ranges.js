@@ -11,9 +11,10 @@ import { addToTestSet } from "../languages/test-set.js";
 /** @import { SelectedRange, State } from "../core/types.d.ts" */
 
 const KEY = "osg-studio.ranges"; // sessionStorage: they survive a reload.
-const LABEL = "Gesture in this range";
+const ASKS = "What this range shows";
 
-const field = h("input", { placeholder: LABEL, "aria-label": LABEL, autocomplete: "off" });
+const names = { placeholder: ASKS, "aria-label": ASKS };
+const field = h("input", { type: "text", autocomplete: "off", ...names });
 const form = h("form", { className: "joined" }, field, h("button", {}, "Add range"));
 const send = h("button", WRITES);
 
@@ -105,5 +106,5 @@ export function drawRanges({ takes, take, start, end, timeline }) {
   send.hidden = !here().length;
   send.textContent = areTests()
     ? `Keep ${plural(here().length, "range")} as tests`
-    : `Save ${plural(here().length, "range")} as gestures`;
+    : `Save ${plural(here().length, "gesture")}`;
 }

@@ -54,6 +54,29 @@ def test_a_recognition_with_its_reasons(open_page: OpenPage, library: Library, s
     assert page.evaluate(ESCAPING) == []
 
 
+@pytest.mark.parametrize("look", ["dark", "light", "sun"])
+def test_every_distance_of_the_table_is_legible(
+    open_page: OpenPage, server: Running, look: str
+) -> None:
+    with client_of(server.address) as client:
+        library = library_of(server, client, f"distances in {look}")
+        # The fainter a cell, the farther the gesture: half-way cells had too little contrast.
+        for shape in ("circle backwards", "corner"):
+            library.add_gesture(shape, add_clip(server, shape, name=f"{shape} in {look}.mp4"))
+        query = {**library.address, "recognition": library.recognise("line")}
+        page = open_page(query, scene=False, scheme=look, size=(1440, 900))
+        if look == "sun":
+            page.get_by_role("button", name="Readable in the sun").click()
+        page.get_by_role("button", name="Show the voters without weight").click()
+        expect(page.locator("#stroke-over")).to_be_visible()
+        cells = page.locator("table[aria-label=Votes] tbody td, .vote-table tbody td")
+        assert (
+            len({cell.evaluate("e => getComputedStyle(e).backgroundColor") for cell in cells.all()})
+            > 3
+        )
+        assert faults(page) == []
+
+
 @pytest.mark.parametrize("scheme", ["dark", "light"])
 def test_every_view(open_page: OpenPage, library: Library, scheme: str) -> None:
     page = open_page(library.address, scene=False, scheme=scheme)

@@ -219,6 +219,17 @@ def test_the_label_of_a_new_gesture_is_proposed_and_replaced_by_typing(
     expect(page.get_by_label("Label", exact=True)).to_have_value("")
 
 
+def test_a_label_that_is_too_long_ends_where_it_may_and_can_be_saved(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page(library.address, scene=False)
+    page.get_by_role("button", name="Save as gesture").click()
+    page.get_by_label("Label", exact=True).fill("\U0001f42c" * 200)
+    expect(page.get_by_label("Label", exact=True)).to_have_value("\U0001f42c" * 80)
+    page.get_by_role("button", name="Save gesture", exact=True).click()
+    expect(page.get_by_text("Gesture saved")).to_be_visible()
+
+
 def test_a_gesture_is_shown_anew_and_trimmed_to_the_frame(
     open_page: OpenPage, library: Library
 ) -> None:

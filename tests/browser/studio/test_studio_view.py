@@ -131,7 +131,7 @@ def test_the_expected_stroke_is_dashed_over_the_shown_one_once_there_is_an_answe
     expect(over).to_be_hidden()
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(over.get_by_role("img")).to_have_accessible_name(
-        "The stroke of circle, chosen, over the one shown"
+        "The stroke of circle, over the one shown"
     )
     expect(over).to_have_text("circle chosen")
     # The same circle is the language's: both strokes lie on each other in the picture.
@@ -157,6 +157,41 @@ def test_the_expected_stroke_is_dashed_over_the_shown_one_once_there_is_an_answe
     expect(over).to_have_text("line expected")
     page.keyboard.press("v")
     expect(over).to_be_hidden()
+
+
+def test_on_a_phone_the_decision_on_eight_gestures_is_not_cut(
+    open_page: OpenPage, library: Library
+) -> None:
+    for label in ("square", "wedge", "sweep", "infinity", "three", "triangle"):
+        library.add_gesture(label)
+    query = {**library.address, "recognition": library.recognise("circle")}
+    page = open_page(query, size=(390, 844), scene=False)
+    table = page.get_by_role("table", name="Votes")
+    expect(table.locator("th.gesture")).to_have_count(8)
+    expect(page.get_by_role("img", name="Trajectory image: this take")).to_be_visible()
+    parts = page.locator("#votes *").evaluate_all("""all => all
+        .filter((part) => part.getBoundingClientRect().right > innerWidth)
+        .map((part) => part.outerHTML.slice(0, 80))""")
+    assert parts == []
+
+
+def test_a_refused_take_names_one_gesture_as_nearest_and_none_as_chosen(
+    open_page: OpenPage, server: Running, library: Library
+) -> None:
+    clip = add_clip(server, "corner", name="corner.mp4")
+    refused = replace(library, clip=clip)
+    for expected, role in ((None, "nearest"), ("circle", "expected"), ("line", "expected")):
+        query = {**refused.address, "recognition": refused.recognise(expected)}
+        page = open_page(query, size=(1440, 900), scene=False)
+        expect(page.locator("#outcome")).to_contain_text("Not recognised; nearest is circle")
+        expect(page.locator("#stroke-over")).to_have_text(f"{expected or 'circle'} {role}")
+        captions = page.locator("#votes figcaption")
+        nearest = "nearest and expected" if expected == "circle" else "nearest"
+        expect(captions.last).to_have_text(f"circle ({nearest})")
+        expect(page.locator(".vote-table th.gesture").first).to_contain_text("circle")
+        if expected:
+            expect(page.get_by_role("region", name="Why")).to_contain_text(f"'{expected}'")
+        expect(page.get_by_text(re.compile("chosen"))).to_have_count(0)
 
 
 def test_nothing_jumps_when_the_reasons_arrive(open_page: OpenPage, library: Library) -> None:
