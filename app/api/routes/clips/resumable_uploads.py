@@ -310,7 +310,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
         except ProblemError:
             await run_in_threadpool(_forget, upload.id, studio)
             raise
-        made.idempotency_key, made.owner = upload.id, upload.owner
+        made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
         await store(made, upload.path, studio, request, upload_id=upload.id)
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     # Also when it was a clip already: a crash may have come between the two.
