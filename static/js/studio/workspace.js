@@ -64,7 +64,7 @@ function loadFrame(url) {
     LOADING_LIMIT,
   );
   frame.onload = () => watch(frame, late);
-  frame.src = `${url}?hideViserLogo`;
+  frame.src = `${api.beside(url)}?hideViserLogo`;
 }
 
 /**

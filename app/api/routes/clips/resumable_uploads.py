@@ -18,6 +18,7 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 
+from app.api.http.page_files import prefix_of
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.ingest.fields import LONGEST, UploadFields
 from app.api.ingest.intake import (
@@ -112,7 +113,7 @@ async def begin_upload(
         except BaseException:
             await run_in_threadpool(studio.uploads.remove, upload.id)
             raise
-    location = f"{request.url.path}/{upload.id}"
+    location = f"{prefix_of(request.headers, studio.settings)}{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
 
