@@ -257,14 +257,14 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
 
 @router.get(
     "/{clip_id}/poster",
-    response_class=FileResponse,
+    response_class=Response,
     responses=picture_responses("A small still picture"),
 )
-def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
     """Send a still picture of the clip: its first frame until its job begins, if it is a video."""
     studio.clips.get(clip_id)
     missing = "there is no still picture of this clip yet"
-    return send_picture(request, studio.clips.poster(clip_id), "no_poster", missing)
+    return send_picture(studio.clips.poster(clip_id), "no_poster", missing)
 
 
 @router.get("/{clip_id}/poses", response_model=PosesView, responses=problem_responses(404, 409))
