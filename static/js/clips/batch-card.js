@@ -9,8 +9,8 @@ import { BUSY } from "./busy.js";
 
 const KEY = "osg-studio.queue"; // sessionStorage: clips of the batch, whose count a reload keeps
 
-/** @type {Batch | null} */
-let batch = kept();
+/** @type {Batch | null | undefined} */
+let batch; // undefined before the first drawing after a load of the page
 
 /** @returns {Batch | null} */
 function kept() {
@@ -45,7 +45,7 @@ function wordsOf(current, clips, jobs) {
 export function drawBatch({ clips, jobs, loaded }) {
   const box = byId("batch");
   if (!loaded && !clips.length) return undefined; // The clips are not known yet.
-  batch = follow(batch, clips, jobs, performance.now());
+  batch = follow(batch === undefined ? kept() : batch, clips, jobs, performance.now());
   sessionStorage.setItem(KEY, JSON.stringify(batch?.members ?? null));
   box.hidden = !batch || batch.members.length < 2;
   if (!batch || box.hidden) return box.replaceChildren();

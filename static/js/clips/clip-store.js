@@ -141,7 +141,8 @@ export function hasPoster(clip) {
 }
 
 /**
- * The picture of a clip, or a grey box; once made it is kept, since progress redraws the rest often.
+ * The picture of a clip, or a grey box. Once made it is kept, since progress redraws the rest
+ * often.
  *
  * @param {Clip} clip
  * @param {Element | null} [known] the one drawn before
@@ -150,7 +151,8 @@ export function posterOf(clip, known) {
   const place = api.clips.poster(clip);
   // Another address than later, because a browser keeps pictures for an hour.
   const early = `${place}?waiting`;
-  if ([place, early].includes(known?.getAttribute("src") ?? "")) return /** @type {Element} */ (known);
+  if ([place, early].includes(known?.getAttribute("src") ?? ""))
+    return /** @type {Element} */ (known);
   if (!hasPoster(clip)) return h("div", { className: "poster blank" });
   const poster = h("img", {
     className: "poster",

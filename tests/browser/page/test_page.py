@@ -179,6 +179,8 @@ def test_the_slate_for_divers_is_fetched_as_a_pdf_and_an_svg(
     for kind in ("PDF", "SVG"):
         with page.expect_download() as download:
             dialog.get_by_role("link", name=kind, exact=True).click()
+        # Named like the language file, which a shell takes without quotes.
+        assert re.fullmatch(rf"[\w.-]+\.{kind.lower()}", download.value.suggested_filename)
         files[kind] = tmp_path / download.value.suggested_filename
         download.value.save_as(files[kind])
     assert files["PDF"].read_bytes().startswith(b"%PDF-")
