@@ -19,7 +19,7 @@ from sqlmodel.sql.expression import SelectOfScalar
 from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
 from app.store.clip_folder import ClipFolder
 from app.store.database import Database
-from app.store.errors import NotFound, StoreUnavailable
+from app.store.errors import NotFound
 from app.store.models import UPRIGHT, VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
 from app.store.objects.clip_copies import ClipCopies
@@ -162,8 +162,12 @@ class ClipStore:
             job.error = "the recording holds several topics; choose one of them"
         try:
             publish_copy(partial, target)
+            if picture is not None:
+                # No clip is lost for want of room for its picture.
+                with suppress(OSError):
+                    self.place(clip.id, POSTER).write_bytes(picture)
             sync_directory(self.folder)
-            self._files.keep(clip.id, [clip.source])
+            self._files.keep(clip.id, [clip.source, POSTER])
             with self._database.writing() as session:
                 quota.require_in(session, clip.size, clips=1, without=upload_id)
                 if upload_id is not None:
@@ -175,11 +179,6 @@ class ClipStore:
             added = self._after_failure(clip, error)
         else:
             added = ClipWithJob(clip, job)
-            # No clip is lost for want of room for its picture.
-            with suppress(OSError, StoreUnavailable):
-                if picture is not None:
-                    self.place(clip.id, POSTER).write_bytes(picture)
-                    self._files.keep(clip.id, [POSTER])
         partial.unlink(missing_ok=True)
         return added
 
@@ -332,6 +331,12 @@ class ClipStore:
             if degrees % 180:
                 clip.width, clip.height = clip.height, clip.width
             session.add(clip)
+        self.forget_pictures(clip_id)
+
+    def forget_pictures(self, clip_id: str) -> None:
+        """Remove the pictures of an earlier job, before a clip was turned, on this machine."""
+        for picture in (POSTER, FILMSTRIP):
+            self.place(clip_id, picture).unlink(missing_ok=True)
 
     def purge(self, before: datetime) -> int:
         """Remove for good the clips deleted before a given time; return their number."""
