@@ -143,10 +143,24 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     assert picture(page, "studio").stat().st_size < 600_000
     page.get_by_role("button", name="Play", exact=True).click()
     expect(page.get_by_role("button", name="Pause", exact=True)).to_be_visible()
-    page.keyboard.press("v")
-    lab.get_by_text("Tracks").click()
-    expect(lab.get_by_role("img", name="Vulcan salute, confidence")).to_be_visible()
-    page.keyboard.press("v")
+    # viser in a tab of its own has all of it, and follows; in the page's frame it has no panel.
+    with page.context.expect_page() as opened:
+        page.get_by_role("link", name="Open the scene in its own tab").click()
+    alone = opened.value
+    expect(alone.locator("canvas[data-engine]")).to_be_visible()
+    expect(alone.get_by_text("Recognised as")).to_be_visible()
+    compared = alone.get_by_role("img", name="trajectory image: infinity")
+    expect(compared).to_be_visible()
+    distances = alone.get_by_role("table", name="Votes")
+    expect(distances.get_by_role("row", name="velocity")).to_be_visible()
+    expect(alone.get_by_role("img", name="Vulcan salute, confidence")).to_be_visible()
+    expect(alone.get_by_role("img", name=re.compile("Right wrist, torso lengths"))).to_be_visible()
+    expect(lab.get_by_role("table", name="Votes")).to_be_hidden()
+    # Another range has no answer yet.
+    page.get_by_role("button", name="Start here").click()
+    expect(alone.get_by_text("Not recognised yet")).to_be_visible()
+    expect(distances).to_have_count(0)
+    alone.close()
 
     # The language leaves as the file that a robot loads.
     page.get_by_role("button", name="Export").click()
