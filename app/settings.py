@@ -157,7 +157,7 @@ class Settings(BaseSettings):
     """Clips that each named token may keep, unless it has its own quota; 0 is no limit."""
 
     forwarded_allow_ips: str = ""
-    """Addresses of reverse proxies whose ``X-Forwarded-For`` and ``X-Forwarded-Proto`` are trusted,
+    """Addresses of reverse proxies whose ``X-Forwarded-For``, ``-Proto``, ``-Prefix`` are trusted,
     comma separated; ``*`` trusts all, for a server that only a proxy can reach."""
 
     log_format: Literal["text", "json"] = "text"

@@ -143,7 +143,7 @@ class BagFrames(Iterator[VideoFrame]):
                 (self._relative(stamp), _crop_to_even(image)) for stamp, image in decoder.rest()
             )
         except (BagError, FFmpegError) as error:
-            self._broken = str(error)
+            self._broken = _say(error)
 
     def _decode(
         self, message: Message, decoder: PacketDecoder
@@ -162,7 +162,7 @@ class BagFrames(Iterator[VideoFrame]):
             raise
         except (BagError, FFmpegError, ValueError) as error:
             self._unreadable += 1
-            self._reason = self._reason or str(error)
+            self._reason = self._reason or _say(error)
 
     def _stamp(self, message: Message) -> int:
         """Return the time of a message, by the clock that the first message determined."""
@@ -184,6 +184,13 @@ class BagFrames(Iterator[VideoFrame]):
             return image
         self._resized += 1
         return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def _say(error: Exception) -> str:
+    """Return an error in words; the decoder's own are of no use to anybody."""
+    if isinstance(error, FFmpegError):
+        return "they cannot be decoded, as where a stream begins between two key frames"
+    return str(error)
 
 
 def _crop_to_even(image: Image) -> Image:

@@ -56,7 +56,7 @@ class KeypointFileSource:
 
     name = "keypoints"
     noun = "a keypoint file"
-    formats = "keypoints (CSV, JSON, SLEAP, or OpenPose's folder as zip)"
+    formats = "keypoints (CSV, JSON, SLEAP, .pose, or OpenPose's folder as zip)"
     endings: tuple[str, ...] = get_args(Ending)
     folder: str | None = "frames of OpenPose (*_keypoints.json)"
     has_pictures = False

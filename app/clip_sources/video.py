@@ -99,7 +99,7 @@ class VideoSource:
                 progress=progress,
                 observer=observe,
                 water=options.water,
-                keep_so_far=keep_so_far,
+                keep_so_far=keep_so_far if video is None else None,
             )
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)

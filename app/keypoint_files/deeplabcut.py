@@ -10,12 +10,15 @@ import codecs
 import csv
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
 from app.keypoint_files.keypoint_table import (
+    MOST_PEOPLE,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -23,6 +26,7 @@ from app.keypoint_files.keypoint_table import (
     visibility_of,
 )
 from app.recognition.errors import KeypointFileError
+from app.recognition.estimation.person_tracker import find_boxes
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import translate_landmark
 from app.recognition.recording.people import prominence_over
@@ -36,6 +40,13 @@ MOST_HEADINGS: Final = 4
 """Most rows of headings: scorer, individuals, bodyparts, coords."""
 
 COORDINATES: Final = ("x", "y", "likelihood")
+
+MOST_CROSSED: Final = 4.0
+"""How many times as far two individuals must have moved if they stayed who they are than if they
+changed places, besides a body's size, to be taken for mixed up."""
+
+LONGEST_GAP: Final = 10
+"""Most frames from the last in which both are seen to the next, in which they may be mixed up."""
 
 ONLY: Final = "single"
 """Name of the only individual in a file without individuals."""
@@ -70,11 +81,12 @@ def read_deeplabcut(path: Path, options: KeypointOptions, limits: VideoLimits) -
     people = {
         who: one for who, one in everybody.items() if _is_person(one.names, options)
     } or everybody
+    people, swapped = _undo_swaps(people)
     chosen = max(people, key=lambda who: prominence_over(people[who].xy, people[who].confidence))
     seen = [np.asarray(np.isfinite(one.xy).all(axis=2)).any(axis=1) for one in people.values()]
     return replace(
         people[chosen],
-        notes=_notes(len(people), chosen),
+        notes=(*_notes(len(people), chosen), *swapped),
         people=np.sum(seen, axis=0, dtype=np.int64),
     )
 
@@ -136,6 +148,56 @@ def _numbers(line: list[str], headings: dict[str, list[str]], row: int, path: Pa
 
 def _is_person(names: tuple[str, ...], options: KeypointOptions) -> bool:
     return any(name in options.landmarks or translate_landmark(name) for name in names)
+
+
+def _undo_swaps(
+    people: dict[str, KeypointTable],
+) -> tuple[dict[str, KeypointTable], tuple[str, ...]]:
+    """Exchange the rest of two individuals who change places from one frame to the next.
+
+    Trackers mix up identities; nobody moves by a body's size in a frame to where another one was.
+    """
+    found, notes = dict(people), list[str]()
+    for one, other in combinations(list(found)[:MOST_PEOPLE], 2):
+        first, second = found[one], found[other]
+        if first.names != second.names:
+            continue
+        both = np.stack([first.xy, second.xy])
+        seen = np.asarray(np.isfinite(both).all(axis=3)).any(axis=2).all(axis=0)
+        rows = np.flatnonzero(seen)
+        if len(rows) < 2:
+            continue
+        centres = np.nanmedian(both[:, rows], axis=2)
+        boxes = find_boxes(both[0, rows])
+        size = float(np.median(np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1)))
+        stay = np.linalg.norm(centres[:, 1:] - centres[:, :-1], axis=2).sum(axis=0)
+        cross = np.linalg.norm(centres[:, 1:] - centres[::-1, :-1], axis=2).sum(axis=0)
+        near = np.diff(rows) <= LONGEST_GAP
+        swaps = rows[1:][near & (stay > MOST_CROSSED * cross + size)]
+        if not len(swaps):
+            continue
+        flipped = np.searchsorted(swaps, np.arange(len(first.xy)), side="right") % 2 == 1
+        found[one], found[other] = (
+            _take_rows(*pair, flipped) for pair in ((first, second), (second, first))
+        )
+        notes.append(
+            f"{one!r} and {other!r} change places within a frame, first at frame "
+            f"{int(first.times.values[swaps[0]])}; each is followed by place"
+        )
+    return found, tuple(notes)
+
+
+def _take_rows(
+    own: KeypointTable, other: KeypointTable, rows: npt.NDArray[np.bool_]
+) -> KeypointTable:
+    """Return a table with the other's values in these rows."""
+    assert own.confidence is not None
+    assert other.confidence is not None
+    return replace(
+        own,
+        xy=np.where(rows[:, None, None], other.xy, own.xy),
+        confidence=np.where(rows[:, None], other.confidence, own.confidence),
+    )
 
 
 def _notes(count: int, chosen: str) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
 
@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses.frame import Hand
+from app.recognition.poses.frame import Hand, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
 LARGEST_FRACTION = 3.0
@@ -193,3 +194,32 @@ def visibility_of(points: FloatArray) -> FloatArray:
     has_place = np.asarray(np.isfinite(points[..., :2]).all(axis=-1))
     visibility = np.where(np.isnan(points[..., 2]), 1.0, np.clip(points[..., 2], 0, 1))
     return np.where(has_place, visibility, 0.0)
+
+
+def hands_of(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...], ...] | None:
+    """Return the hands of each frame of which all points are seen.
+
+    Parameters
+    ----------
+    points
+        ``(T, 21 * len(sides), 2)``; NaN, or all at 0, 0: not seen.
+    sides
+        Side of each hand.
+
+    Returns
+    -------
+    T tuples, or None if no hand is seen in any frame.
+
+    """
+    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 2)
+    seen = np.isfinite(groups).all(axis=(2, 3)) & (groups != 0).any(axis=(2, 3))
+    if not seen.any():
+        return None
+    return tuple(
+        tuple(
+            Hand(groups[row, place], side, 1.0)
+            for place, side in enumerate(sides)
+            if seen[row, place]
+        )
+        for row in range(len(groups))
+    )

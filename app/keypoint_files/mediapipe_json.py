@@ -32,10 +32,12 @@ from app.keypoint_files.keypoint_table import (
     KeypointOptions,
     KeypointTable,
     Times,
+    hands_of,
 )
 from app.keypoint_files.mediapipe_table import table_of, times_of
 from app.recognition.errors import KeypointFileError, OsgError
-from app.recognition.poses.landmarks import POSE_LANDMARKS
+from app.recognition.poses.frame import SIDES
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import COCO_17
 from app.recognition.recording.people import Choice, People, SeenPerson
@@ -47,6 +49,9 @@ LARGEST_FILE: Final = 200_000_000
 FRAMES: Final = ("frames", "poses", "data", "results", "instance_info", "annotations")
 LANDMARKS: Final = ("landmarks", "pose_landmarks", "poseLandmarks", "keypoints", "pose")
 """Keys of the list of frames, and of a frame's landmarks."""
+
+HANDS: Final = ("{side}HandLandmarks", "{side}_hand_landmarks", "{side}_hand")
+"""Keys of a frame's hands, as MediaPipe Holistic has them."""
 
 WHOLE_BODY: Final = 133
 """Keypoints of COCO-WholeBody, of which the first 17 are COCO's."""
@@ -67,6 +72,7 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         if everybody is not None:
             frames, choice = _choose_person(everybody, options.nominal_rate)
         rows = [_landmarks(frame) for frame in frames]
+        hands = [_hands(frame) for frame in frames]
         about, times = _about(content), _times(frames)
     except OsgError:
         raise
@@ -87,6 +93,7 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
     table = table_of(names, points, has_visibility, times)
     return replace(
         table,
+        hands=hands_of(np.array(hands), SIDES),
         frame_size=about.frame_size,
         frame_rate=about.frame_rate,
         notes=() if choice is None else choice.notes,
@@ -131,6 +138,20 @@ def _landmarks(frame: Any) -> dict[str, tuple[float, float, float]]:
         number = unnamed[index] if index < len(unnamed) else str(index)
         found[str(named) if named else number] = _point(point)
     return found
+
+
+def _hands(frame: Any) -> list[tuple[float, float]]:
+    """Return x and y of the left and the right hand's landmarks; NaN without a whole hand."""
+    unseen = [(np.nan, np.nan)] * len(HAND_LANDMARKS)
+    points: list[tuple[float, float]] = []
+    for side in SIDES:
+        keys = [key.format(side=side) for key in HANDS] if isinstance(frame, Mapping) else []
+        hand = next((frame[key] for key in keys if key in frame), None)
+        if isinstance(hand, list) and len(hand) == len(unseen):
+            points += [_point(each)[:2] for each in hand]
+        else:
+            points += unseen
+    return points
 
 
 def _group_people(frames: list[Any]) -> list[list[Any]] | None:

@@ -31,12 +31,11 @@ from app.keypoint_files.keypoint_table import (
     KeypointOptions,
     KeypointTable,
     Times,
+    hands_of,
     mask_unseen,
     visibility_of,
 )
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses.frame import Hand, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
@@ -134,7 +133,7 @@ def _wide(
     )
     return replace(
         table,
-        hands=_hands(points[:, len(names) :, :2], sides),
+        hands=hands_of(points[:, len(names) :, :2], sides),
         notes=() if chosen is None else chosen.notes,
         people=None if chosen is None else chosen.people,
     )
@@ -186,22 +185,6 @@ def _choose_person(
         times=times,
         people=np.bincount(at[seen], minlength=len(times)),
         notes=(f"of {len(ordered)} people track {name!r} stands out most and is followed",),
-    )
-
-
-def _hands(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...], ...] | None:
-    """Return the hands of each frame from ``(T, 21 * sides, 2)``; None if none is seen in any."""
-    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 2)
-    seen = np.isfinite(groups).all(axis=(2, 3)) & (groups != 0).any(axis=(2, 3))
-    if not seen.any():
-        return None
-    return tuple(
-        tuple(
-            Hand(groups[row, place], side, 1.0)
-            for place, side in enumerate(sides)
-            if seen[row, place]
-        )
-        for row in range(len(groups))
     )
 
 

@@ -58,7 +58,7 @@ def read_keypoints(
     ----------
     path
         A folder of OpenPose's JSON; MediaPipe's landmarks as CSV or JSON; DeepLabCut's CSV; SLEAP's
-        .slp or analysis .h5 (extra ``keypoints``).
+        .slp or analysis .h5 (extra ``keypoints``); pose-format's .pose.
     options
         Values that the file does not contain.
     limits

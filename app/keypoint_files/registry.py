@@ -11,6 +11,7 @@ from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
 from app.keypoint_files.mediapipe_json import read_mediapipe_json
 from app.keypoint_files.mediapipe_table import read_mediapipe_table
 from app.keypoint_files.openpose import is_openpose, read_openpose
+from app.keypoint_files.pose_format import BEGINNINGS, read_pose_format
 from app.keypoint_files.sleap import read_sleap
 from app.recognition.errors import KeypointFileError
 from app.recognition.recording.video_limits import VideoLimits
@@ -24,6 +25,7 @@ READERS: Mapping[str, Reader] = {
     ".slp": read_sleap,
     ".h5": read_sleap,
     ".hdf5": read_sleap,
+    ".pose": read_pose_format,
 }
 """Readers by the file's ending. DeepLabCut's CSV is recognised by its first word, OpenPose by its
 folder."""
@@ -58,7 +60,7 @@ def find_reader(path: Path) -> Reader:
     return reader
 
 
-Ending = Literal[".csv", ".json", ".slp", ".h5", ".zip"]
+Ending = Literal[".csv", ".json", ".slp", ".h5", ".pose", ".zip"]
 """Endings by which `app.keypoint_files.read_keypoints` chooses the reader; an archive holds a
 folder of OpenPose."""
 
@@ -74,6 +76,8 @@ def keypoint_ending(head: bytes, name: str) -> Ending | None:
     """
     if head.startswith(_ZIP):
         return ".zip"
+    if head[:4] in BEGINNINGS:
+        return ".pose"
     lower = name.lower()
     if head.startswith(_HDF5):
         return ".slp" if lower.endswith(".slp") else ".h5"

@@ -130,6 +130,7 @@ class ClipStore:
         quota: Quota = NO_QUOTA,
         *,
         upload_id: str | None = None,
+        picture: bytes | None = None,
     ) -> ClipWithJob:
         """Take over the received file `partial` as `clip` and queue its extraction.
 
@@ -141,6 +142,8 @@ class ClipStore:
 
         The quota is checked in the same transaction, so that no other server adds a clip in
         between. What the resumable upload `upload_id` has reserved of it passes to the clip.
+
+        `picture` is a JPEG, the clip's still picture until its job writes another.
 
         Raises
         ------
@@ -159,8 +162,12 @@ class ClipStore:
             job.error = "the recording holds several topics; choose one of them"
         try:
             publish_copy(partial, target)
+            if picture is not None:
+                # No clip is lost for want of room for its picture.
+                with suppress(OSError):
+                    self.place(clip.id, POSTER).write_bytes(picture)
             sync_directory(self.folder)
-            self._files.keep(clip.id, [clip.source])
+            self._files.keep(clip.id, [clip.source, POSTER])
             with self._database.writing() as session:
                 quota.require_in(session, clip.size, clips=1, without=upload_id)
                 if upload_id is not None:
@@ -324,6 +331,12 @@ class ClipStore:
             if degrees % 180:
                 clip.width, clip.height = clip.height, clip.width
             session.add(clip)
+        self.forget_pictures(clip_id)
+
+    def forget_pictures(self, clip_id: str) -> None:
+        """Remove the pictures of an earlier job, before a clip was turned, on this machine."""
+        for picture in (POSTER, FILMSTRIP):
+            self.place(clip_id, picture).unlink(missing_ok=True)
 
     def purge(self, before: datetime) -> int:
         """Remove for good the clips deleted before a given time; return their number."""
@@ -423,7 +436,7 @@ class ClipStore:
         return self._files.find(clip_id, RECORDING)
 
     def poster(self, clip_id: str) -> Path:
-        """Return the path of the clip's still picture, which exists once its job is done."""
+        """Return the path of the clip's still picture, which all have once their job is done."""
         return self._files.find(clip_id, POSTER)
 
     def filmstrip(self, clip_id: str) -> Path:

@@ -23,7 +23,7 @@ from sqlmodel import Field, SQLModel
 VIDEO = "video"
 """Name of the clip source whose file is the video that players show."""
 
-UPRIGHT = {turn: f"upright-{turn}" for turn in (90, 180, 270)}
+UPRIGHT = {90: "turned.right", 180: "turned.over", 270: "turned.left"}
 """Names of the files of videos whose pictures are turned clockwise by so many degrees."""
 
 

@@ -17,6 +17,10 @@ DISTANCE = 2.5
 hardly shift against each other."""
 
 
+ROUNDING = 0.02
+"""Difference of the widths by heights of a frame and its picture that whole pixels make."""
+
+
 @dataclass(frozen=True)
 class CameraPose:
     """Position and direction of a camera.
@@ -46,6 +50,17 @@ class CameraPose:
             _between(self.target, other.target, share),
             self.fov + share * (other.fov - self.fov),
         )
+
+    def holding(self, picture: float, window: float) -> CameraPose:
+        """Return a pose on the same line from which the whole picture is seen.
+
+        `picture` and `window` are widths by heights; in the page's frame they are equal.
+        """
+        back = max(1.0, picture / window) if abs(picture - window) > ROUNDING else 1.0
+        x, y, z = (
+            at + back * (own - at) for own, at in zip(self.position, self.target, strict=True)
+        )
+        return CameraPose((x, y, z), self.target, self.fov)
 
     def start_with(self, server: viser.ViserServer) -> None:
         """Let browsers that connect begin with this pose."""

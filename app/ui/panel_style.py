@@ -99,7 +99,7 @@ _RULES: Final = """
 .osg td.share { background: none; padding-right: 4px; text-align: right; }
 .osg tfoot th { text-align: left; font-weight: 500; color: var(--osg-dim); }
 .osg td.votes { font-weight: 700; color: var(--osg-ink); font-size: 11px; }
-.osg .images { display: grid; grid-template-columns: repeat(3, 1fr); gap: 8px; }
+.osg .images { display: grid; grid-template-columns: repeat(3, minmax(0, 120px)); gap: 8px; }
 .osg figure { margin: 0; }
 .osg figure img { width: 100%; display: block; border-radius: 8px; background: var(--osg-picture); }
 .osg figcaption { padding-top: 4px; text-align: center; }
@@ -123,10 +123,14 @@ _RULES: Final = """
 div[style*="width: 20em"] { width: 100% !important; }
 """
 
-SHEET_HIDDEN: Final = (
-    "<style>.mantine-Paper-root[style*='position: fixed'] { display: none !important; }</style>"
-)
-"""Hides the sheet at the bottom of a phone, which would cover the flat picture."""
+EMBEDDED: Final = """<style>
+[data-embedded] [data-dock-region],
+[data-embedded] [data-dock-root] > div:not(:first-child),
+[data-embedded] .mantine-Paper-root[style*='position: fixed'] { display: none !important; }
+[data-embedded] [data-dock-root] > div:first-child { inset: 0 !important; width: auto !important; }
+</style>"""
+"""Leaves the whole frame to the picture, without panel and without a phone's sheet, where the page
+has marked viser's document as its frame."""
 
 PANEL_STYLE: Final = f"<style>\n{_define_schemes()}{_RULES}</style>"
 """Markup for viser's `add_html`, whose style sheet applies to the whole page of viser.

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
+import numpy.typing as npt
 import viser
 
+from app.recognition import Recognition
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.wording import humanize
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui import charts
-from app.ui.panel_style import PANEL_STYLE, SHEET_HIDDEN
+from app.ui.panel_style import EMBEDDED, PANEL_STYLE
 
-PANEL_WIDTH: Final = 320
-"""Pixels; the cube is beside it."""
+PANEL_WIDTH: Final = 500
+"""Pixels; the scene is beside it. The distances to eight gestures fit."""
 
 
 class TimeCursor:
@@ -35,25 +39,46 @@ class TimeCursor:
 
 
 class Inspector:
-    """Panel beside the space-time cube with the paths of the landmarks over time.
+    """Panel beside the scene: the answer, what was compared, and the landmarks' paths over time.
 
-    The page, not viser, shows the decision and its votes.
+    Only where viser has a tab of its own: in the page's frame the page shows these itself.
     """
 
     def __init__(self, gui: viser.GuiApi) -> None:
-        self._panel = gui.add_panel(visible=False)
-        with self._panel.add_tab("Tracks", viser.Icon.CHART_LINE):
+        gui.add_html(EMBEDDED)
+        panel = gui.add_panel()
+        with panel.add_tab("Take", viser.Icon.CHART_LINE):
+            self._answer = gui.add_html("")
             self._tracks = gui.add_html("")
             self._trigger = gui.add_html("")
-        self._panel.dock_right()
-        self._style = gui.add_html(SHEET_HIDDEN)
-        self._panel.set_width(PANEL_WIDTH)
-        self._panel.minimize()
+        panel.dock_right()
+        panel.set_width(PANEL_WIDTH)
 
-    def set_visible(self, visible: bool) -> None:
-        """Show or hide the panel; hidden, it leaves its room to the picture."""
-        self._panel.visible = visible
-        self._style.content = "" if visible else SHEET_HIDDEN
+    def show_answer(
+        self,
+        recognition: Recognition | None,
+        expected: str | None,
+        images: Sequence[tuple[str, npt.NDArray[np.uint8]]],
+    ) -> None:
+        """Show a recognition with every voter's distances, and the images that were compared.
+
+        Parameters
+        ----------
+        recognition
+            None before the range is recognised.
+        expected
+            The expected label, if known.
+        images
+            Images with their captions, as `app.ui.charts.image_row` takes them.
+
+        """
+        self._answer.content = (
+            charts.hint("Not recognised yet", "Recognise the take in the studio; this tab follows.")
+            if recognition is None
+            else charts.verdict(recognition, expected)
+            + charts.image_row(images)
+            + charts.vote_table(recognition, expected)
+        )
 
     def show_tracks(
         self,

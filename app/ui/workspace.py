@@ -11,6 +11,7 @@ from threading import Lock
 
 import numpy as np
 import numpy.typing as npt
+import viser
 
 from app.recognition import Language, PoseSequence, Recognition, Recording
 from app.recognition.errors import PoseError
@@ -36,6 +37,9 @@ from app.ui.scene_theme import DARK, LIGHT
 TRANSITION_SECONDS = 0.45
 TRANSITION_STEPS = 12
 """Steps between the flat picture and the cube: enough to follow, few enough to wait for."""
+
+SAME_ASPECT = 0.01
+"""Difference of two aspect ratios that is rounding of pixels."""
 
 INITIAL_SHARE = 0.45
 """Share of a range at which it is first shown: about half of the trail is past, half is to come,
@@ -152,6 +156,7 @@ class Workspace:
         self.playback = Playback(self._draw)
         self._cursor = TimeCursor(self._server.gui)
         self._inspector = Inspector(self._server.gui)
+        self._server.on_client_connect(self._keep_fitted)
 
     @property
     def port(self) -> int:
@@ -182,6 +187,13 @@ class Workspace:
             before, self._view = self._view, view
             if before is None or _frames_of(before) != _frames_of(view):
                 self._load(before, view, shown)
+            if before is None or _answer_of(before) != _answer_of(view):
+                found = view.recognition
+                images = [] if found is None else compared_images(view, found, shown.poses)
+                self._inspector.show_answer(found, view.expected, images)
+        if before is None or _size_of(before) != _size_of(view):
+            for client in self._server.get_clients().values():
+                self._fit(client)
 
     def set_dark(self, dark: bool) -> None:
         """Change to dark or light colours."""
@@ -206,7 +218,6 @@ class Workspace:
             self._flat = flat
             pose = FLAT if flat else CUBE
             pose.start_with(self._server)
-            self._inspector.set_visible(False)
             clients = list(self._server.get_clients().values())
             starts = [CameraPose.of(client.camera) for client in clients]
             steps = TRANSITION_STEPS if animate and clients else 1
@@ -214,10 +225,35 @@ class Workspace:
                 share = ease(step / steps)
                 self._scene.set_depth(1 - share if flat else share)
                 for client, start in zip(clients, starts, strict=True):
-                    start.blend(pose, share).apply(client)
+                    start.blend(self._held(client, pose), share).apply(client)
                 if step < steps:
                     clock.sleep(TRANSITION_SECONDS / steps)
-            self._inspector.set_visible(not flat)
+
+    def _keep_fitted(self, client: viser.ClientHandle) -> None:
+        """Show the whole flat picture to a browser, now and when its window changes."""
+        aspect = client.camera.aspect
+
+        def moved(camera: viser.CameraHandle) -> None:
+            nonlocal aspect
+            if abs(camera.aspect - aspect) > SAME_ASPECT:
+                aspect = camera.aspect
+                self._fit(client)
+
+        client.camera.on_update(moved)
+        self._fit(client)
+
+    def _fit(self, client: viser.ClientHandle) -> None:
+        """Move a browser's camera to where it sees all of the flat picture, where that is shown."""
+        with self._lock:
+            if self._flat:
+                self._held(client, FLAT).apply(client)
+
+    def _held(self, client: viser.ClientHandle, pose: CameraPose) -> CameraPose:
+        """Return `pose`; the flat one so far back that the browser's window holds the picture."""
+        if pose is not FLAT or self._view is None:
+            return pose
+        width, height = _size_of(self._view)
+        return pose.holding(width / height, client.camera.aspect)
 
     def close(self) -> None:
         """Stop playback, decoding and the server."""
@@ -358,6 +394,15 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return the values of a view that determine the frames, trails and curves shown."""
     return view.video, view.start, view.end, view.salient, view.trigger
+
+
+def _size_of(view: WorkspaceView) -> tuple[int, int]:
+    return view.recording.poses.frame_size
+
+
+def _answer_of(view: WorkspaceView) -> tuple[object, ...]:
+    """Return the values of a view that determine the answer shown."""
+    return view.recognition, view.expected, view.start, view.end, view.video
 
 
 def _pictures_of(view: WorkspaceView) -> tuple[object, ...]:

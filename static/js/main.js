@@ -76,7 +76,7 @@ function drawEverything() {
   follow(["connected"], drawConnection);
   follow(["uploads"], drawUploads);
   follow(["clips", "jobs", "clip", "library"], drawClips);
-  follow(["clips", "jobs"], drawBatch);
+  follow(["clips", "jobs", "loaded"], drawBatch);
   follow(["clips", "gestures", "clip"], drawTableButton);
   follow(["clips", "gestures"], drawTakesButton);
   follow(["quota"], drawQuota);

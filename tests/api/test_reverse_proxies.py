@@ -14,8 +14,10 @@ from pathlib import Path
 
 import httpx
 import pytest
+from starlette.datastructures import Headers
 from websockets.sync.client import connect
 
+from app.api.http.page_files import prefix_of
 from app.api.ingest.multipart import FRAME_BYTES
 from app.settings import Settings
 from tests.api.running import client_of, until
@@ -54,8 +56,8 @@ def free_port() -> int:
 
 
 @contextmanager
-def nginx(folder: Path, studio: int, own: int) -> Iterator[None]:
-    """Run nginx with the documented configuration, without its certificate."""
+def nginx(folder: Path, studio: int, own: int, prefix: str = "") -> Iterator[None]:
+    """Run nginx with the documented configuration, without its certificate, below a `prefix`."""
     # Debian installs it outside the path of ordinary users.
     program = shutil.which("nginx", path=os.environ.get("PATH", "") + ":/usr/sbin")
     if program is None:
@@ -63,6 +65,13 @@ def nginx(folder: Path, studio: int, own: int) -> Iterator[None]:
     server = (ASSETS / "nginx.conf").read_text()
     server = server.replace("listen 443 ssl;", f"listen 127.0.0.1:{own};")
     server = re.sub(r"ssl_certificate\w* .*\n", "", server)
+    if prefix:
+        # As its comment says.
+        server = server.replace("location / {", f"location {prefix}/ {{")
+        server = server.replace("127.0.0.1:8000;", "127.0.0.1:8000/;")
+        line = "proxy_set_header X-Forwarded-Prefix"
+        assert f"# {line} /studio;" in server
+        server = server.replace(f"# {line} /studio;", f"{line} {prefix};")
     server = server.replace("127.0.0.1:8000", f"127.0.0.1:{studio}")
     file = folder / "nginx.conf"
     folders = "".join(
@@ -185,3 +194,35 @@ def test_only_a_trusted_proxy_is_believed(tmp_path: Path) -> None:
             claims_alone = {"X-Forwarded-Proto": "https", "X-Forwarded-For": "6.6.6.6"}
             cookie = client.get("/", params={"token": TOKEN}, headers=claims_alone)
             assert ("Secure" in cookie.headers["set-cookie"]) is (address == "6.6.6.6")
+
+
+def test_below_a_path_addresses_are_those_of_the_proxy_and_two_studios_keep_their_cookies(
+    tmp_path: Path,
+) -> None:
+    own = free_port()
+    with (
+        serving(tmp_path / "data", OSG_FORWARDED_ALLOW_IPS="127.0.0.1") as studio,
+        nginx(tmp_path, studio, own, "/studio"),
+    ):
+        until(lambda: answers(own))
+        with client_of(f"http://127.0.0.1:{own}") as client:
+            page = client.get("/studio/", params={"token": TOKEN, "view": "live"})
+            assert page.headers["location"] == "./?view=live"
+            assert "Path=/studio/" in page.headers["set-cookie"]
+            assert client.get(f"/studio{API}/languages").status_code == 200
+            assert client.get(f"{API}/languages").status_code == 404
+            headers = {"Tus-Resumable": "1.0.0", "Upload-Length": "5"}
+            begun = client.post(f"/studio{API}/uploads", headers=headers)
+            place = begun.headers["location"]
+            assert place.startswith(f"/studio{API}/uploads/")
+            assert client.head(place, headers=headers).headers["upload-offset"] == "0"
+            assert client.delete(f"/studio{API}/session").status_code == 204
+            assert client.get(f"/studio{API}/languages").status_code == 401
+
+
+@pytest.mark.parametrize("claimed", ["//evil.example", "/a b", "/a?b", "studio", "/" + "a" * 900])
+def test_what_is_no_path_is_no_prefix(claimed: str) -> None:
+    behind = Settings(forwarded_allow_ips="127.0.0.1")
+    assert prefix_of(Headers({"X-Forwarded-Prefix": "/studio/"}), behind) == "/studio"
+    assert prefix_of(Headers({"X-Forwarded-Prefix": "/studio"}), Settings()) == ""
+    assert prefix_of(Headers({"X-Forwarded-Prefix": claimed}), behind) == ""

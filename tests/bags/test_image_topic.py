@@ -180,6 +180,8 @@ def test_packets_of_a_video_stream_are_read(tmp_path: Path) -> None:
     frames, reader = frames_of(tmp_path, rows)
     assert [frame.time for frame in frames] == TIMES
     assert reader.warnings == ()
+    with pytest.raises(BagError, match=r"can be read \(they cannot be decoded, as where a stream"):
+        frames_of(tmp_path / "later", rows[1:])
 
 
 def test_a_damaged_picture_among_others_is_left_out_and_counted(tmp_path: Path) -> None:

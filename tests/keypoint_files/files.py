@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import struct
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.sequence import FloatArray, PoseSequence
-from app.recognition.poses.skeletons import BODY_25, LandmarkSet
+from app.recognition.poses.skeletons import BODY_25, COCO_17, LandmarkSet
 
 
 def write_openpose(
@@ -171,3 +172,123 @@ def sleap_labels(library: Any, people: list[PoseSequence], *, tracked: bool) -> 
         for index in range(frames)
     ]
     return library.Labels(labelled)
+
+
+def write_pose_format(
+    path: Path,
+    people: Sequence[PoseSequence],
+    hands: Sequence[FloatArray | None] = (),
+    *,
+    version: float = 0.2,
+    rate: float = 25.0,
+) -> Path:
+    """Write a ``.pose`` file as pose-format does, the world landmarks last; unseen are zeros.
+
+    Parameters
+    ----------
+    path, people
+        The file, and who is in it.
+    hands
+        ``(21, 2)`` of the right hand of everybody in each frame, or None.
+    version, rate
+        Of the format; frames per second.
+
+    """
+    first = people[0]
+    names = [name.upper() for name in first.landmarks]
+    fingers = [f"FINGER_{number}" for number in range(21)]
+    components = {
+        "POSE_LANDMARKS": names,
+        "RIGHT_HAND_LANDMARKS": fingers,
+        "POSE_WORLD_LANDMARKS": names,
+    }
+    head = struct.pack("<fHHHH", version, *first.frame_size, 0, len(components))
+    for name, points in components.items():
+        head += _pose_text(name) + _pose_text("XYZC") + struct.pack("<HHH", len(points), 1, 1)
+        head += b"".join(map(_pose_text, points)) + struct.pack("<5H", 0, 1, 255, 0, 0)
+    counts = (len(first), len(people))
+    layout = "<HHH" if version == 0.1 else "<fIH"
+    head += struct.pack(layout, round(rate) if version == 0.1 else rate, *counts)
+    hand = np.zeros((len(first), len(people), 21, 3))
+    for index, xy in enumerate(hands):
+        hand[index, :, :, :2] = 0.0 if xy is None else xy
+    body = np.zeros((len(first), len(people), len(names), 3))
+    body[..., :2] = np.nan_to_num(np.stack([each.xy for each in people], axis=1))
+    data = np.concatenate([body, hand, body * 1e-3], axis=2)
+    confidence = (data[..., :2] != 0).any(axis=3) * 0.75
+    path.write_bytes(head + data.astype("<f4").tobytes() + confidence.astype("<f4").tobytes())
+    return path
+
+
+def _pose_text(text: str) -> bytes:
+    return struct.pack("<H", len(text)) + text.encode()
+
+
+def write_results(path: Path, people: Sequence[PoseSequence], kind: str) -> Path:
+    """Write COCO's 17 keypoints of people as MMPose (``mmpose``) or COCO (``coco``) does."""
+    frames: list[list[FloatArray]] = [
+        [
+            np.array([(*(_place(each, index, name) or (0.0, 0.0)), 0.9) for name in COCO_17])
+            for each in people
+        ]
+        for index in range(len(people[0]))
+    ]
+    content: list[dict[str, Any]] = [
+        {"image_id": f"{index}.jpg", "keypoints": points.ravel().tolist(), "score": 0.9}
+        for index, persons in enumerate(frames)
+        for points in persons
+    ]
+    if kind == "mmpose":
+        content = [
+            {
+                "frame_id": index,
+                "instances": [
+                    {"keypoints": points[:, :2].tolist(), "keypoint_scores": points[:, 2].tolist()}
+                    for points in persons
+                ],
+            }
+            for index, persons in enumerate(frames)
+        ]
+    path.write_text(json.dumps(content))
+    return path
+
+
+def write_browser(path: Path, poses: PoseSequence) -> Path:
+    """Write frames of MediaPipe's own JavaScript."""
+    frames = [
+        {
+            "poseLandmarks": [{"x": x, "y": y, "visibility": 0.9} for x, y in moment.tolist()],
+            "leftHandLandmarks": [{"x": x, "y": y} for x, y in moment[:21].tolist()],
+        }
+        for moment in fractions(poses)
+    ]
+    path.write_text(json.dumps(frames))
+    return path
+
+
+def write_tracks(path: Path, people: Sequence[PoseSequence], name: str = "track_{}") -> Path:
+    """Write SLEAP's analysis as a table: a row a frame and track."""
+    landmarks = people[0].landmarks
+    heads = [f"{each}.{axis}" for each in landmarks for axis in ("x", "y", "score")]
+    rows: list[list[object]] = [["track", "frame_idx", "instance.score", *heads]]
+    for frame in range(len(people[0])):
+        for number, each in enumerate(people):
+            points = np.column_stack([each.xy[frame], np.full(len(landmarks), 0.9)])
+            rows.append([name.format(number), frame, 0.9, *points.ravel().tolist()])
+    return write_rows(path, rows)
+
+
+def write_hands(path: Path, poses: PoseSequence, hand: FloatArray, named: str) -> Path:
+    """Write numbered columns of the body, and of a left hand in the first three frames.
+
+    `named` is the heading of the hand's landmark ``{0}`` and axis ``{1}``.
+    """
+    heads = [f"pose_{number}_{axis}" for number in range(33) for axis in ("x", "y", "visibility")]
+    heads += [named.format(number, axis) for number in range(21) for axis in "xy"]
+    fingers = (hand / np.array(poses.frame_size)).ravel().tolist()
+    rows = [
+        [value for x, y in moment.tolist() for value in (x, y, 0.9)]
+        + (fingers if index < 3 else [""] * 42)
+        for index, moment in enumerate(fractions(poses))
+    ]
+    return write_rows(path, [heads, *rows])

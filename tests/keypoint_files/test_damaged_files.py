@@ -14,15 +14,22 @@ from app.keypoint_files import KeypointOptions, read_keypoints
 from app.recognition.errors import OsgError
 from app.recognition.poses.skeletons import BODY_25
 from tests.keypoint_files.files import (
+    write_browser,
     write_deeplabcut,
+    write_hands,
     write_long,
     write_named,
     write_numbered,
     write_openpose,
+    write_pose_format,
+    write_results,
+    write_tracks,
 )
+from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import BODY, circle, recording
 
 POSES = recording(circle, frames=4, landmarks=tuple(BODY))
+WHOLE = recording(circle, frames=4)
 OPTIONS = KeypointOptions(frame_rate=30, frame_size=(640, 480))
 
 WRITERS: dict[str, Callable[[Path], Path]] = {
@@ -30,9 +37,22 @@ WRITERS: dict[str, Callable[[Path], Path]] = {
     "numbered": lambda folder: write_numbered(folder / "numbered.csv", recording(circle, frames=3)),
     "long": lambda folder: write_long(folder / "long.csv", POSES),
     "deeplabcut": lambda folder: write_deeplabcut(folder / "dlc.csv", {"a": POSES, "b": POSES}),
+    "tracks": lambda folder: write_tracks(folder / "tracks.csv", [POSES, POSES]),
+    "hands": lambda folder: write_hands(folder / "hands.csv", WHOLE, hand_xy(salute()), "lh_{}_{}"),
+    "mmpose": lambda folder: write_results(folder / "mmpose.json", [POSES, POSES], "mmpose"),
+    "coco": lambda folder: write_results(folder / "coco.json", [POSES, POSES], "coco"),
+    "browser": lambda folder: write_browser(folder / "browser.json", WHOLE),
+    "excel": lambda folder: _by_excel(write_named(folder / "excel.csv", POSES)),
+    "pose": lambda folder: write_pose_format(folder / "dive.pose", [POSES, POSES]),
     "openpose": lambda folder: write_openpose(folder / "json", POSES, BODY_25),
     "json": lambda folder: _one_frame_of(write_openpose(folder / "one", POSES, BODY_25)),
 }
+
+
+def _by_excel(path: Path) -> Path:
+    text = path.read_text().replace(",", ";").replace(".", ",")
+    path.write_text(text, encoding="utf-16")
+    return path
 
 
 def _one_frame_of(folder: Path) -> Path:

@@ -56,6 +56,26 @@ def test_of_several_individuals_the_most_prominent_is_followed(tmp_path: Path) -
     assert set(read.recording.people.tolist()) == {2}
 
 
+def test_individuals_that_change_places_are_followed_by_place(tmp_path: Path) -> None:
+    far = replace(POSES, xy=POSES.xy * 0.3 + (600, 20))
+    late = (np.arange(len(POSES)) >= len(POSES) // 2)[:, None, None]
+    people = {
+        "diver1": replace(POSES, xy=np.where(late, far.xy, POSES.xy)),
+        "diver2": replace(POSES, xy=np.where(late, POSES.xy, far.xy)),
+    }
+    read = read_keypoints(write_deeplabcut(tmp_path / "dive.csv", people), AT_25)
+    np.testing.assert_allclose(read.recording.poses.xy, POSES.xy)
+    told = f"change places within a frame, first at frame {len(POSES) // 2}"
+    assert any(told in warning for warning in read.recording.warnings)
+
+
+def test_individuals_who_stay_who_they_are_are_not_exchanged(tmp_path: Path) -> None:
+    near = replace(POSES, xy=POSES.xy * 0.9 + (15, 10))
+    path = write_deeplabcut(tmp_path / "dive.csv", {"buddy": near, "diver": POSES})
+    warnings = read_keypoints(path, AT_25).recording.warnings
+    assert not any("change places" in warning for warning in warnings)
+
+
 def test_body_parts_outside_of_the_individuals_are_nobody(tmp_path: Path) -> None:
     """As of a buoy and a ladder, which span more of the picture than the diver."""
     things = renamed(POSES, {name: f"buoy{place}" for place, name in enumerate(POSES.landmarks)})

@@ -21,6 +21,7 @@ from app.recognition.recording.video_limits import VideoLimits
 from tests.keypoint_files.files import (
     fractions,
     unseen_frames,
+    write_hands,
     write_long,
     write_named,
     write_numbered,
@@ -372,18 +373,8 @@ def test_json_of_the_browser_s_mediapipe_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("named", ["left_hand_{}_{}", "LH_{}.{}", "{1}_hand_left_{0}"])
 def test_hands_of_a_table_are_read_and_show_a_salute(tmp_path: Path, named: str) -> None:
-    width, height = POSES.frame_size
-    fingers = hand_xy(salute()) / (width, height)
-    heads = [f"pose_{number}_{axis}" for number in range(33) for axis in ("x", "y", "visibility")]
-    heads += [named.format(number, axis) for number in range(21) for axis in "xy"]
-    body = [
-        [value for x, y in moment.tolist() for value in (x, y, 0.9)] for moment in fractions(POSES)
-    ]
-    rows = [
-        [*points, *(fingers.ravel().tolist() if index < 3 else [""] * 42)]
-        for index, points in enumerate(body)
-    ]
-    read = read_keypoints(write_rows(tmp_path / "pose.csv", [heads, *rows]), OPTIONS)
+    path = write_hands(tmp_path / "pose.csv", POSES, hand_xy(salute()), named)
+    read = read_keypoints(path, OPTIONS)
     same(read.recording.poses)
     assert read.has_hands
     assert [len(hands) for hands in read.recording.hands] == [1] * 3 + [0] * (len(POSES) - 3)
@@ -402,3 +393,22 @@ def test_columns_of_hands_that_are_never_seen_change_nothing(tmp_path: Path) -> 
     same(read.recording.poses)
     assert not read.has_hands
     assert not any("left out" in warning for warning in read.recording.warnings)
+
+
+@pytest.mark.parametrize("key", ["rightHandLandmarks", "right_hand_landmarks"])
+def test_hands_in_json_are_read_and_show_a_salute(tmp_path: Path, key: str) -> None:
+    hand = hand_xy(salute()) / np.array(POSES.frame_size)
+    fingers = [{"x": x, "y": y, "z": 0.0} for x, y in hand.tolist()]
+    content: list[dict[str, Any]] = [
+        {"poseLandmarks": frame, key: fingers if index < 3 else None}
+        for index, frame in enumerate(OBJECTS)
+    ]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    read = read_keypoints(tmp_path / "pose.json", OPTIONS)
+    same(read.recording.poses)
+    assert [len(hands) for hands in read.recording.hands] == [1] * 3 + [0] * (len(POSES) - 3)
+    assert read.recording.hands[0][0].side == "right"
+    assert (read.recording.salute > 0.5).tolist() == [True] * 3 + [False] * (len(POSES) - 3)
+    content[0][key] = fingers[:20]
+    (tmp_path / "pose.json").write_text(json.dumps(content))
+    assert not read_keypoints(tmp_path / "pose.json", OPTIONS).recording.hands[0]

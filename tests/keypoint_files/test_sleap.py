@@ -14,7 +14,7 @@ import pytest
 from app.keypoint_files import KeypointOptions, read_keypoints
 from app.recognition import PoseSequence
 from app.recognition.errors import KeypointFileError
-from tests.keypoint_files.files import sleap_labels, write_rows
+from tests.keypoint_files.files import sleap_labels, write_tracks
 from tests.recognition.strategies import BODY, circle, recording
 
 POSES = recording(circle, frames=8, landmarks=tuple(BODY))
@@ -97,22 +97,12 @@ def test_an_older_analysis_without_scores_is_read(tmp_path: Path) -> None:
         read_keypoints(path, AT_30)
 
 
-def analysis_rows(people: list[PoseSequence], name: str = "track_{}") -> list[list[object]]:
-    """Return SLEAP's analysis as a table: a row a frame and track."""
-    landmarks = people[0].landmarks
-    heads = [f"{each}.{axis}" for each in landmarks for axis in ("x", "y", "score")]
-    rows: list[list[object]] = [["track", "frame_idx", "instance.score", *heads]]
-    for frame in range(len(people[0])):
-        for number, each in enumerate(people):
-            points = np.column_stack([each.xy[frame], np.full(len(landmarks), 0.9)])
-            rows.append([name.format(number), frame, 0.9, *points.ravel().tolist()])
-    return rows
-
-
 def test_a_table_of_several_tracks_gives_the_most_prominent_one(tmp_path: Path) -> None:
-    rows = analysis_rows([FAR, POSES])
-    del rows[6]  # the second track in the third frame
-    read = read_keypoints(write_rows(tmp_path / "dive.csv", rows), AT_30)
+    path = write_tracks(tmp_path / "dive.csv", [FAR, POSES])
+    lines = path.read_text().splitlines()
+    del lines[6]  # the second track in the third frame
+    path.write_text("\n".join(lines))
+    read = read_keypoints(path, AT_30)
     poses = read.recording.poses
     kept = [0, 1, *range(3, len(POSES))]
     np.testing.assert_allclose(poses.xy[kept], POSES.xy[kept])
@@ -124,7 +114,7 @@ def test_a_table_of_several_tracks_gives_the_most_prominent_one(tmp_path: Path) 
 
 
 def test_a_table_of_people_without_names_is_refused_in_one_line(tmp_path: Path) -> None:
-    rows = analysis_rows([FAR, POSES], name="")
-    rows[-1][0] = "other"
+    path = write_tracks(tmp_path / "dive.csv", [FAR, POSES], name="")
+    path.write_text(path.read_text().replace("\n,7,", "\nother,7,"))
     with pytest.raises(KeypointFileError, match="two rows of nobody by name at one time"):
-        read_keypoints(write_rows(tmp_path / "dive.csv", rows), AT_30)
+        read_keypoints(path, AT_30)

@@ -26,6 +26,8 @@ def kept(tmp_path: Path) -> Path:
     target = tmp_path / "kept.zip"
     with running(settings) as server, httpx.Client(base_url=server.address, timeout=60) as client:
         clip = add_recorded_clip(server.studio, recording_of("circle"))
+        server.studio.clips.turn(clip, 90)
+        server.studio.clips.video(clip).write_bytes(b"turned")
         language = client.post(LANGUAGES, json={"name": "pool"}).json()["id"]
         add_gesture(client, language, clip)
         body = {"clip_id": clip, "language_id": language}
@@ -47,7 +49,8 @@ def test_all_comes_back_on_another_machine(kept: Path, tmp_path: Path) -> None:
         )
         (clip,) = client.get("/api/v1/clips").json()
         assert len(client.get(f"/api/v1/clips/{clip['id']}/takes").json()) == 1
-        assert len(client.get(f"/api/v1/clips/{clip['id']}/video").content) == 1024
+        assert client.get(f"/api/v1/clips/{clip['id']}/video").content == b"turned"
+        assert clip["turn"] == 90
         assert len(client.get("/api/v1/recognitions").json()) == 1
     assert not list(settings.data_dir.glob(".restoring-*"))
 

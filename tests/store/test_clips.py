@@ -212,3 +212,29 @@ def test_purging_a_clip_takes_its_jobs_along(
     assert jobs.resume() == []
     with pytest.raises(NotFound):
         jobs.get(added.job.id)
+
+
+def test_turned_pictures_have_a_video_of_their_own_and_turns_add_up(
+    clips: ClipStore, jobs: JobStore
+) -> None:
+    added = add_clip(clips)
+    clip_id = added.clip.id
+    assert jobs.start(added.job.id)
+    jobs.complete(added.job.id, 12, ())
+    assert jobs.retry(clip_id, "diver") is None
+    assert jobs.retry(clip_id, "diver", anew=True) is not None
+    assert jobs.retry(clip_id, "diver", anew=True) is None  # It waits already.
+    clips.turn(clip_id, 90)
+    clip = clips.get(clip_id).clip
+    assert (clip.turn, clip.width, clip.height, clip.video_is_made) == (90, 48, 64, True)
+    assert clips.video(clip_id) != clips.received(clip)
+    clips.video(clip_id).write_bytes(b"turned")
+    assert clips.sweep(now()) == 0
+    clips.turn(clip_id, 180)
+    assert (clips.get(clip_id).clip.turn, clips.get(clip_id).clip.width) == (270, 48)
+    clips.turn(clip_id, 90)
+    clip = clips.get(clip_id).clip
+    assert (clip.turn, clip.width, clip.height, clip.video_is_made) == (0, 64, 48, False)
+    assert clips.video(clip_id).read_bytes() == b"video"
+    with pytest.raises(NotFound):
+        clips.turn("none", 90)

@@ -5,23 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fastapi import Request
-from fastapi.responses import FileResponse
+from fastapi import Response
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.ranges import keep_single_range
 
 
 def picture_responses(description: str) -> dict[int | str, dict[str, Any]]:
     """Return the OpenAPI ``responses`` of a route that answers with `send_picture`."""
     return {
-        **problem_responses(404, 416),
+        **problem_responses(404),
         200: {"description": description, "content": {"image/jpeg": {}}},
     }
 
 
-def send_picture(request: Request, path: Path, code: str, missing: str) -> FileResponse:
-    """Return the JPEG at `path`.
+def send_picture(path: Path, code: str, missing: str) -> Response:
+    """Return the JPEG at `path`, of some ten kilobytes.
+
+    Read at once, because a job may replace it: its length would be that of the one before.
 
     Raises
     ------
@@ -29,8 +29,9 @@ def send_picture(request: Request, path: Path, code: str, missing: str) -> FileR
         404 with `code` and `missing` as its detail while the job has not written it.
 
     """
-    if not path.is_file():
-        raise ProblemError(404, code, missing)
-    keep_single_range(request, path.stat().st_size)
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise ProblemError(404, code, missing) from error
     headers = {"Cache-Control": "private, max-age=3600"}
-    return FileResponse(path, media_type="image/jpeg", headers=headers)
+    return Response(content, media_type="image/jpeg", headers=headers)

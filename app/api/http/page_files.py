@@ -13,9 +13,12 @@ from pathlib import Path
 from fastapi.responses import FileResponse, HTMLResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.types import Scope
+
+from app.settings import Settings
 
 ADDRESS = "/static"
 """Path of the files."""
@@ -47,10 +50,24 @@ INVITATION_FILES = frozenset(
 _ALL_SHEETS = "styles/all.css"
 """Path of the joined style sheets, in their folder so that relative addresses in them stay
 valid."""
-_SHEET = re.compile(rf'<link\s+rel="stylesheet"\s+href="{ADDRESS}/([^"]+)"\s*/>\s*')
+_BESIDE = ADDRESS.lstrip("/")
+"""The files as the page names them, relative: a proxy may serve the page at any path."""
+_SHEET = re.compile(rf'<link\s+rel="stylesheet"\s+href="{_BESIDE}/([^"]+)"\s*/>\s*')
 _DIGEST = re.compile("[0-9a-f]{16}")
 _FOR_A_YEAR = "max-age=31536000, immutable"
 _ASK_FIRST = "no-cache"
+
+
+_PREFIX = re.compile(r"(/[\w.~-]{1,64}){1,8}", re.ASCII)
+
+
+def prefix_of(headers: Headers, settings: Settings) -> str:
+    """Return the path under which a reverse proxy serves the studio, such as ``/studio``, or "".
+
+    For the few addresses that are not relative to a page. Who has no proxy does not believe it.
+    """
+    prefix = headers.get("x-forwarded-prefix", "").rstrip("/")
+    return prefix if settings.forwarded_allow_ips and _PREFIX.fullmatch(prefix) else ""
 
 
 class PageFiles(StaticFiles):
@@ -62,7 +79,7 @@ class PageFiles(StaticFiles):
     Parameters
     ----------
     folder
-        Folder of ``index.html`` and the files that it refers to as ``/static/...``. The style
+        Folder of ``index.html`` and the files that it refers to as ``static/...``. The style
         sheets are joined in the order of their links.
 
     """
@@ -78,9 +95,9 @@ class PageFiles(StaticFiles):
         page = self._read_index()
         if first := _SHEET.search(page):
             rest = _SHEET.sub("", page)
-            link = f'<link rel="stylesheet" href="{ADDRESS}/{_ALL_SHEETS}" />\n    '
+            link = f'<link rel="stylesheet" href="{_BESIDE}/{_ALL_SHEETS}" />\n    '
             page = rest[: first.start()] + link + rest[first.start() :]
-        named = page.replace(f'"{ADDRESS}/', f'"{ADDRESS}/{self._digest}/')
+        named = page.replace(f'"{_BESIDE}/', f'"{_BESIDE}/{self._digest}/')
         return HTMLResponse(named, headers={"Cache-Control": _ASK_FIRST})
 
     async def get_response(self, path: str, scope: Scope) -> Response:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,23 @@ from app.recognition.recording.file_kinds import find_file_kind
 from app.store import Clip, Upload
 
 UNSUPPORTED = "unsupported_media_type"
+
+
+@dataclass(frozen=True, eq=False)
+class Inspected:
+    """A received file that can be used.
+
+    Attributes
+    ----------
+    clip
+        The clip that it would be, not yet stored.
+    picture
+        JPEG of its first frame, to show while its job waits; None for what is no video.
+
+    """
+
+    clip: Clip
+    picture: bytes | None
 
 
 def client_of(request: Request) -> str:
@@ -60,7 +78,7 @@ def bytes_to_come(uploads: Sequence[Upload]) -> int:
 
 async def inspect(
     partial: Path, studio: Studio, *, name: str, size: int, fields: UploadFields | None = None
-) -> Clip:
+) -> Inspected:
     """Probe a received file.
 
     Parameters
@@ -74,10 +92,6 @@ async def inspect(
     fields
         Values from its sender. Without a topic, the only one of a dive recording is taken, or the
         topic is chosen later.
-
-    Returns
-    -------
-    The clip that the file would be, not yet stored.
 
     Raises
     ------
@@ -97,13 +111,14 @@ async def inspect(
         options = source.upload_options(head, name, given.options)
         probed = await studio.workers.probe(source, partial, options)
         if isinstance(probed, Probed):
-            return Clip(
+            clip = Clip(
                 name=name,
                 size=size,
                 source=source.name,
                 media_type=source.media_type(head),
                 **_facts(name, options, probed),
             )
+            return Inspected(clip, probed.picture)
         # An archive may turn out to be of another kind than its beginning suggests.
         if probed.code != UNSUPPORTED or source is candidates[-1]:
             raise _refusal(probed, name)
@@ -116,9 +131,14 @@ async def inspect(
 
 
 async def store(
-    clip: Clip, partial: Path, studio: Studio, request: Request, *, upload_id: str | None = None
+    inspected: Inspected,
+    partial: Path,
+    studio: Studio,
+    request: Request,
+    *,
+    upload_id: str | None = None,
 ) -> ClipAccepted:
-    """Store an inspected file as `clip`, queue its job, and publish the change.
+    """Store an inspected file as its clip, queue its job, and publish the change.
 
     The clip is its sender's, unless it names an owner: whoever began a resumable upload.
     The job of a dive recording whose topic is not chosen yet is stored as failed, for that reason.
@@ -130,10 +150,18 @@ async def store(
         When the clip exceeds its sender's quota; the file stays where it is.
 
     """
-    quota = quota_of(request)
+    clip, quota = inspected.clip, quota_of(request)
     clip.owner = clip.owner or quota.owner
     client = client_of(request)
-    add = functools.partial(studio.clips.add, clip, partial, client, quota, upload_id=upload_id)
+    add = functools.partial(
+        studio.clips.add,
+        clip,
+        partial,
+        client,
+        quota,
+        upload_id=upload_id,
+        picture=inspected.picture,
+    )
     added = await run_in_threadpool(studio.keep_within, quota, add)
     if not added.clip.needs_topic:
         await studio.extractions.submit(added.job)

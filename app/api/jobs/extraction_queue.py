@@ -189,8 +189,8 @@ class ExtractionQueue:
         except NotFound:
             return None
         place = self._clips.place
-        for picture in (POSTER, FILMSTRIP):  # of an earlier job, before its pictures were turned
-            place(clip.id, picture).unlink(missing_ok=True)
+        if clip.turn:
+            self._clips.forget_pictures(clip.id)
         file = await persist(self._clips.received, clip)
         so_far = place(clip.id, SO_FAR)
         task = Record(

@@ -22,6 +22,7 @@ from starlette.datastructures import Headers
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.api.http.page_files import prefix_of
 from app.api.http.problems import RETRY_SECONDS, ProblemError, problem_of
 from app.api.http.websockets import POLICY_VIOLATION
 from app.api.middleware.identities import ANYBODY, Identities, Identity
@@ -77,7 +78,7 @@ SIGN_IN = """<!doctype html>
 <meta name="viewport" content="width=device-width">
 <title>OSG Studio: sign in</title>
 <h1>OSG Studio</h1>
-<form action="/" method="get">
+<form action="./" method="get">
 <p><label>Token <input name="token" type="password" required autofocus
 autocomplete="current-password"></label> <button>Sign in</button></p>
 </form>
@@ -220,6 +221,7 @@ class TokenRequired:
 
     def __init__(self, app: ASGIApp, settings: Settings) -> None:
         self._app = app
+        self._settings = settings
         self._identities = Identities(settings)
         self._connections = OpenConnections(self._identities)
         self._guesses = Guesses(MOST_GUESSES, GUESS_SECONDS)
@@ -295,6 +297,8 @@ class TokenRequired:
                 httponly=True,
                 samesite="strict",
                 secure=scope["scheme"] == "https",
+                # Another studio of the same host name keeps its own.
+                path=f"{prefix_of(Headers(scope=scope), self._settings)}/",
             )
         return response
 
@@ -410,8 +414,8 @@ def _shown_in_address(scope: Scope) -> str | None:
 def _redirect_without_token(scope: Scope) -> Response:
     query = parse_qsl(scope["query_string"].decode("latin-1"))
     rest = urlencode([(name, value) for name, value in query if name != "token"])
-    # Only one leading slash, because `//host` would be another site.
-    path = "/" + scope["path"].lstrip("/")
+    # Relative, for a reverse proxy may have taken a prefix away, and `//host` is another site.
+    path = "./" + scope["path"].rpartition("/")[2]
     return RedirectResponse(f"{path}?{rest}" if rest else path, HTTPStatus.SEE_OTHER)
 
 

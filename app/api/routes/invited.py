@@ -20,14 +20,14 @@ from app.api.http.schemas.invitations import (
     InvitedView,
 )
 from app.api.http.schemas.values import Diver, Label
-from app.api.ingest.intake import inspect, require_place_in_queue, store
+from app.api.ingest.intake import Inspected, inspect, require_place_in_queue, store
 from app.api.ingest.invited_takes import Returned, require_unshown
 from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.recognition import Gesture
-from app.store import Clip, Invitation, require_open
+from app.store import Invitation, require_open
 from app.store.models import VIDEO
 from app.ui.charts import data_url
 from app.ui.direction_marks import mark_gesture
@@ -109,14 +109,14 @@ async def send_take(
         # Counted before it is read, so that files that cannot be used are limited as well.
         take = await run_in_threadpool(count)
         try:
-            clip = await _inspect_video(received, studio, upload)
+            made = await _inspect_video(received, studio, upload)
         except ProblemError as error:
             await run_in_threadpool(studio.invitations.settle, take.id, error.detail)
             raise
-        clip.id = take.clip_id
-        clip.name = display_name(f"{diver} {label}{PurePath(upload.name).suffix[:8]}")
+        made.clip.id = take.clip_id
+        made.clip.name = display_name(f"{diver} {label}{PurePath(upload.name).suffix[:8]}")
         try:
-            await store(clip, received, studio, request)
+            await store(made, received, studio, request)
         except Exception:
             await run_in_threadpool(studio.invitations.release, take)
             raise
@@ -131,13 +131,13 @@ def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation)
     return InvitedTakeView(**studio.invitations.take(invitation.id, take_id).model_dump())
 
 
-async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Clip:
+async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Inspected:
     """Probe a received file as `inspect`; refuse what is no video."""
-    clip = await inspect(received, studio, name=upload.name, size=upload.size)
-    if clip.source != VIDEO:
+    made = await inspect(received, studio, name=upload.name, size=upload.size)
+    if made.clip.source != VIDEO:
         detail = f"{upload.name} is no video; record one, or choose another file"
         raise ProblemError(415, "unsupported_media_type", detail)
-    return clip
+    return made
 
 
 def _require_wanted(studio: Studio, invitation: Invitation, label: str, diver: str) -> None:

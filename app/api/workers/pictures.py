@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import cv2
 import numpy as np
 import numpy.typing as npt
 
+from app.api.workers.worker_messages import MOST_PICTURE_BYTES
+from app.recognition.errors import VideoError
 from app.recognition.recording import video
 
 Image = npt.NDArray[np.uint8]
@@ -35,6 +38,20 @@ def write_poster(clip: Path, poster: Path) -> None:
             if wanted.add(frame.time, frame.image):
                 return
     wanted.write()
+
+
+def first_picture(clip: Path) -> bytes | None:
+    """Return a small JPEG of a video's first frame, for a clip whose job has not begun.
+
+    None for what cannot be decoded, or is too large for a message.
+    """
+    with suppress(VideoError), video.read_frames(clip) as frames:
+        image = next(frames).image
+        height, width = image.shape[:2]
+        scale = min(1.0, POSTER_WIDTH / max(height, width))
+        picture = _jpeg(_resize(image, round(width * scale), round(height * scale)), quality=75)
+        return picture if len(picture) <= MOST_PICTURE_BYTES else None
+    return None
 
 
 class Poster:
@@ -111,7 +128,12 @@ def _resize(image: Image, width: int, height: int) -> Image:
 
 
 def _write(image: Image, path: Path) -> None:
-    _, encoded = cv2.imencode(".jpg", cv2.cvtColor(image, cv2.COLOR_RGB2BGR))
     partial = path.with_suffix(".part")
-    partial.write_bytes(encoded.tobytes())
+    partial.write_bytes(_jpeg(image))
     partial.replace(path)
+
+
+def _jpeg(image: Image, quality: int = 95) -> bytes:
+    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    _, encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    return encoded.tobytes()

@@ -5,6 +5,7 @@ A new kind is one more class in `AnyTask`; a route runs it by `app.api.jobs.job.
 
 from __future__ import annotations
 
+import base64
 import contextlib
 import time
 from collections.abc import Callable
@@ -19,7 +20,7 @@ import numpy as np
 from pydantic import BaseModel, Field, TypeAdapter
 
 from app.api.workers.executor import TaskFiles
-from app.api.workers.pictures import Poster, Thumbnails, write_poster
+from app.api.workers.pictures import Poster, Thumbnails, first_picture, write_poster
 from app.api.workers.task import READS, WRITES, Reads, Report, Task, Writes, failure_of
 from app.api.workers.worker_messages import (
     Answered,
@@ -92,7 +93,7 @@ class _ClipTask(Task):
 
 
 class Probe(_ClipTask):
-    """Reports the facts that a received file states about itself; see `ClipSource.probe`.
+    """Reports the facts that a received file states about itself, and the first frame of a video.
 
     A process that dies may have been killed from outside, for example for lack of memory: the file
     is refused only if it happens twice. The sender waits, and the file may be only here.
@@ -103,8 +104,12 @@ class Probe(_ClipTask):
     kind: Literal["probe"] = "probe"
 
     def run(self, report: Report) -> None:
-        """Report a `Probed`."""
-        report(Probed.model_validate(asdict(self.reader.probe(self.file, self.options))))
+        """Report a `Probed`; see `ClipSource.probe`."""
+        facts = asdict(self.reader.probe(self.file, self.options))
+        # Of a dive recording, a picture would mean to read all of it again.
+        picture = first_picture(self.file) if self.source == VIDEO.name else None
+        encoded = None if picture is None else base64.b64encode(picture)
+        report(Probed.model_validate({**facts, "picture": encoded}))
 
 
 class Record(_ClipTask):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, Base64Bytes, BaseModel, ConfigDict, Field, TypeAdapter
 
 if TYPE_CHECKING:
     from app.recognition.poses.sequence import FloatArray
@@ -16,6 +16,20 @@ Count = Annotated[int, Field(ge=0, lt=2**31)]
 
 Line = Annotated[str, AfterValidator(lambda text: text.replace("\0", "\ufffd"))]
 """A text that every database can keep."""
+
+MOST_PICTURE_BYTES = 64 * 1024
+"""Most bytes of a picture in a message: 62 kB are 320 x 320 pixels of noise."""
+
+
+def _require_jpeg(picture: bytes) -> bytes:
+    """Check a picture without decoding it: the server opens nothing that a file may have made."""
+    if len(picture) > MOST_PICTURE_BYTES or picture[:3] != b"\xff\xd8\xff":
+        raise ValueError(f"no JPEG of at most {MOST_PICTURE_BYTES} bytes")
+    return picture
+
+
+Picture = Annotated[Base64Bytes, AfterValidator(_require_jpeg)]
+"""A small JPEG, in base64."""
 
 Pose = tuple[tuple[float, float] | None, ...]
 """A body in one frame, for drawing: x (right) and y (down) of each of `POSE_LANDMARKS`, as
@@ -58,7 +72,10 @@ class TopicSeen(_Said):
 
 
 class Probed(_Said):
-    """Facts that a file states about its clip (`app.clip_sources.ClipFacts`)."""
+    """Facts that a file states about its clip (`app.clip_sources.ClipFacts`).
+
+    `picture` is the first frame of a video, made small.
+    """
 
     kind: Literal["probed"] = "probed"
     width: Count
@@ -66,6 +83,7 @@ class Probed(_Said):
     duration: float | None
     frames: Count | None
     topics: tuple[TopicSeen, ...] = ()
+    picture: Picture | None = None
 
 
 class Progressed(_Said):

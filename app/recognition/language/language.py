@@ -203,8 +203,7 @@ class Language:
         if self.grammar is not None and (users := self.grammar.users_of(label)):
             raise LanguageError(
                 f"{label!r} cannot be removed, it is needed by {join_words(users)}: change the "
-                "phrases first",
-                "/grammar",
+                "phrases first"
             )
         kept = tuple(gesture for gesture in self.gestures if gesture is not unwanted)
         return replace(self, gestures=kept, revision=self.revision + 1)

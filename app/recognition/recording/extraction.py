@@ -38,8 +38,9 @@ second, and a hand found in every fourth frame is not seen to hold anything."""
 TURNED_SHARE: Final = 0.8
 """Share of the frames with a body in which it must lie in one direction, to be called turned."""
 
-TURNED_DEGREES: Final = 35.0
-"""Farthest of a torso from a quarter turn: divers lean a little, whatever way up they are."""
+TURNED_DEGREES, MOST_LEAN = 40.0, 60.0
+"""Farthest of a torso from a quarter turn, in the median and in these frames: divers lean a little,
+and bend, whatever way up they are."""
 
 LEAST_TORSO: Final = 0.5
 """Least length of a torso in shoulder widths: that of somebody who points at the camera is short,
@@ -184,8 +185,9 @@ def find_turn(poses: PoseSequence) -> Turn:
     # Clockwise in the picture, whose y points down, from upwards.
     lean = np.degrees(np.arctan2(up[:, 0], -up[:, 1]))
     for turn in HEAD_POINTS:
-        off = np.abs((lean + turn + 180) % 360 - 180)
-        if (off <= TURNED_DEGREES).mean() >= TURNED_SHARE:
+        off = (lean + turn + 180) % 360 - 180
+        steady = (np.abs(off) <= MOST_LEAN).mean() >= TURNED_SHARE
+        if steady and abs(np.median(off)) <= TURNED_DEGREES:
             return turn
     return 0
 
@@ -333,8 +335,7 @@ def _warn_of_turn(poses: PoseSequence) -> Iterator[str]:
     if turn := find_turn(poses):
         yield (
             f"the diver {HEAD_POINTS[turn]} in the picture, so gestures shown upright are not "
-            f"recognised; turn the picture by {turn} degrees clockwise (--turn {turn} on the "
-            "command line)"
+            f"recognised; turn the picture by {turn} degrees clockwise (--turn {turn})"
         )
 
 

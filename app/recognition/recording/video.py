@@ -278,8 +278,8 @@ class FrameReader(Iterator[VideoFrame]):
             )
         except av.error.FFmpegError as error:
             raise VideoError(
-                f"{self._path.name}: frame {self._count} cannot be turned into a picture "
-                f"({error.strerror or error}); record or export it again"
+                f"{self._path.name}: frame {self._count} cannot be turned into a picture; record "
+                "or export it again"
             ) from error
         image = np.asarray(converted.to_ndarray(), dtype=np.uint8)
         if has_alpha:

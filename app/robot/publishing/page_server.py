@@ -41,6 +41,8 @@ class PageServer(ThreadingHTTPServer):
     """
 
     daemon_threads = True
+    # With the usual five, a page that comes in a burst of others waits for seconds.
+    request_queue_size = 4 * MOST_CONNECTIONS
     # Two programs on one port would share the requests between them.
     allow_reuse_port = False
 

@@ -1,5 +1,7 @@
 // The WebSocket of the live view: sends frames, receives poses and recognitions.
 
+import { openSocket } from "../core/api.js";
+
 /** @import { Handlers, Seen } from "./live-messages.d.ts" */
 
 const PER_LOOK = 3; // frames sent for each one processed: the server takes the newest.
@@ -18,8 +20,7 @@ const CLOSED = {
  * @param {Handlers} handlers A function for each kind of message, and for the end.
  */
 export function openLink(handlers) {
-  const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const socket = new WebSocket(`${scheme}://${location.host}/api/v1/live`);
+  const socket = openSocket("/live");
   /** @type {Map<number, number>} */
   const captured = new Map(); // Capture time by the page's clock, by frame under way.
   /** @type {((value?: unknown) => void)[]} */

@@ -7,8 +7,16 @@ import { BUSY } from "./busy.js";
 
 /** @import { Batch, Clip, Job, State } from "../core/types.d.ts" */
 
-/** @type {Batch | null} */
-let batch = null;
+const KEY = "osg-studio.queue"; // sessionStorage: clips of the batch, whose count a reload keeps
+
+/** @type {Batch | null | undefined} */
+let batch; // undefined before the first drawing after a load of the page
+
+/** @returns {Batch | null} */
+function kept() {
+  const members = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
+  return members && { members, began: null, frames: 0, left: 0, at: 0 };
+}
 
 /**
  * What the card says; null where at most one clip is busy.
@@ -34,9 +42,11 @@ function wordsOf(current, clips, jobs) {
 }
 
 /** @param {State} state */
-export function drawBatch({ clips, jobs }) {
+export function drawBatch({ clips, jobs, loaded }) {
   const box = byId("batch");
-  batch = follow(batch, clips, jobs, performance.now());
+  if (!loaded && !clips.length) return undefined; // The clips are not known yet.
+  batch = follow(batch === undefined ? kept() : batch, clips, jobs, performance.now());
+  sessionStorage.setItem(KEY, JSON.stringify(batch?.members ?? null));
   box.hidden = !batch || batch.members.length < 2;
   if (!batch || box.hidden) return box.replaceChildren();
   const { total, done, title, now } = wordsOf(batch, clips, jobs);

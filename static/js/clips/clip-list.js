@@ -8,7 +8,7 @@ import { recordAction, showDone } from "../core/undo.js";
 import { queueOf } from "./batch.js";
 import { BUSY } from "./busy.js";
 import { countAll, forget, isListed, loadOlder, searchClips } from "./clip-pages.js";
-import { needsTopic, reloadClip, select, statusText } from "./clip-store.js";
+import { hasPoster, needsTopic, posterOf, reloadClip, select, statusText } from "./clip-store.js";
 import { openTopics } from "./topic-dialog.js";
 
 /** @import { Clip, Job, State } from "../core/types.d.ts" */
@@ -75,38 +75,6 @@ function buttons(clip) {
       ? null
       : iconButton("retry", `Retry ${clip.name}`, () => retry(clip), WRITES);
   return [choose, again, iconButton("trash", `Delete ${clip.name}`, () => remove(clip), WRITES)];
-}
-
-/**
- * Whether a clip has a picture, which its job makes with the first frames.
- *
- * @param {Clip} clip
- */
-const hasPoster = (clip) =>
-  clip.status === "running"
-    ? Boolean(state.jobs.get(clip.job_id)?.done)
-    : clip.status !== "queued" && clip.status !== "cancelled";
-
-/**
- * The clip's picture; once made it is kept, since progress redraws the rest often.
- *
- * @param {Clip} clip
- * @param {HTMLElement} [element]
- */
-function posterOf(clip, element) {
-  const known = element?.querySelector(".poster:not(.blank)");
-  if (known?.getAttribute("src") === api.clips.poster(clip)) return known;
-  if (!hasPoster(clip)) return h("div", { className: "poster blank" });
-  const poster = h("img", {
-    className: "poster",
-    src: api.clips.poster(clip),
-    alt: "",
-    loading: "lazy",
-    width: 64,
-    height: 48,
-  });
-  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
-  return poster;
 }
 
 /**
@@ -180,7 +148,7 @@ function draw(clip, element) {
         "aria-pressed": String(chosen),
         onclick: () => select(clip.id),
       },
-      posterOf(clip, element),
+      posterOf(clip, element?.querySelector(".poster:not(.blank)")),
       h(
         "span",
         { className: "clip-text" },

@@ -1,7 +1,8 @@
 // The clips as the server has them: loading, selecting, and the progress of finding their poses.
 
 import * as api from "../core/api.js";
-import { duration, plural, timeLeft } from "../core/format.js";
+import { dateAndTime, duration, plural, timeLeft } from "../core/format.js";
+import { h } from "../core/dom.js";
 import { refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { registerUndo } from "../core/undo.js";
@@ -80,6 +81,31 @@ function progressText(clip, job) {
 }
 
 /**
+ * Names that several clips have, by the list of clips.
+ *
+ * @type {WeakMap<Clip[], Set<string>>}
+ */
+const shared = new WeakMap();
+
+/**
+ * When a clip was added, where another one has its name; else "".
+ *
+ * @param {Clip} clip
+ * @param {Clip[]} clips
+ */
+export function addedAt(clip, clips = state.clips) {
+  if (!shared.has(clips)) {
+    const names = clips.map(({ name }) => name).sort();
+    shared.set(clips, new Set(names.filter((name, at) => name === names[at - 1])));
+  }
+  if (!shared.get(clips)?.has(clip.name)) return "";
+  const added = new Date(clip.created);
+  const today = added.toDateString() === new Date().toDateString();
+  // Clips of one minute differ in the seconds.
+  return `added ${today ? added.toLocaleTimeString() : dateAndTime(clip.created)}`;
+}
+
+/**
  * The state of a clip in words.
  *
  * @param {Clip} clip
@@ -89,13 +115,55 @@ export function statusText(clip, job) {
   if (needsTopic(clip)) return `${plural(clip.topics.length, "topic")}: choose one`;
   if (clip.status === "failed") return clip.error ?? "The poses could not be found.";
   if (clip.status === "cancelled") return "Cancelled before its poses were found";
-  if (BUSY.has(clip.status)) return progressText(clip, job);
+  const added = addedAt(clip);
+  if (BUSY.has(clip.status))
+    return added ? `${progressText(clip, job)} \u00b7 ${added}` : progressText(clip, job);
   return [
     clip.duration ? duration(clip.duration) : null,
     clip.frames ? plural(clip.frames, "frame") : null,
+    added,
   ]
     .filter(Boolean)
     .join(" \u00b7 ");
+}
+
+/**
+ * Whether a clip has a still picture: a received video from the beginning, anything else once its
+ * job has made one.
+ *
+ * @param {Clip} clip
+ */
+export function hasPoster(clip) {
+  if (clip.shows_pictures && !clip.topics.length && !clip.turn) return true;
+  return clip.status === "running"
+    ? Boolean(state.jobs.get(clip.job_id)?.done)
+    : clip.status !== "queued" && clip.status !== "cancelled";
+}
+
+/**
+ * The picture of a clip, or a grey box. Once made it is kept, since progress redraws the rest
+ * often.
+ *
+ * @param {Clip} clip
+ * @param {Element | null} [known] the one drawn before
+ */
+export function posterOf(clip, known) {
+  const place = api.clips.poster(clip);
+  // Another address than later, because a browser keeps pictures for an hour.
+  const early = `${place}?waiting`;
+  if ([place, early].includes(known?.getAttribute("src") ?? ""))
+    return /** @type {Element} */ (known);
+  if (!hasPoster(clip)) return h("div", { className: "poster blank" });
+  const poster = h("img", {
+    className: "poster",
+    src: clip.status === "queued" ? early : place,
+    alt: "",
+    loading: "lazy",
+    width: 64,
+    height: 48,
+  });
+  poster.onerror = () => poster.replaceWith(h("div", { className: "poster blank" }));
+  return poster;
 }
 
 registerUndo("clip", {

@@ -1,6 +1,8 @@
 // Salutes along a clip: runs of frames whose salute score is above the threshold.
 
 import { plural } from "../core/format.js";
+import { h, icon } from "../core/dom.js";
+import { follow } from "../core/state.js";
 import { SALUTE } from "./salute-threshold.js";
 
 /** @import { Clip, Language } from "../core/types.d.ts" */
@@ -76,3 +78,12 @@ export const saluteWarning = (salutes, name = "Vulcan salute") =>
   salutes.length
     ? `This range contains ${plural(salutes.length, name)}, which would become part of the gesture. Choose a take, or a range between the ${name === "arm pose" ? "poses" : "salutes"}.`
     : "";
+
+/** The hand of a salute, while the language on display has it as trigger. */
+export function saluteHand() {
+  const hand = h("div", { role: "img", "aria-label": "Hand in a Vulcan salute" }, icon("salute"));
+  follow(["gestures"], ({ gestures }) => {
+    hand.hidden = heldName(gestures) !== HELD.salute;
+  });
+  return hand;
+}

@@ -2,7 +2,8 @@
 
 /** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
-const BASE = "/api/v1";
+// Relative to the page, which a reverse proxy may serve under a path of its own.
+export const BASE = "api/v1";
 
 const CLIPS_OF_A_PAGE = 500; // Half a megabyte; takes the server 50 ms.
 
@@ -87,6 +88,24 @@ async function send(method, path, { body, headers = {}, raw = false, signal } = 
   }
   if (!response.ok) throw new ApiError(await problemOf(response), response.status);
   return response;
+}
+
+/**
+ * The address of a path that the server named, as seen from the page.
+ *
+ * @param {string} path
+ */
+export const beside = (path) => path.replace(/^\//, "");
+
+/**
+ * Open a WebSocket of the API.
+ *
+ * @param {string} path
+ */
+export function openSocket(path) {
+  const address = new URL(BASE + path, document.baseURI);
+  address.protocol = address.protocol.replace("http", "ws");
+  return new WebSocket(address);
 }
 
 const id = encodeURIComponent;

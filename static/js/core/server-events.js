@@ -88,7 +88,7 @@ function listen(handlers, after) {
       setTimeout(async () => {
         const signedOut = current === stream && (await isSignedOut());
         if (current !== stream) return;
-        if (signedOut) location.assign("/");
+        if (signedOut) location.assign("./");
         else listen(handlers, handlers.returned);
       }, RETRY);
   };

@@ -57,7 +57,7 @@ export async function showSession() {
   byId("log-out").onclick = () =>
     attempt("Logging out", async () => {
       await api.session.end();
-      location.assign("/");
+      location.assign("./");
     });
   byId("session").hidden = false;
 }

@@ -66,7 +66,7 @@ async function step(from, to, how, words) {
     removeUndoButtons();
     toast(words, action.title);
   } catch (error) {
-    complain(error, words);
+    complain(error, how === "undo" ? "Undoing" : "Redoing");
   }
 }
 

@@ -56,7 +56,7 @@ export function image() {
   const list = h("ul", { className: "descriptors", "aria-label": "Descriptors" });
   const described = h(
     "details",
-    { open: true, hidden: true },
+    { hidden: true },
     h("summary", {}, "Descriptors of the image"),
     list,
   );

@@ -118,6 +118,20 @@ function commandLine(text) {
 }
 
 /**
+ * @param {Language} language
+ * @param {"pdf" | "svg"} format
+ */
+const slateLink = ({ id, name }, format) =>
+  h(
+    "a",
+    {
+      href: api.languages.slate(id, format),
+      download: fileName(name, { suffix: `.${format}` }),
+    },
+    format.toUpperCase(),
+  );
+
+/**
  * The printable page for divers, as files.
  *
  * @param {Language} language
@@ -128,9 +142,9 @@ const slateLinks = (language) =>
     { className: "export-slate" },
     h("b", {}, "Slate for divers: "),
     "strokes, meanings and the salute on one page, as ",
-    h("a", { href: api.languages.slate(language.id, "pdf"), download: "" }, "PDF"),
+    slateLink(language, "pdf"),
     " or ",
-    h("a", { href: api.languages.slate(language.id, "svg"), download: "" }, "SVG"),
+    slateLink(language, "svg"),
   );
 
 /** Show the contents of the export. */

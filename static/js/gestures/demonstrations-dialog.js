@@ -35,7 +35,7 @@ let followed = false;
  * @param {string} thumbnail
  */
 export const withMarks = (thumbnail) =>
-  `${thumbnail}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
+  `${api.beside(thumbnail)}${thumbnail.includes("?") ? "&" : "?"}marks=true`;
 
 const SHORT_FAULTS = {
   whole_clip: "whole clip",

@@ -3,7 +3,7 @@
 import { BUSY } from "../clips/busy.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { heldName } from "../clips/salutes.js";
-import { statusText } from "../clips/clip-store.js";
+import { addedAt, posterOf, statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
 import { byId, h, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
@@ -102,14 +102,7 @@ function makeRow(row) {
     "li",
     { className: "gesture-row" },
     box,
-    h("img", {
-      className: "poster",
-      src: api.clips.poster(clip),
-      alt: "",
-      loading: "lazy",
-      width: 64,
-      height: 48,
-    }),
+    posterOf(clip),
     h("div", { className: "row-clip" }, h("b", {}, clip.name), h("span", { className: "dim num" })),
     limit(label, LONGEST_LABEL),
     h("p", { className: "row-note", id: `row-note-${key.replace(" ", "-")}` }),
@@ -133,7 +126,7 @@ function drawRow(row, problem, element) {
   label.setAttribute("aria-invalid", String(Boolean(problem)));
   drawn.classList.toggle("left-out", !row.chosen);
   range.textContent = row.takes
-    ? rangeText(row)
+    ? [rangeText(row), addedAt(row.clip)].filter(Boolean).join(" \u00b7 ")
     : statusText(row.clip, state.jobs.get(row.clip.job_id));
   note.textContent = row.chosen ? problem || rangeWarning(row, heldName(state.gestures)) : "";
   note.classList.toggle("problem", Boolean(row.chosen && problem));

@@ -9,6 +9,7 @@ import { intervalText, percent } from "./rates.js";
 
 /** @type {(keyof NonNullable<GestureHealth["counts"]>)[]} */
 const COUNTING = ["direction", "tempo", "hand_shape"];
+const NEWS = 0.02; // Share from which on a number is worth its place.
 
 /**
  * How many takes were right, with bar and interval; a dash where none is known.
@@ -44,9 +45,17 @@ export function testedShare(testSet, gesture) {
   return { rate: found.rate, low: found.low, high: found.high, n: found.asked };
 }
 
-/** @param {GestureHealth["landmarks"]} landmarks */
-function seen(landmarks) {
-  if (!landmarks.length) return h("td", { className: "dim" }, "not known");
+/**
+ * The keypoints that are missing often enough to matter.
+ *
+ * @param {GestureHealth} gesture
+ */
+const missing = ({ landmarks }) => landmarks.filter(({ visible }) => 1 - visible > NEWS);
+
+/** @param {GestureHealth} gesture */
+function unseen(gesture) {
+  const landmarks = missing(gesture);
+  if (!landmarks.length) return h("td", { className: "dim" }, "\u2013");
   return h(
     "td",
     {},
@@ -54,7 +63,13 @@ function seen(landmarks) {
       "ul",
       { className: "seen" },
       landmarks.map(({ landmark, visible }) =>
-        h("li", {}, readable(landmark), " ", h("b", { className: "num" }, `${percent(visible)} %`)),
+        h(
+          "li",
+          {},
+          readable(landmark),
+          " ",
+          h("b", { className: "num" }, `${percent(1 - visible)} %`),
+        ),
       ),
     ),
   );
@@ -90,9 +105,10 @@ const counting = (counts) =>
  * @param {GestureHealth} gesture
  * @param {string} image
  * @param {Node[]} measured
+ * @param {Node[]} more
  */
-function row(gesture, image, measured) {
-  const { label, seconds, landmarks, counts } = gesture;
+function row(gesture, image, measured, more) {
+  const { label, seconds } = gesture;
   return h(
     "tr",
     {},
@@ -117,14 +133,13 @@ function row(gesture, image, measured) {
     ),
     measured,
     nearest(gesture),
-    h("td", {}, counting(counts)),
-    seen(landmarks),
+    more,
     h("td", { className: "edit" }, editLink(label, "Edit")),
   );
 }
 
 /**
- * Draw the table of all gestures; columns without any measured take are left out.
+ * Draw the table of all gestures; columns that would tell nothing of any are left out.
  *
  * @param {HealthReport} report
  * @param {TestSet | null} testSet
@@ -132,13 +147,15 @@ function row(gesture, image, measured) {
  */
 export function gestureTable({ gestures, forecast }, testSet, imageOf) {
   const tested = Boolean(testSet?.overall.asked);
+  const counts = gestures.some((gesture) => COUNTING.some((name) => gesture.counts?.[name]));
+  const misses = gestures.some((gesture) => missing(gesture).length);
   const heads = [
     "Gesture",
     ...(tested ? ["Test set"] : []),
     ...(forecast.right ? ["By other people\u2019s demonstrations"] : []),
     "Nearest gesture",
-    "Counts beside the figure",
-    "Keypoints seen",
+    ...(counts ? ["Counts beside the figure"] : []),
+    ...(misses ? ["Keypoints not seen"] : []),
     "",
   ];
   return h(
@@ -161,10 +178,18 @@ export function gestureTable({ gestures, forecast }, testSet, imageOf) {
         "tbody",
         {},
         gestures.map((gesture) =>
-          row(gesture, imageOf(gesture.label), [
-            ...(tested ? [share(testedShare(testSet, gesture.label))] : []),
-            ...(forecast.right ? [share(gesture.right)] : []),
-          ]),
+          row(
+            gesture,
+            imageOf(gesture.label),
+            [
+              ...(tested ? [share(testedShare(testSet, gesture.label))] : []),
+              ...(forecast.right ? [share(gesture.right)] : []),
+            ],
+            [
+              ...(counts ? [h("td", {}, counting(gesture.counts))] : []),
+              ...(misses ? [unseen(gesture)] : []),
+            ],
+          ),
         ),
       ),
     ),

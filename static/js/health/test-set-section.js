@@ -77,7 +77,8 @@ function matrix(takes) {
   const rows = [...new Set([...labels(), ...takes.map(({ expected }) => expected)])].filter(
     (label) => takes.some(({ expected }) => expected === label),
   );
-  const columns = [...new Set([...labels(), ...takes.map(readAs)])]
+  // A gesture that was neither meant nor read has nothing to tell.
+  const columns = [...new Set([...rows, ...takes.map(readAs)])]
     .filter((label) => label !== REFUSED && label !== ASKED)
     .concat(takes.some(({ pair }) => pair) ? ASKED : [], REFUSED);
   /**

@@ -1,10 +1,10 @@
 // What an invited person's page asks the server: the gestures to show, and takes with their answer.
 
-import { ApiError, problemOf, unreachable } from "../core/api.js";
+import { ApiError, BASE, problemOf, unreachable } from "../core/api.js";
 
 /** @import { Invited, InvitedTake } from "../core/types.d.ts" */
 
-const PLACE = "/api/v1/invited";
+const PLACE = `${BASE}/invited`;
 const LOOK = 1500; // ms between two looks whether a take is judged; its poses take some seconds.
 
 // Behind the "#", which browsers do not send.

@@ -44,7 +44,7 @@ function version(title, lines, gestures, choice) {
         h(
           "li",
           { className: kind },
-          h("img", { src: gesture.thumbnail, alt: "", width: 56, height: 56 }),
+          h("img", { src: api.beside(gesture.thumbnail), alt: "", width: 56, height: 56 }),
           h("span", {}, gesture.label),
           kind === "same" ? null : h("small", {}, kind),
         ),

@@ -1,5 +1,6 @@
 // Two revisions of a language side by side, gesture by gesture.
 
+import { beside } from "../core/api.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 
@@ -17,7 +18,7 @@ function picture(gesture, absent) {
         "figure",
         {},
         h("img", {
-          src: gesture.thumbnail,
+          src: beside(gesture.thumbnail),
           alt: `Trajectory of ${gesture.label}`,
           loading: "lazy",
           width: 112,

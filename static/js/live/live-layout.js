@@ -3,6 +3,7 @@
 import { olderClipsButton } from "../clips/older-clips.js";
 import { h, WRITES } from "../core/dom.js";
 import { SALUTE } from "../clips/salute-threshold.js";
+import { saluteHand } from "../clips/salutes.js";
 
 /**
  * @param {string} id
@@ -39,7 +40,7 @@ function picture() {
       playsInline: true,
       "aria-label": "What the camera sees",
     }),
-    h("p", { className: "camera-idle", id: "live-idle" }, "No source is running"),
+    h("div", { className: "camera-idle", id: "live-idle" }, saluteHand(), "No source is running"),
     h("p", {
       className: "live-count",
       id: "live-count",

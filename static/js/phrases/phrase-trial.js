@@ -185,7 +185,8 @@ function gestureButton({ label, thumbnail }, next, item) {
   const picture = /** @type {HTMLImageElement} */ (drawn.querySelector("img"));
   button.classList.toggle("next", next);
   button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
-  if (picture.getAttribute("src") !== thumbnail) picture.src = thumbnail;
+  const source = api.beside(thumbnail);
+  if (picture.getAttribute("src") !== source) picture.src = source;
   drawn
     .querySelector("small")
     ?.replaceChildren(next ? "next" : ROLES.filter((role) => grammar()[role] === label).join(", "));

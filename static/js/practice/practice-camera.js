@@ -16,6 +16,7 @@ import {
   watchFrames,
   whyNoCamera,
 } from "../camera/video-source.js";
+import { saluteHand } from "../clips/salutes.js";
 import { h, WRITES } from "../core/dom.js";
 import { state } from "../core/state.js";
 
@@ -38,7 +39,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     playsInline: true,
     "aria-label": "What the camera sees",
   });
-  const idle = h("p", { className: "camera-idle" }, "The camera is off");
+  const idle = h("div", { className: "camera-idle" }, saluteHand(), "The camera is off");
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
   const picture = h("div", { className: "camera-picture" }, video, idle, trouble);
   const words = h("p", { className: "practice-step", role: "status" });

@@ -1,5 +1,6 @@
 // The playback clock of the workspace, shared by the 3D view, the timeline and the keys.
 
+import { openSocket } from "../core/api.js";
 import { state, update } from "../core/state.js";
 
 /** @import { Position } from "../core/types.d.ts" */
@@ -34,10 +35,7 @@ export function followClock(id) {
 
 /** @param {string} id */
 function connect(id) {
-  const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const opened = new WebSocket(
-    `${scheme}://${location.host}/api/v1/workspaces/${encodeURIComponent(id)}/playback`,
-  );
+  const opened = openSocket(`/workspaces/${encodeURIComponent(id)}/playback`);
   socket = opened;
   opened.onopen = () => {
     for (const wish of unsent.splice(0)) opened.send(JSON.stringify(wish));

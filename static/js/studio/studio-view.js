@@ -75,7 +75,7 @@ export function showSelection() {
   if (state.take === null && state.start === null) delete view.start;
   if (state.take === null && state.end === null) delete view.end;
   if (state.recognition) view.recognition_id = state.recognition;
-  const text = JSON.stringify([view, clip.turn]);
+  const text = JSON.stringify(view);
   if (text === shownView) return;
   viewTimer = setTimeout(
     () => {
@@ -241,27 +241,25 @@ export function drawOutcome({ result }) {
 }
 
 /**
- * The button that turns the pictures of a clip, or back those that were turned; null without need.
+ * The notes on a clip; that of pictures that are turned has a button that turns them.
  *
  * @param {Clip} clip
  */
-function turnNote(clip) {
+function notesOn(clip) {
+  const notes = listWarnings(clip, state.gestures);
   const advised = state.timeline?.turn;
   const degrees = /** @type {0 | 90 | 180 | 270} */ (advised || (360 - clip.turn) % 360);
-  if (!degrees) return null;
+  if (clip.status !== "done" || !degrees) return notes.map((note) => h("li", {}, note));
+  if (!advised) notes.push(`The picture was turned by ${clip.turn}\u00b0.`);
+  const at = advised ? notes.findIndex((note) => note.includes("--turn")) : notes.length - 1;
   const turn = async () => {
     await attempt("Turning the picture", () => api.clips.turn(clip.id, degrees));
     await reloadClip(clip.id);
   };
-  return h(
-    "li",
-    {},
-    advised ? "" : `The picture was turned by ${clip.turn}\u00b0. `,
-    h(
-      "button",
-      { type: "button", id: "turn-picture", className: "link", ...WRITES, onclick: turn },
-      advised ? `Turn the picture by ${degrees}\u00b0` : "Turn it back",
-    ),
+  const label = advised ? `Turn the picture by ${degrees}\u00b0` : "Turn it back";
+  const options = { type: "button", className: "link", ...WRITES, onclick: turn };
+  return notes.map((note, place) =>
+    h("li", {}, note, ...(place === at ? [" ", h("button", options, label)] : [])),
   );
 }
 
@@ -283,10 +281,7 @@ export function drawStage() {
         : "Its takes appear as soon as they have ended.";
   for (const id of ["recognise", "expected"]) byId(id).disabled = !ready || !state.takes;
   byId("save-gesture").disabled = !done || !state.takes;
-  byId("clip-warnings").replaceChildren(
-    ...listWarnings(clip, state.gestures).map((warning) => h("li", {}, warning)),
-    ...(done ? [turnNote(clip)] : []).filter((each) => each !== null),
-  );
+  byId("clip-warnings").replaceChildren(...notesOn(clip));
   byId("range-text").replaceChildren();
   drawTimeline();
 }

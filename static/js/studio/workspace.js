@@ -64,7 +64,8 @@ function loadFrame(url) {
     LOADING_LIMIT,
   );
   frame.onload = () => watch(frame, late);
-  frame.src = `${url}?hideViserLogo`;
+  frame.src = `${api.beside(url)}?hideViserLogo`;
+  Object.assign(byId("lab-tab"), { href: api.beside(url), hidden: false });
 }
 
 /**
@@ -82,6 +83,8 @@ function watch(frame, late) {
     instead("The 3D view did not load; this is the page\u2019s own picture.", restart);
     return;
   }
+  // viser's panel is for its own tab: here the page shows what is in it.
+  page?.documentElement.toggleAttribute("data-embedded", true);
   const drawn = () => {
     if (!root.querySelector("canvas")) return;
     observer.disconnect();

@@ -1,10 +1,10 @@
 // Resumable uploads (tus 1.0.0): they survive a lost connection, a reload and a server's restart.
 
-import { ApiError, isAway, problemOf, unreachable } from "../core/api.js";
+import { ApiError, BASE, isAway, problemOf, unreachable } from "../core/api.js";
 
 /** @import { Stand } from "../core/types.d.ts" */
 
-const PLACE = "/api/v1/uploads";
+const PLACE = `${BASE}/uploads`;
 const VERSION = { "Tus-Resumable": "1.0.0" };
 const PART = 8 * 2 ** 20; // bytes of one request, and at most sent again after a break.
 const FIRST_PAUSE = 500; // ms before the first retry; the pause doubles with each further one,
@@ -93,7 +93,7 @@ async function begin(file, fields) {
     "Upload-Length": String(file.size),
     "Upload-Metadata": metadataOf(file.name, fields),
   });
-  const place = headers.get("Location") ?? "";
+  const place = `${PLACE}/${headers.get("Location")?.split("/").at(-1)}`;
   keep(file, place);
   return { place, offset: 0, clip: null };
 }

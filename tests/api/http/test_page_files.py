@@ -12,10 +12,10 @@ from app.settings import Settings
 from tests.api.running import client_of, running
 
 PAGE = """
-<link rel="icon" href="/static/icon.svg" />
-<link rel="stylesheet" href="/static/styles/base.css" />
-<link rel="stylesheet" href="/static/styles/after.css" />
-<script type="module" src="/static/js/main.js"></script>
+<link rel="icon" href="static/icon.svg" />
+<link rel="stylesheet" href="static/styles/base.css" />
+<link rel="stylesheet" href="static/styles/after.css" />
+<script type="module" src="static/js/main.js"></script>
 """
 
 
@@ -65,9 +65,9 @@ def test_after_an_update_the_page_names_all_files_anew(client: httpx.Client, fol
 
 
 def test_without_a_digest_the_browser_asks_first(client: httpx.Client) -> None:
-    answer = client.get("/static/js/main.js")
+    answer = client.get("static/js/main.js")
     assert answer.headers["cache-control"] == "no-cache"
-    again = client.get("/static/js/main.js", headers={"If-None-Match": answer.headers["etag"]})
+    again = client.get("static/js/main.js", headers={"If-None-Match": answer.headers["etag"]})
     assert (again.status_code, again.headers["cache-control"]) == (304, "no-cache")
 
 
@@ -83,4 +83,4 @@ def test_all_style_sheets_come_as_one_in_the_order_of_the_page(client: httpx.Cli
 
 @pytest.mark.parametrize("path", ["", "js", "js/none.js", "0123456789abcdef", "../secret"])
 def test_what_is_no_file_is_not_found(client: httpx.Client, path: str) -> None:
-    assert client.get(f"/static/{path}").status_code == 404
+    assert client.get(f"static/{path}").status_code == 404

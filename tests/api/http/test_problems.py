@@ -99,6 +99,7 @@ TUS = {
 
 
 BODIES: dict[tuple[str, str], dict[str, Any]] = {
+    ("POST", "/api/v1/clips/{clip_id}/turn"): {"degrees": 90},
     ("PATCH", "/api/v1/languages/{language_id}"): {"name": "x"},
     ("POST", "/api/v1/clips/{clip_id}/session.mcap"): {"id": "mine"},
     ("POST", "/api/v1/clips/{clip_id}/topic"): {"topic": "/camera"},

@@ -1,22 +1,29 @@
 """Tasks: what each reports, and how it fails in the words of its kind."""
 
 import asyncio
+import base64
+import io
+import json
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from app.api.workers.rights import line_of
 from app.api.workers.tasks import AnyTask, Check, Export, Import, Probe, TestRun
 from app.api.workers.worker_messages import (
+    MOST_PICTURE_BYTES,
     PART_CHARACTERS,
     Failed,
     Finished,
     Message,
     Probed,
     Progressed,
+    dump,
+    parse,
     pose_in,
 )
 from app.api.workers.worker_processes import Workers
@@ -54,6 +61,19 @@ def test_probing_tells_what_the_clip_is(tmp_path: Path) -> None:
     (answer,) = reports(Probe(source="video", file=clip))
     assert isinstance(answer, Probed)
     assert (answer.width, answer.height) == (48, 64)  # upright
+    assert answer.picture is not None
+    with Image.open(io.BytesIO(answer.picture)) as picture:
+        assert (picture.format, picture.size) == ("JPEG", (48, 64))
+    (line,) = dump(answer)
+    assert parse(line.encode()) == answer
+
+
+@pytest.mark.parametrize("picture", [b"<svg/>", b"\xff\xd8\xff" + bytes(MOST_PICTURE_BYTES)])
+def test_a_picture_that_is_no_small_jpeg_is_no_answer(picture: bytes) -> None:
+    said = {"kind": "probed", "width": 4, "height": 3, "duration": None, "frames": None}
+    line = json.dumps({**said, "picture": base64.b64encode(picture).decode()})
+    with pytest.raises(ValueError, match="no JPEG"):
+        parse(line.encode())
 
 
 def test_a_failure_names_no_file_of_ours(tmp_path: Path) -> None:

@@ -137,7 +137,7 @@ def test_the_topic_is_chosen_in_a_dialogue(
     found = checked(tmp_path / "session.mcap")
     assert [content["label"] for _, content in found["/recognitions"]] == ["circle", "circle"]
     assert len(found["/video"]) == len(recording_of("circle").poses)
-    page.get_by_label("Expected").select_option("line")
+    page.get_by_label("Expected", exact=True).select_option("line")
     page.get_by_role("button", name="Recognise", exact=True).click()
     expect(why.get_by_role("link", name="Share as one file")).to_be_visible()
 

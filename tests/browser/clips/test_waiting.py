@@ -93,3 +93,35 @@ def test_a_batch_shows_how_many_are_done_which_one_runs_and_the_time_for_all(
     assert missing == []
     expect(card).to_contain_text("1 of 3 clips done", timeout=EXTRACTION_MS)
     expect(card).to_be_hidden(timeout=EXTRACTION_MS)
+
+
+@linux
+def test_waiting_clips_of_one_name_differ_in_picture_and_time_and_counts_survive_a_reload(
+    open_page: OpenPage, thin_clip: Callable[[str], Path], tmp_path: Path
+) -> None:
+    page = open_page(scene=False)
+    clip = shortened(thin_clip("line-test-2"), tmp_path / "dive.mp4", 1.0)
+    drop(page, *[clip] * 3, names=("GOPR0001.mp4", "GOPR0001.mp4", "other.mp4"))
+    worker = hold_worker(os.getpid())
+    card = page.locator("#batch")
+    expect(card).to_contain_text("0 of 3 clips done")
+    rows = page.get_by_role("list", name="Clips").get_by_role("listitem")
+    twins = rows.filter(has_text="GOPR0001.mp4")
+    expect(twins).to_have_count(2)
+    for row in [*twins.all(), rows.filter(has_text="other.mp4")]:
+        # The first frame, while no job has written a picture.
+        expect(row.locator("img.poster")).to_have_js_property("naturalWidth", 320)
+    expect(twins.filter(has_text=re.compile(r"added \d+:\d\d:\d\d"))).to_have_count(2)
+    expect(rows.filter(has_text="other.mp4")).not_to_contain_text("added")
+    page.get_by_role("button", name="Make gestures of these clips").click()
+    row = page.get_by_role("dialog").locator(".gesture-row").filter(has_text="GOPR0001.mp4")
+    expect(row.locator("img.poster")).to_have_count(2)
+    expect(row.filter(has_text=re.compile(r"added \d+:\d\d:\d\d"))).to_have_count(2)
+    page.keyboard.press("Escape")
+    os.kill(worker, signal.SIGCONT)
+    expect(card).to_contain_text("1 of 3 clips done", timeout=EXTRACTION_MS)
+    worker = hold_worker(os.getpid())
+    page.reload()
+    expect(card).to_contain_text("1 of 3 clips done")
+    os.kill(worker, signal.SIGCONT)
+    expect(card).to_be_hidden(timeout=EXTRACTION_MS)

@@ -65,15 +65,23 @@ def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
     with client_of(server.address) as client:
         content = with_wrong_take().to_json()
         language = client.post("/api/v1/languages/import?name=three", content=content).json()["id"]
-        page = open_page({"view": "health", "language": language}, scene=False)
+        page = open_page({"view": "health", "language": language}, scene=False, size=(1440, 900))
         expected = page.get_by_role("region", name="What to expect")
         expect(expected).to_contain_text("Of 12 demonstrations")
         expect(expected).to_contain_text("are read right by those of other people")
         expect(expected).to_contain_text("read as another")
         findings = page.get_by_role("list", name="Findings")
         expect(findings).to_contain_text("Cy's is read as wedge")
+        # Whose demonstration fails and the way to more people are one sight.
+        expect(findings.get_by_text("Cy's is read as wedge")).to_be_in_viewport(ratio=1)
+        expect(page.get_by_role("button", name="Invite people")).to_be_in_viewport(ratio=1)
         expect(known_of(page).get_by_role("row").filter(has_text="infinity")).to_contain_text(
             "2 of 3"
+        )
+        # Every keypoint is seen, and no gesture needs more than its figure: that takes no columns.
+        heads = known_of(page).get_by_role("columnheader")
+        expect(heads).to_have_text(
+            ["Gesture", "By other people\u2019s demonstrations", "Nearest gesture"]
         )
         assert faults(page) == []
         picture(page, "health")

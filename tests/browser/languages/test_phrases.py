@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -168,7 +169,9 @@ def test_a_gesture_of_a_phrase_is_renamed_with_it_and_not_deleted(
     query = sample(library)
     page = open_page({**query, "view": "studio"}, scene=False)
     page.get_by_role("button", name="Delete sweep", exact=True).click()
-    expect(page.get_by_text("needed by the phrase 'come here'")).to_be_visible()
+    refused = page.get_by_text("needed by the phrase 'come here'")
+    expect(refused).to_be_visible()
+    expect(refused).to_have_text(re.compile("^'sweep' cannot be removed"))
     place = f"/api/v1/languages/{query['language']}/gestures/sweep"
     library.client.patch(place, json={"label": "beckon"})
     page.get_by_role("link", name="Phrases").click()

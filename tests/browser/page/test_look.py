@@ -213,3 +213,15 @@ def test_every_control_has_a_name_and_shows_the_focus(
         seen.add(focused[0])
         assert focused[1], f"no visible focus on {focused[0]!r}"
     assert {"language", "new-language", "file"} <= seen
+
+
+@pytest.mark.parametrize("width", [768, 1024])
+def test_what_to_do_before_the_camera_has_a_line_of_its_own(
+    open_page: OpenPage, library: Library, width: int
+) -> None:
+    page = open_page(library.address | {"view": "live"}, scene=False, size=(width, 800))
+    expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
+    boxes = [page.locator(each).bounding_box() for each in ("#live-instruction", "#live-meter")]
+    words, meter = (box for box in boxes if box is not None)
+    assert words["y"] >= meter["y"] + meter["height"]
+    assert words["height"] < 60

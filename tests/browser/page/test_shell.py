@@ -72,7 +72,9 @@ def test_undo_does_not_take_back_what_another_tab_did(
     elsewhere.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
     page.keyboard.press("Control+z")
-    expect(page.get_by_role("alert").get_by_text("changed elsewhere")).to_be_visible()
+    alert = page.get_by_role("alert")
+    expect(alert.get_by_text("changed elsewhere")).to_be_visible()
+    expect(alert.get_by_text("Undoing failed")).to_be_visible()
     expect(page.get_by_role("img", name="Trajectory of round")).to_be_visible()
 
 

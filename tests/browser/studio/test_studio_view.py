@@ -279,9 +279,12 @@ def test_one_click_turns_the_picture_of_a_diver_who_lies_on_the_side(
     width, height = upright.frame_size
     lying = np.stack([upright.xy[..., 1], width - upright.xy[..., 0]], axis=-1)
     poses = replace(upright, xy=lying, frame_size=(height, width))
-    clip = add_clip(server, name="lying.mp4", recording=replace(recording, poses=poses))
+    told = "the diver lies on the side; turn the picture by 90 degrees clockwise (--turn 90)"
+    shown = replace(recording, poses=poses, warnings=("no face", told))
+    clip = add_clip(server, name="lying.mp4", recording=shown)
     page = open_page({"clip": clip}, scene=False)
-    button = page.get_by_role("button", name="Turn the picture by 90°")
+    note = page.locator("#clip-warnings li").filter(has_text="lies on the side")
+    button = note.get_by_role("button", name="Turn the picture by 90°")
     with page.expect_response(lambda answer: answer.url.endswith(f"/{clip}/turn")) as answered:
         button.click()
     assert answered.value.status == 202

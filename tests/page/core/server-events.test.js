@@ -100,6 +100,6 @@ test("a page whose session has ended goes to the page to sign in, and asks no mo
   stream.onerror();
   t.mock.timers.tick(5_000);
   await answered();
-  assert.deepEqual(opened, ["/"]);
+  assert.deepEqual(opened, ["./"]);
   assert.equal(Stream.all.length, length);
 });

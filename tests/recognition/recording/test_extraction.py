@@ -323,6 +323,10 @@ def test_who_points_at_the_camera_or_turns_about_is_not_called_sideways(
     lying = poses.xy[..., ::-1]
     half = np.where(np.arange(len(poses))[:, None, None] % 2, lying, poses.xy)
     assert find_turn(replace(poses, xy=half)) == 0
+    for lean, turn in ((45.0, 0), (60.0, 270)):
+        angle = np.radians(lean)
+        by = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        assert find_turn(replace(poses, xy=poses.xy @ by)) == turn
     assert find_turn(replace(poses, xy=lying * [0.1, 1.0])) == 0
     assert find_turn(replace(poses, xy=np.full_like(poses.xy, np.nan))) == 0
 

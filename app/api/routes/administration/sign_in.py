@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, Field
 
+from app.api.http.page_files import prefix_of
 from app.api.http.problems import problem_responses
 from app.api.middleware.access import COOKIE, cookie_of
 from app.api.middleware.identities import identity_of
@@ -59,5 +60,6 @@ def end_session(request: Request, studio: CurrentStudio) -> Response:
     if cookie := cookie_of(request.headers):
         studio.sign_ins.end(cookie)
     response = Response(status_code=204)
-    response.delete_cookie(COOKIE, httponly=True, samesite="strict")
+    path = f"{prefix_of(request.headers, studio.settings)}/"
+    response.delete_cookie(COOKIE, path=path, httponly=True, samesite="strict")
     return response

@@ -79,9 +79,9 @@ async def upload_clip(
 ) -> ClipAccepted:
     """Store a clip and queue the extraction of its poses.
 
-    Another program's keypoint file is taken too (CSV, JSON, SLEAP, OpenPose's folder as zip); its
-    video is the skeleton, drawn. What the file lacks is refused as `frame_rate_needed` or
-    `frame_size_needed`.
+    Another program's keypoint file is taken too (CSV, JSON, SLEAP, .pose, OpenPose's folder as
+    zip); its video is the skeleton, drawn. What the file lacks is refused as `frame_rate_needed`
+    or `frame_size_needed`.
 
     A dive recording (rosbag2) is taken too: of the topic named, or of the only one that can be
     used. Where there are several, the job fails with the code `topic_needed` and the clip lists
@@ -101,11 +101,11 @@ async def upload_clip(
     partial = studio.clips.new_partial()
     try:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
-        clip = await inspect(
+        made = await inspect(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
-        clip.idempotency_key = idempotency_key
-        return await store(clip, partial, studio, request)
+        made.clip.idempotency_key = idempotency_key
+        return await store(made, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)
 
@@ -257,14 +257,14 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
 
 @router.get(
     "/{clip_id}/poster",
-    response_class=FileResponse,
+    response_class=Response,
     responses=picture_responses("A small still picture"),
 )
-def get_poster(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
-    """Send a still picture of the clip, once its job has begun."""
+def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
+    """Send a still picture of the clip: its first frame until its job begins, if it is a video."""
     studio.clips.get(clip_id)
     missing = "there is no still picture of this clip yet"
-    return send_picture(request, studio.clips.poster(clip_id), "no_poster", missing)
+    return send_picture(studio.clips.poster(clip_id), "no_poster", missing)
 
 
 @router.get("/{clip_id}/poses", response_model=PosesView, responses=problem_responses(404, 409))

@@ -18,6 +18,7 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import ClientDisconnect
 
+from app.api.http.page_files import prefix_of
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.ingest.fields import LONGEST, UploadFields
 from app.api.ingest.intake import (
@@ -112,7 +113,7 @@ async def begin_upload(
         except BaseException:
             await run_in_threadpool(studio.uploads.remove, upload.id)
             raise
-    location = f"{request.url.path}/{upload.id}"
+    location = f"{prefix_of(request.headers, studio.settings)}{request.url.path}/{upload.id}"
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
 
@@ -310,7 +311,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
         except ProblemError:
             await run_in_threadpool(_forget, upload.id, studio)
             raise
-        made.idempotency_key, made.owner = upload.id, upload.owner
+        made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
         await store(made, upload.path, studio, request, upload_id=upload.id)
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     # Also when it was a clip already: a crash may have come between the two.

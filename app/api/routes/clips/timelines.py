@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 
 import numpy as np
-from fastapi import APIRouter, Request, Response
-from fastapi.responses import FileResponse
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field
 
 from app.api.http.images import picture_responses, send_picture
@@ -80,14 +79,14 @@ def get_timeline(
 
 @router.get(
     "/{clip_id}/filmstrip",
-    response_class=FileResponse,
+    response_class=Response,
     responses=picture_responses("Thumbnails side by side"),
 )
-def get_filmstrip(request: Request, clip_id: str, studio: CurrentStudio) -> FileResponse:
+def get_filmstrip(clip_id: str, studio: CurrentStudio) -> Response:
     """Send the thumbnails along the clip, once its poses are found."""
     studio.clips.get(clip_id)
     missing = "there are no thumbnails of this clip yet"
-    return send_picture(request, studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
+    return send_picture(studio.clips.filmstrip(clip_id), "no_filmstrip", missing)
 
 
 def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
 
-from app.api.http.page_files import INVITATION_ADDRESS
+from app.api.http.page_files import INVITATION_ADDRESS, prefix_of
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.invitations import (
     MEAN_TAKE_BYTES,
@@ -56,7 +56,8 @@ def invite(
         days=draft.days,
     )
     # After the "#", which browsers do not send: so the token is in no log.
-    link = f"{request.base_url}{INVITATION_ADDRESS.strip('/')}#{token}"
+    prefix = prefix_of(request.headers, studio.settings)
+    link = f"{str(request.base_url).rstrip('/')}{prefix}{INVITATION_ADDRESS}#{token}"
     seen = _view(InvitationState(made, ()))
     return NewInvitationView(**seen.model_dump(), link=link, qr=draw_qr_code(link))
 

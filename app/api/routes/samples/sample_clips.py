@@ -38,7 +38,7 @@ async def import_sample(
     partial = studio.clips.new_partial()
     try:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
-        clip = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
-        return await store(clip, partial, studio, request)
+        made = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
+        return await store(made, partial, studio, request)
     finally:
         partial.unlink(missing_ok=True)

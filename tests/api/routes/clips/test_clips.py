@@ -8,7 +8,7 @@ import pytest
 from app.api.services.running_studio import Studio
 from app.recognition.recording.video import probe
 from app.settings import Limits, Settings
-from app.store import Clip
+from app.store import Clip, Job
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, client_of, running, until
 from tests.recognition.damaged_clips import IMPOSTORS, flipped, sound_only, write_clip
@@ -38,6 +38,22 @@ def test_a_clip_is_stored_and_its_job_waits(client: httpx.Client, small_clip: Pa
     assert clip["size"] == small_clip.stat().st_size
     assert client.get(f"{CLIPS}/{clip['id']}/video").content == small_clip.read_bytes()
     assert client.get(CLIPS).json()[0]["id"] == clip["id"]
+
+
+def test_a_clip_has_a_picture_while_its_job_waits(
+    client: httpx.Client, studio: Studio, small_clip: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def wait(_job: Job) -> None:
+        """Leave the job in the queue."""
+
+    monkeypatch.setattr(studio.extractions, "submit", wait)
+    clip_id = upload(client, small_clip).json()["id"]
+    poster = client.get(f"{CLIPS}/{clip_id}/poster")
+    assert client.get(f"{CLIPS}/{clip_id}").json()["status"] == "queued"
+    assert poster.headers["content-type"] == "image/jpeg"
+    assert poster.content[:3] == b"\xff\xd8\xff"
+    # A job that replaces the picture while it is sent changes no length.
+    assert "accept-ranges" not in poster.headers
 
 
 @pytest.mark.usefixtures("installed_models")

@@ -66,7 +66,8 @@ def test_a_full_disk_costs_no_byte_of_an_upload(
             assert refused.headers["content-type"] == "application/problem+json"
             assert int(refused.headers.get("retry-after", "0")) >= 0
             came = offset_of(client, place)
-            assert len(content) - 10 <= came < len(content)
+            # All of it may be there before the row of its clip finds room.
+            assert len(content) - 10 <= came <= len(content)
         # Reading still works.
         assert client.get("/healthz").status_code == 200
         assert client.get(CLIPS).status_code == 200

@@ -156,7 +156,7 @@ def test_the_link_shows_the_gestures_of_the_language_and_nothing_else(
 def test_the_page_of_invited_people_may_fetch_what_it_imports_and_no_more() -> None:
     folder = static_dir()
     page = (folder / "invitation-page" / "invitation-page.html").read_text("utf-8")
-    needed, queue = set[str](), re.findall(r'"/invitation/([^"]+)"', page)
+    needed, queue = set[str](), re.findall(r'"invitation/([^"]+)"', page)
     while queue:
         path = queue.pop()
         if path not in needed:

@@ -1,0 +1,150 @@
+"""Pose-format reader: ``.pose`` files of sign language research, versions 0.1 and 0.2.
+
+The format is that of github.com/sign-language-processing/pose (docs/specs): a header that names
+components and their points, then 32-bit numbers of all frames, little endian. Read are the body and
+both hands; face and world landmarks are left out.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any, Final
+
+import numpy as np
+
+from app.keypoint_files.keypoint_table import (
+    MALFORMED,
+    MOST_PEOPLE,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    hands_of,
+    mask_unseen,
+)
+from app.recognition.errors import KeypointFileError, OsgError
+from app.recognition.poses.frame import SIDES, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.skeletons import translate_landmark
+from app.recognition.recording.people import prominence_over
+from app.recognition.recording.video_limits import VideoLimits
+
+BEGINNINGS: Final[Mapping[bytes, str]] = {
+    struct.pack("<f", 0.1): "<HHH",
+    struct.pack("<f", 0.2): "<fIH",
+}
+"""First bytes of a file, the version, with the layout of rate, number of frames and of people."""
+
+MOST_COMPONENTS: Final = 16
+MOST_POINTS: Final = 1000
+"""Most points of all components; MediaPipe's with face and world landmarks have 586."""
+
+
+@dataclass(frozen=True)
+class _Component:
+    """Points ``[first, first + len(names))`` of a frame."""
+
+    name: str
+    names: tuple[str, ...]
+    first: int
+
+
+def read_pose_format(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
+    """Read the most prominent person; see `app.keypoint_files.read_keypoints`."""
+    try:
+        with path.open("rb") as file:
+            return _read(file, path.stat().st_size, limits)
+    except OsgError:
+        raise
+    except (*MALFORMED, struct.error) as error:
+        raise KeypointFileError(
+            f"{path} cannot be read as a .pose file of version 0.1 or 0.2: it is damaged or of "
+            "another kind; write it again with the newest pose-format"
+        ) from error
+
+
+def _read(file: IO[bytes], size: int, limits: VideoLimits) -> KeypointTable:
+    layout = BEGINNINGS[file.read(4)]
+    width, height, _, count = _unpack(file, "<HHHH")
+    if not 0 < count <= MOST_COMPONENTS:
+        raise ValueError(f"{count} components")
+    components, points, values = [], 0, 0
+    for _ in range(count):
+        name, form = _text(file), _text(file)
+        number, limbs, colours = _unpack(file, "<HHH")
+        if points + number > MOST_POINTS:
+            raise ValueError(f"{points + number} points")
+        components.append(_Component(name, tuple(_text(file) for _ in range(number)), points))
+        points, values = points + number, max(values, len(form))
+        file.seek(4 * limbs + 6 * colours, 1)
+    rate, frames, people = _unpack(file, layout)
+    if not 0 < people <= MOST_PEOPLE or values < 3 or not points:
+        raise ValueError(f"{people} people, {values} values of a point")
+    start, row = file.tell(), 4 * people * points
+    whole = (size - start) // (row * values)
+    # Version 0.1 counts frames in 16 bits, which may be too few.
+    frames = whole if layout == "<HHH" else frames
+    if not 0 < frames <= whole:
+        raise ValueError(f"{frames} frames, of which {whole} are in the file")
+    limits.require_frames(frames)
+    body = _find_body(components)
+    hands = _find_hands(components)
+    wanted = [*range(body.first, body.first + len(body.names))]
+    wanted += [hand.first + each for hand in hands.values() for each in range(len(HAND_LANDMARKS))]
+    shape = (frames, people, points, values - 1)
+    places = np.memmap(file, "<f4", "r", start, shape)[:, :, wanted, :2]
+    scores = np.memmap(file, "<f4", "r", start + row * (values - 1) * frames, shape[:3])
+    confidence = np.clip(np.nan_to_num(scores[:, :, wanted].astype(np.float64)), 0, 1)
+    xy = mask_unseen(places.astype(np.float64), confidence, 0.0)
+    bodies = slice(len(body.names))
+    chosen = max(
+        range(people),
+        key=lambda who: prominence_over(xy[:, who, bodies], confidence[:, who, bodies]),
+    )
+    seen = np.asarray(np.isfinite(xy[:, :, bodies]).all(axis=3)).any(axis=2)
+    return KeypointTable(
+        names=body.names,
+        xy=xy[:, chosen, bodies],
+        confidence=confidence[:, chosen, bodies],
+        times=Times(np.arange(frames, dtype=np.float64), counted=True),
+        frame_size=(width, height) if width and height else None,
+        frame_rate=float(rate) if np.isfinite(rate) and rate > 0 else None,
+        hands=hands_of(xy[:, chosen, len(body.names) :], tuple(hands)),
+        notes=(f"of {people} people number {chosen + 1} stands out most and is followed",)
+        if people > 1
+        else (),
+        people=seen.sum(axis=1, dtype=np.int64),
+    )
+
+
+def _unpack(file: IO[bytes], layout: str) -> tuple[Any, ...]:
+    return struct.unpack(layout, file.read(struct.calcsize(layout)))
+
+
+def _text(file: IO[bytes]) -> str:
+    (length,) = _unpack(file, "<H")
+    return file.read(length).decode()
+
+
+def _find_body(components: list[_Component]) -> _Component:
+    """Return the first component with landmarks of a body in the picture."""
+    for each in components:
+        other = any(word in each.name.lower() for word in ("hand", "face", "world"))
+        if not other and any(map(translate_landmark, each.names)):
+            return each
+    named = ", ".join(each.name[:40] for each in components)
+    raise KeypointFileError(f"the .pose file holds no body that is known here, only {named}")
+
+
+def _find_hands(components: list[_Component]) -> dict[Side, _Component]:
+    """Return the components of hands by their sides."""
+    return {
+        side: each
+        for side in SIDES
+        for each in components
+        if "hand" in each.name.lower()
+        and side in each.name.lower()
+        and len(each.names) == len(HAND_LANDMARKS)
+    }
