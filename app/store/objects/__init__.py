@@ -1,7 +1,5 @@
 """Object stores: where clip files are kept beside the local folder."""
 
-from app.store.objects.object_store import ObjectStore
-from app.store.objects.opening import open_object_store
-from app.store.objects.shared_folder import SharedFolder
+from app.store.objects.object_store import ObjectStore, SharedFolder, open_object_store
 
 __all__ = ["ObjectStore", "SharedFolder", "open_object_store"]

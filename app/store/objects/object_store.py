@@ -1,4 +1,4 @@
-"""Object store protocol: keeps whole files by name."""
+"""Object store: keeps whole files by name, in a shared folder or in S3."""
 
 from __future__ import annotations
 
@@ -52,3 +52,39 @@ class ObjectStore(Protocol):
 
         """
         ...
+
+
+class SharedFolder:
+    """Object store that consists of the clips' folder itself; see `ObjectStore`."""
+
+    def upload(self, file: Path, name: str) -> None:
+        """Do nothing: the file is where all servers look."""
+
+    def download(self, name: str, target: Path) -> bool:
+        """Return False: a file that is not in the folder does not exist."""
+        return False
+
+    def size(self, name: str) -> int | None:
+        """Return None: there is no copy beside the one in the folder."""
+        return None
+
+    def remove(self, clip_id: str) -> None:
+        """Do nothing: the files go with their folder."""
+
+
+def open_object_store(address: str | None) -> ObjectStore:
+    """Return the object store at ``s3://BUCKET/PREFIX``; without an address, the folder itself.
+
+    Raises
+    ------
+    StoreUnavailable
+        When the object store's settings in the environment cannot be used.
+
+    """
+    if address is None:
+        return SharedFolder()
+    # The S3 library is an extra, and takes a third of a second to load.
+    from app.store.objects.s3 import S3Objects
+
+    bucket, _, prefix = address.removeprefix("s3://").partition("/")
+    return S3Objects(bucket, prefix.strip("/"))
