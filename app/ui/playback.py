@@ -132,6 +132,12 @@ class Playback:
             self._unplayed = True
             self._set(frame)
 
+    def set_span(self, span: tuple[int, int]) -> None:
+        """Set first and last frame of the range on display; the clock goes on where it is."""
+        with self._changed:
+            self._span = span
+            self._set(self._frame)
+
     def seek(self, frame: int) -> None:
         """Show `frame`, limited to the clip, and continue from there if playing."""
         with self._changed:

@@ -173,8 +173,10 @@ class Workspace:
         """Whether a browser is connected."""
         return bool(self._server.get_clients())
 
-    def show(self, view: WorkspaceView) -> None:
+    def show(self, view: WorkspaceView, *, keep_frame: bool = False) -> None:
         """Show another clip, range or recognition; its frames arrive in the background.
+
+        With `keep_frame`, the clock goes on where it is, if the clip stays the same.
 
         Raises
         ------
@@ -186,7 +188,8 @@ class Workspace:
         with self._lock:
             before, self._view = self._view, view
             if before is None or _frames_of(before) != _frames_of(view):
-                self._load(before, view, shown)
+                same = before is not None and _clip_of(before) == _clip_of(view)
+                self._load(before, view, shown, keep_frame=keep_frame and same)
             if before is None or _answer_of(before) != _answer_of(view):
                 found = view.recognition
                 images = [] if found is None else compared_images(view, found, shown.poses)
@@ -264,15 +267,19 @@ class Workspace:
             with quiet():
                 self._server.stop()
 
-    def _load(self, before: WorkspaceView | None, view: WorkspaceView, shown: Range) -> None:
+    def _load(
+        self, before: WorkspaceView | None, view: WorkspaceView, shown: Range, *, keep_frame: bool
+    ) -> None:
         """Show other frames: scene, playback and charts at once, pictures as they are decoded."""
         first, times = shown.first, shown.poses.time
         last = first + len(times) - 1
         trajectory = self._draw_scene(view, shown)
         self._shown = shown
-        self.playback.load(
-            view.recording.poses.time.tolist(), first + initial_frame(len(times)), (first, last)
-        )
+        if keep_frame:
+            self.playback.set_span((first, last))
+        else:
+            begin = first + initial_frame(len(times))
+            self.playback.load(view.recording.poses.time.tolist(), begin, (first, last))
         self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.held), view.trigger)
         if before is None or _pictures_of(before) != _pictures_of(view):
             self._decode(view, first, last)
@@ -394,6 +401,11 @@ def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8]
 def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return the values of a view that determine the frames, trails and curves shown."""
     return view.video, view.start, view.end, view.salient, view.trigger
+
+
+def _clip_of(view: WorkspaceView) -> tuple[object, ...]:
+    """Return the values of a view that determine the frames that its clip has."""
+    return view.video, len(view.recording.poses)
 
 
 def _size_of(view: WorkspaceView) -> tuple[int, int]:

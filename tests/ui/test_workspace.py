@@ -98,6 +98,20 @@ def test_a_recognition_of_the_same_take_keeps_the_frame(
     assert workspace.view == view
 
 
+def test_another_range_of_the_clip_lets_the_clock_go_on_if_asked(
+    workspace: Workspace, tmp_path: Path
+) -> None:
+    view = view_in(tmp_path)
+    workspace.show(view)
+    workspace.playback.seek(30)
+    workspace.playback.play(0.25)
+    workspace.show(replace(view, start=None), keep_frame=True)
+    assert workspace.playback.playing
+    assert workspace.playback.frame >= 30
+    workspace.show(view)
+    assert not workspace.playback.playing
+
+
 def test_changing_the_colours_keeps_what_is_shown(workspace: Workspace, tmp_path: Path) -> None:
     view = view_in(tmp_path)
     workspace.set_dark(False)

@@ -88,7 +88,7 @@ def show_view(
     workspace = find(workspaces, workspace_id)
     view = view_of(studio, request)
     try:
-        workspace.show(view)
+        workspace.show(view, keep_frame=request.keep_frame)
     except OsgError as error:
         raise ProblemError(422, UNSHOWABLE, str(error)) from error
     return Response(status_code=204)

@@ -23,6 +23,9 @@ class ViewRequest(BaseModel):
     language_id: Annotated[str | None, Field(max_length=64)] = None
     start: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
     end: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
+    keep_frame: Annotated[
+        bool, Field(description="Whether the clock goes on where it is, in the same clip")
+    ] = False
 
 
 def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:

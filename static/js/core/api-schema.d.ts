@@ -2636,6 +2636,12 @@ export interface components {
             start?: number | null;
             /** End */
             end?: number | null;
+            /**
+             * Keep Frame
+             * @description Whether the clock goes on where it is, in the same clip
+             * @default false
+             */
+            keep_frame: boolean;
         };
         /**
          * WorkspaceOptions

@@ -17,8 +17,8 @@ let cut = false; // whether the connection to this workspace's clock has broken
 /** @type {Wish[]} */
 let unsent = []; // commands from before the connection opened
 /** @type {number | null} */
-let wantedFrame = null; // from the URL or the former view, until the clip is shown
-let wantedSpeed = 0;
+let wantedFrame = null; // from the URL, until the clip is shown
+let goesOn = false; // whether the next view leaves the clock where it is
 
 /**
  * Follow the clock of a workspace, and of another one when that one is gone.
@@ -67,21 +67,30 @@ function ask(wish) {
 }
 
 /**
- * Keep a frame number, and the speed at which to play on, for `frameShown`.
+ * Keep the frame number from a link, for `frameShown`.
  *
  * @param {number | null} frame
- * @param {number} [speed]
  */
-export function rememberFrame(frame, speed = 0) {
+export function rememberFrame(frame) {
   wantedFrame = frame;
-  wantedSpeed = speed;
+}
+
+/** Let the clock go on where it is when the next view is shown. */
+export function keepFrame() {
+  goesOn = true;
+}
+
+/** Whether the view that is shown now leaves the clock where it is. */
+export function keepsFrame() {
+  const kept = goesOn;
+  goesOn = false;
+  return kept;
 }
 
 /** Called when the clip is on display: go to the frame from the link, once. */
 export function frameShown() {
   if (wantedFrame !== null) seek(wantedFrame);
-  if (wantedSpeed) play(wantedSpeed);
-  rememberFrame(null);
+  wantedFrame = null;
 }
 
 /**

@@ -10,7 +10,7 @@ import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
 import { buildRanges } from "./labelled-ranges.js";
-import { frameShown } from "./playback.js";
+import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
 import { buildTransport } from "./transport.js";
@@ -80,7 +80,7 @@ export function showSelection() {
   viewTimer = setTimeout(
     () => {
       shownView = text;
-      show(view).then(frameShown);
+      show({ ...view, keep_frame: keepsFrame() }).then(frameShown);
     },
     state.take === null && state.start !== null ? SETTLED : 0,
   );

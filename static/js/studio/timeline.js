@@ -6,7 +6,7 @@ import { moment, plural } from "../core/format.js";
 import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
-import { rememberFrame, seek } from "./playback.js";
+import { keepFrame, seek } from "./playback.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
 
@@ -188,9 +188,9 @@ function move(which, frame) {
  */
 function moveHere(which) {
   if (!state.timeline || !state.position) return;
-  const { frame, playing, speed } = state.position;
+  const { frame } = state.position;
   if (frameAt(/** @type {SelectedRange} */ (selectedRange())[which]) === frame) return;
-  rememberFrame(frame, playing ? speed : 0);
+  keepFrame();
   move(which, frame);
 }
 export const setStart = () => moveHere("start");

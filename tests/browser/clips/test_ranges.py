@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 from playwright.sync_api import FloatRect, Locator, Page, expect
@@ -13,6 +14,11 @@ from tests.browser.conftest import OpenPage
 from tests.browser.library import Library, add_clip, library_of
 
 WARNING = "This range contains 2 Vulcan salutes"
+
+SIDES = (
+    "all => all.map(each => each.getBoundingClientRect()).map(({ left, right }) => [left, right])"
+)
+"""Left and right of all elements at one moment: the page may draw them anew at the next."""
 
 
 @pytest.fixture
@@ -90,11 +96,8 @@ def test_a_long_timeline_is_enlarged_and_its_labels_never_overlap(
     ticks = page.locator(".ruler span")
     for _ in range(3):
         for labels in (page.locator(".take-name:visible"), page.locator(".salute"), ticks):
-            boxes = sorted((box_of(each) for each in labels.all()), key=lambda box: box["x"])
-            ends = [box["x"] + box["width"] for box in boxes[:-1]]
-            assert all(end <= box["x"] + 0.5 for end, box in zip(ends, boxes[1:], strict=True)), (
-                labels
-            )
+            sides = sorted(labels.evaluate_all(SIDES))
+            assert all(one[1] <= other[0] + 0.5 for one, other in pairwise(sides)), labels
         page.get_by_role("button", name="Enlarge the timeline").click()
     assert box_of(track)["width"] == pytest.approx(8 * width, rel=0.01)
     expect(page.locator(".take-name i").first).to_be_visible()
@@ -140,10 +143,14 @@ def test_ranges_are_labelled_while_the_clip_plays_and_saved_together(
     until(lambda: shown + 3 < frame_of(page))
     expect(pause).to_be_visible()
     page.keyboard.press("k")
+    expect(page.get_by_role("button", name="Play", exact=True)).to_be_visible()
     for name in ("wave", "nod"):
+        end = frame_of(page) + 60
         page.keyboard.press("[")
         for _ in range(6):
             page.keyboard.press("Shift+.")
+        # The steps count, although the new range is shown after them.
+        expect(page.locator("#clock")).to_contain_text(f"frame {end} of")
         page.keyboard.press("]")
         label.fill(name)
         label.press("Enter")
