@@ -28,7 +28,7 @@ pytestmark = [pytest.mark.slow, linux, pytest.mark.usefixtures("installed_models
 
 JOBS = "/api/v1/jobs"
 FRAMES = 60
-SILENCE = 30.0
+SILENCE = 20.0
 """Seconds without progress: enough for the models to be loaded on a busy machine."""
 
 
@@ -116,7 +116,7 @@ def test_a_job_that_waits_for_a_place_again_is_not_taken_for_a_hanging_one(
         others = [address for address, process in processes.items() if process != machine]
         # Every other place is taken for longer than a process may be silent.
         taken = [
-            dask.submit(time.sleep, SILENCE + 15, workers=[each], pure=False) for each in others
+            dask.submit(time.sleep, SILENCE + 8, workers=[each], pure=False) for each in others
         ]
         until(lambda: sum(map(len, dask.processing().values())) > len(others))
         for process in (machine, child):

@@ -343,6 +343,9 @@ def test_a_change_while_a_clip_is_added_to_the_test_holds(
     shows = page.get_by_label(f"What {name} shows")
     with page.expect_request(lambda request: clip in (request.post_data or "")):
         shows.select_option("circle")
+    # The request is told before the route is called.
+    while not held:
+        page.wait_for_timeout(20)
     row = page.get_by_role("row").filter(has_text=name)
     if change == "left out":
         page.get_by_role("button", name=f"Leave {name} out of the test").click()
