@@ -43,8 +43,10 @@ ASKED = 250
 """Ten seconds of scrubbing, each time two frames on."""
 
 SCRUB = """async ({ asked, period }) => {
-  const { seek } = await import("/static/js/playback.js");
-  const { follow, state } = await import("/static/js/state.js");
+  // At the page's own address, which carries a digest: elsewhere it would be another state.
+  const main = document.querySelector("script[type=module]").src;
+  const { seek } = await import(new URL("studio/playback.js", main));
+  const { follow, state } = await import(new URL("core/state.js", main));
   const shown = new Set();
   follow(["position"], ({ position }) => { if (position) shown.add(position.frame); });
   shown.clear();
