@@ -16,7 +16,7 @@ from app.bags.video_writer import VideoFile
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import Observer, Progress, record_frames
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record_frames
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn, VideoFrame
 from app.recognition.recording.video_limits import VideoLimits
@@ -69,16 +69,9 @@ def record_bag(
             show_recording(recording, video, progress, observer)
             return recording
         frames = BagFrames(bag, chosen, limits, turn)
-        with copying(frames, video) as copy:
-
-            def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-                copy(frame)
-                if observer is not None:
-                    observer(frame, found)
-
-            return record_frames(
-                frames, estimator=estimator, progress=progress, observer=observe, water=water
-            )
+        return record_and_copy(
+            frames, video, estimator=estimator, progress=progress, observer=observer, water=water
+        )
 
 
 def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0) -> None:
@@ -101,6 +94,34 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
     """Return whether the topic that `record_bag` takes holds keypoints; raises the same errors."""
     with open_bag(path) as bag:
         return bag.topic(topic).use == "keypoints"
+
+
+def record_and_copy(
+    frames: FrameSource,
+    video: Path | None,
+    *,
+    estimator: PoseEstimator | None,
+    progress: Progress | None,
+    observer: Observer | None,
+    water: WaterCorrection,
+    keep_so_far: KeepSoFar | None = None,
+) -> Recording:
+    """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`."""
+    with copying(frames, video) as copy:
+
+        def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
+            copy(frame)
+            if observer is not None:
+                observer(frame, found)
+
+        return record_frames(
+            frames,
+            estimator=estimator,
+            progress=progress,
+            observer=observe,
+            water=water,
+            keep_so_far=keep_so_far,
+        )
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.bags.extraction import copying
+from app.bags.extraction import copying, record_and_copy
 from app.clip_sources.source import (
     HEAD_BYTES,
     ClipFacts,
@@ -17,9 +17,8 @@ from app.clip_sources.source import (
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record_frames
-from app.recognition.recording.video import FrameReader, VideoFrame, probe, read_frames
+from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.video import FrameReader, probe, read_frames
 
 
 class VideoSource:
@@ -86,18 +85,13 @@ class VideoSource:
         keep_so_far: KeepSoFar | None = None,
     ) -> RecordedClip:
         """Find body and hands in every frame."""
-        with read_frames(path, turn=options.turn) as frames, copying(frames, video) as copy:
-
-            def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-                copy(frame)
-                if observer is not None:
-                    observer(frame, found)
-
-            found = record_frames(
+        with read_frames(path, turn=options.turn) as frames:
+            found = record_and_copy(
                 frames,
+                video,
                 estimator=estimator,
                 progress=progress,
-                observer=observe,
+                observer=observer,
                 water=options.water,
                 keep_so_far=keep_so_far if video is None else None,
             )
