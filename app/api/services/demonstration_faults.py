@@ -6,7 +6,12 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from app.api.http.schemas.gestures import NewDemonstration
-from app.api.services.running_studio import RecordingFile, Studio, whole_recording
+from app.api.services.running_studio import (
+    RecordingFile,
+    Studio,
+    load_recording,
+    whole_recording,
+)
 from app.recognition import Language, OsgError
 from app.recognition.explanation.demonstration_faults import (
     ClipOutline,
@@ -14,7 +19,6 @@ from app.recognition.explanation.demonstration_faults import (
     find_demonstration_faults,
 )
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.recording.recording import Recording
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import DemonstrationSource, JobStatus
 
@@ -86,7 +90,7 @@ def _find_recording(studio: Studio, clip_id: str) -> RecordingFile | None:
 
 @lru_cache(CACHED_CLIPS)
 def _outline_of(file: RecordingFile, trigger: Trigger) -> ClipOutline:
-    return ClipOutline.of(Recording.load(file.path), trigger)
+    return ClipOutline.of(load_recording(file), trigger)
 
 
 @lru_cache(CACHED_CLIPS)
@@ -100,7 +104,7 @@ def _faults_of(
     start, end, keep_transit = where
     try:
         return find_demonstration_faults(
-            Recording.load(file.path),
+            load_recording(file),
             start,
             end,
             outline=_outline_of(file, trigger),

@@ -145,9 +145,9 @@ class Record(_ClipTask):
                 poster.add(frame.time, frame.image)
 
         def keep(recording: Recording) -> None:
-            if self.so_far is not None:
-                recording.save(self.so_far)
-                steps.kept += 1
+            assert self.so_far is not None
+            recording.save(self.so_far)
+            steps.kept += 1
 
         recorded = self.reader.record(
             self.file,
@@ -155,7 +155,7 @@ class Record(_ClipTask):
             video=partial,
             progress=steps.progress,
             observer=observe,
-            keep_so_far=keep,
+            keep_so_far=None if self.so_far is None else keep,
         )
         if partial is not None and self.video is not None:
             partial.replace(self.video)
