@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from tests.conftest import ROOT
 
 PAGES = sorted(
@@ -46,6 +47,40 @@ def test_links_inside_the_repository_lead_somewhere(page: Path) -> None:
     links = re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text())
     inside = [link for link in links if "://" not in link]
     assert [link for link in inside if not (page.parent / link).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_row_of_a_table_has_the_cells_of_its_head(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(), flags=re.DOTALL)
+    torn = []
+    for table in re.findall(r"(?:^\|.*\n)+", text, re.MULTILINE):
+        head, *rows = table.splitlines()
+        torn += [row for row in rows if _count_cells(row) != _count_cells(head)]
+    assert torn == []
+
+
+def _count_cells(row: str) -> int:
+    return len(re.findall(r"(?<!\\)\|", row)) - 1
+
+
+def test_the_glossary_tells_how_many_demonstrations_a_gesture_may_have() -> None:
+    numbers = {"five": 5, "six": 6, "seven": 7, "eight": 8, "nine": 9, "ten": 10}
+    (word,) = re.findall(
+        r"one is enough, (\w+) are the most", (ROOT / "docs/glossary.md").read_text()
+    )
+    assert numbers[word] == MAX_DEMONSTRATIONS
+
+
+def test_constants_of_the_page_that_name_one_of_the_package_equal_it() -> None:
+    copied = [
+        found
+        for script in (ROOT / "static/js").rglob("*.js")
+        for found in re.findall(r"const \w+ = (\d+); // `(\w+)` in (\S+\.py)", script.read_text())
+    ]
+    assert copied
+    for value, name, module in copied:
+        source = (ROOT / "app/recognition" / module).read_text()
+        assert re.search(rf"^{name}(?:: Final)? = {value}$", source, re.MULTILINE), name
 
 
 def test_extras_modules_and_files_that_commands_name_exist() -> None:
