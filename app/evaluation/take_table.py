@@ -7,8 +7,6 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-import numpy as np
-
 from app.recognition import Recognition, Recognizer, Recording, Take
 from app.recognition.text.wording import join_words
 
@@ -77,7 +75,7 @@ def rows_of_clip(
             "closed": take.closed,
             "label": result.label,
             "nearest": result.nearest,
-            "runner_up": _find_runner_up(result),
+            "runner_up": result.runner_up,
             "confidence": round(result.confidence, 4),
             "margin": round(result.margin, 4) if abs(result.margin) < 1e300 else None,
             "expected": known.get(number),
@@ -111,16 +109,6 @@ def _constant(clip: str, recognizer: Recognizer) -> Row:
         "revision": language.revision,
         "profile": recognizer.profile,
     }
-
-
-def _find_runner_up(result: Recognition) -> str | None:
-    """Return the second nearest gesture; None if no other can be compared."""
-    scores = [
-        (score, label)
-        for score, label in zip(result.scores, result.gestures, strict=False)
-        if label != result.nearest and np.isfinite(score)
-    ]
-    return min(scores)[1] if scores else None
 
 
 def _list_faults(

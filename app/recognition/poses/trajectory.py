@@ -219,12 +219,6 @@ class Trajectory:
             moving_hands=mirror_hands(self.moving_hands),
         )
 
-    def recentre(self) -> Trajectory:
-        """Move the centroid of all seen points to the origin (paper, Sec. IV-C)."""
-        if not np.isfinite(self.xy).any():
-            return self
-        return replace(self, xy=self.xy - np.nanmean(self.xy, axis=(0, 1)))
-
     def fill_gaps(self, max_gap: float = MAX_GAP_SECONDS) -> Trajectory:
         """Bridge gaps of at most `max_gap` seconds by straight lines; longer ones stay NaN.
 

@@ -96,13 +96,6 @@ def test_select_and_between_keep_what_is_asked_for() -> None:
         whole.select(["tail"])
 
 
-def test_recentring_moves_the_centroid_to_the_origin() -> None:
-    recentred = trajectory([[1, 2], [np.nan, np.nan], [3, 6]]).recentre()
-    np.testing.assert_allclose(recentred.xy[:, 0], [[-1.0, -2.0], UNSEEN, [1.0, 2.0]])
-    nothing = trajectory([[np.nan, np.nan]])
-    assert nothing.recentre() is nothing
-
-
 def test_a_short_gap_is_bridged_by_a_straight_line_in_time() -> None:
     filled = trajectory([[0, 0], UNSEEN, UNSEEN, [4, 8]], time=[0.0, 0.1, 0.2, 0.4]).fill_gaps()
     np.testing.assert_allclose(filled.xy[:, 0], [[0, 0], [1, 2], [2, 4], [4, 8]])
