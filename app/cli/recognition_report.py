@@ -75,7 +75,9 @@ class TakeEntry(_Entry):
     ]
     facing: Annotated[
         Number,
-        Field(description="Degrees by which the diver is turned to the own left; null: not known."),
+        Field(
+            description="Degrees the diver is turned by, positive to the own left; null: not known."
+        ),
     ]
     views: Annotated[
         list[float],

@@ -334,7 +334,7 @@ class ClipStore:
         self.forget_pictures(clip_id)
 
     def forget_pictures(self, clip_id: str) -> None:
-        """Remove the pictures of an earlier job, before a clip was turned, on this machine."""
+        """Delete this machine's pictures of a clip, made before it was turned."""
         for picture in (POSTER, FILMSTRIP):
             self.place(clip_id, picture).unlink(missing_ok=True)
 

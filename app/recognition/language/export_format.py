@@ -22,7 +22,7 @@ class FileFormat(str, Enum):
 
     @property
     def media_type(self) -> str:
-        """Media type of a file of the format."""
+        """Media type, such as application/json."""
         return "application/xml" if self is FileFormat.PROTEUS else "application/json"
 
     @property

@@ -412,7 +412,7 @@ class AnswerDesk:
                 yield from player.hand_over(step.parameters[1], now)
 
     def forget(self) -> None:
-        """Forget what a vehicle showed that has started again."""
+        """Forget the values reported before the vehicle restarted."""
         for player in self._players:
             player.forget()
 

@@ -22,9 +22,9 @@ const elements = new Map(); // by clip; kept when the explanation is drawn anew
 export function exportWords(progress) {
   if (!progress) return "Preparing the session";
   const { done, total, eta_s: left } = progress;
-  if (!total) return "Writing the session";
+  if (!total) return "Writing the MCAP file";
   const rest = left === null ? "" : `, ${timeLeft(left)}`;
-  return `Writing the session, ${percent(done / total)}${rest}`;
+  return `Writing the MCAP file, ${percent(done / total)}${rest}`;
 }
 
 /**

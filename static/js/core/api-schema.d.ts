@@ -2030,7 +2030,7 @@ export interface components {
             fault_kind?: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
             /**
              * Facing
-             * @description Degrees by which the diver is turned to the own left; null: not known
+             * @description Degrees the diver is turned by, positive to the own left; null: not known
              */
             facing?: number | null;
             /**

@@ -152,7 +152,7 @@ export function gestureTable({ gestures, forecast }, testSet, imageOf) {
   const heads = [
     "Gesture",
     ...(tested ? ["Test set"] : []),
-    ...(forecast.right ? ["By other people\u2019s demonstrations"] : []),
+    ...(forecast.right ? ["Read right by the others\u2019 demonstrations"] : []),
     "Nearest gesture",
     ...(counts ? ["Counts beside the figure"] : []),
     ...(misses ? ["Keypoints not seen"] : []),

@@ -71,7 +71,7 @@ function peopleCurve(curve) {
     h(
       "figcaption",
       { className: "dim" },
-      "Read right of people who have not shown the language, by the number of people who have, with the 95 % interval.",
+      "Takes read right, from people who have not shown the language. Across: how many others have. Band: 95 % interval.",
     ),
   );
 }

@@ -47,7 +47,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   const judge = h(
     "button",
     { type: "button", title: "Ends the take, where its end was not seen", hidden: true },
-    "Judge what was shown",
+    "Recognise now",
   );
   const choice = h("select", { "aria-label": "Camera", hidden: true });
   const element = h(
@@ -129,7 +129,7 @@ export function practiceCamera({ started, nameOf, taken }) {
     stopFrames?.();
     link = stopFrames = null;
     drawing?.remove();
-    words.textContent = `${reason} Show the gesture, then press \u201cJudge what was shown\u201d.`;
+    words.textContent = `${reason} Show the gesture, then press \u201cRecognise now\u201d.`;
   }
 
   function stop() {

@@ -67,7 +67,7 @@ export function followChoice({ changed, play }) {
   };
   bind({
     keys: ["V"],
-    text: "Space-time cube, or the flat picture",
+    text: "Switch between flat picture and space-time cube",
     group: "Playback",
     run: toggleCube,
     when: () => isReadable() && !byId("view-studio").hidden,

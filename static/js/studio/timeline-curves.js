@@ -79,7 +79,7 @@ export function curves(timeline) {
   const length = unit === "torso_length" ? "torso lengths" : "extents";
   return h(
     "div",
-    { className: "curves", title: `Speed up to ${top.toFixed(1)} ${length} a second` },
+    { className: "curves", title: `Highest speed: ${top.toFixed(1)} ${length} a second` },
     drawing,
   );
 }

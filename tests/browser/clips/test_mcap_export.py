@@ -54,7 +54,7 @@ def test_the_page_shows_how_far_the_session_is_and_then_downloads_it(
     expect(page.get_by_role("button", name="Session as MCAP")).to_be_focused()
     said = page.evaluate("window.said")
     assert said[0] == "Preparing the session"
-    assert any(re.match(r"Writing the session, \d+ %", words) for words in said), said
+    assert any(re.match(r"Writing the MCAP file, \d+ %", words) for words in said), said
 
 
 @linux
@@ -67,7 +67,7 @@ def test_a_session_can_be_cancelled(
     address = {"clip": long, "language": library.language, "recognition": answer.json()["id"]}
     page = open_page(address, scene=False)
     page.get_by_role("button", name="Session as MCAP").click()
-    page.get_by_text("Writing the session").wait_for()
+    page.get_by_text("Writing the MCAP file").wait_for()
     # The export takes as long as this test needs.
     hold_worker(os.getpid(), "session")
     assert faults(page) == []

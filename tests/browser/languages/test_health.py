@@ -81,7 +81,7 @@ def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
         # Every keypoint is seen, and no gesture needs more than its figure: that takes no columns.
         heads = known_of(page).get_by_role("columnheader")
         expect(heads).to_have_text(
-            ["Gesture", "By other people\u2019s demonstrations", "Nearest gesture"]
+            ["Gesture", "Read right by the others\u2019 demonstrations", "Nearest gesture"]
         )
         assert faults(page) == []
         picture(page, "health")

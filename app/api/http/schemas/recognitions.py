@@ -75,7 +75,8 @@ class RecognitionView(BaseModel):
     fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
     fault_kind: QualityFaultKind | None = Field(None, description="The kind of `fault`")
     facing: float | None = Field(
-        None, description="Degrees by which the diver is turned to the own left; null: not known"
+        None,
+        description="Degrees the diver is turned by, positive to the own left; null: not known",
     )
     views: list[float] = Field(
         default_factory=list,
