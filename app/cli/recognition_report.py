@@ -11,9 +11,9 @@ from typing import Annotated, Any, Final
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition import Recognition, Take
+from app.recognition.decision.result import RecognitionEntry
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.gestures.profile import ProfileName
-from app.recognition.preprocessing.quality import QualityFaultKind
 
 VERSION: Final = 1
 """Version of the report; raised when a reader of this version could misunderstand one. New keys do
@@ -22,78 +22,28 @@ not raise it."""
 SCHEMA_ID = f"urn:osg-studio:recognition-report:{VERSION}"
 SCHEMA_FILE = f"recognition-report-{VERSION}.schema.json"
 
-Number = Annotated[float | None, Field(description="null: it cannot be compared.")]
-Share = Annotated[float, Field(ge=0, le=1)]
 Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
 
 
-class _Entry(BaseModel):
-    """Base of the objects; programs that read a report ignore keys that they do not know."""
-
-    model_config = ConfigDict(extra="allow")
-
-
-class TakeEntry(_Entry):
+class TakeEntry(RecognitionEntry):
     """A take and its recognition. G gestures and V voters are in the order of their lists."""
 
     start: Seconds
     end: Seconds
     closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
-    profile: ProfileName
-    label: Annotated[
-        str | None, Field(description="The gesture; null for a pair and where it was rejected.")
-    ]
-    pair: Annotated[
-        tuple[str, str] | None,
-        Field(
-            description="The two gestures between which the take lies, nearest first; null: it "
-            "lies between no two."
-        ),
-    ] = None
-    nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]
-    confidence: Share
-    votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]
-    weights: Annotated[dict[str, float], Field(description="Per voter its normalised weight.")]
-    findings: Annotated[
-        list[str], Field(description="Repairs of keypoints, and an unseen hand, as sentences.")
-    ]
-    fault: Annotated[
-        str | None, Field(description="Why the keypoints are too poor to judge; null: they are not")
-    ]
-    fault_kind: Annotated[
-        QualityFaultKind | None, Field(description="The kind of fault; null without one.")
-    ] = None
-    voters: list[str]
-    gestures: list[str]
-    distances: Annotated[
-        list[list[Number]], Field(description="V rows of G, each voter in its own unit.")
-    ]
-    scores: Annotated[list[Number], Field(description="G fused scores, smaller is more alike.")]
-    novelty: Annotated[list[Number], Field(description="G values; above 1 a take is rejected.")]
-    novelty_by_view: Annotated[
-        dict[str, list[Number]], Field(description="The same of the movement and of the hands.")
-    ]
-    facing: Annotated[
-        Number,
-        Field(
-            description="Degrees the diver is turned by, positive to the own left; null: not known."
-        ),
-    ]
-    views: Annotated[
-        list[float],
-        Field(
-            description="G degrees by which the demonstrations were turned to be compared; empty "
-            "in profile paper."
-        ),
-    ]
     explanation: Annotated[
         dict[str, Any] | None,
         Field(description="Why, and what would change it; only with --expected."),
     ] = None
 
 
-class RecognitionReport(_Entry):
-    """What ``osg-studio recognize --json`` prints."""
+class RecognitionReport(BaseModel):
+    """What ``osg-studio recognize --json`` prints.
+
+    Programs that read a report ignore keys that they do not know.
+    """
+
+    model_config = ConfigDict(extra="allow")
 
     clip: Annotated[str, Field(description="The file, as it was given.")]
     language: Annotated[str, Field(description="The language's name.")]

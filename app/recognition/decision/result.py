@@ -4,18 +4,99 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
 
 from app.recognition.decision.rejection import find_answer
+from app.recognition.gestures.profile import ProfileName
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind
 
 Outcome = Literal["recognized", "pair", "rejected"]
 """What a recognition answers: a label, a pair that the diver decides between, or neither."""
+
+
+def _list_finite(values: Any) -> Any:
+    """Return nested lists in which None stands for NaN and infinity."""
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if isinstance(values, list | tuple):
+        return [_list_finite(each) for each in values]
+    return None if isinstance(values, float) and not math.isfinite(values) else values
+
+
+Number = Annotated[float | None, Field(description="null: it cannot be compared.")]
+Numbers = Annotated[list[Number], BeforeValidator(_list_finite)]
+Pair = Annotated[
+    tuple[str, str] | None,
+    Field(
+        description="The two gestures between which the take lies, nearest first: the diver is "
+        "asked back; null: it lies between no two."
+    ),
+]
+
+
+class RecognitionEntry(BaseModel):
+    """A recognition in JSON: the stored record, the HTTP answer, the report, the messages.
+
+    G gestures and V voters are in the order of their lists. Results of earlier versions lack the
+    keys with defaults.
+    """
+
+    model_config = ConfigDict(extra="allow", from_attributes=True)
+
+    profile: ProfileName
+    label: Annotated[
+        str | None, Field(description="The gesture; null for a pair and where it was rejected.")
+    ]
+    pair: Pair = None
+    nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]
+    confidence: Annotated[float, Field(ge=0, le=1)]
+    votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]
+    weights: Annotated[
+        dict[str, float],
+        Field(description="Per voter its normalised weight; 0: it does not count."),
+    ] = {}
+    findings: Annotated[
+        list[str], Field(description="Repairs of keypoints, and an unseen hand, as sentences.")
+    ] = []
+    fault: Annotated[
+        str | None,
+        Field(description="Why the keypoints are too poor to judge; null: they are not."),
+    ] = None
+    fault_kind: Annotated[
+        QualityFaultKind | None, Field(description="The kind of fault; null without one.")
+    ] = None
+    voters: list[str]
+    gestures: list[str]
+    distances: Annotated[
+        list[list[Number]],
+        BeforeValidator(_list_finite),
+        Field(description="V rows of G, each voter in its own unit; smaller is more alike."),
+    ]
+    scores: Annotated[Numbers, Field(description="G fused scores, smaller is more alike.")] = []
+    novelty: Annotated[Numbers, Field(description="G values; above 1 a take is rejected.")] = []
+    novelty_by_view: Annotated[
+        dict[str, Numbers], Field(description="The same of the movement and of the hands.")
+    ] = {}
+    facing: Annotated[
+        float | None,
+        Field(
+            description="Degrees the diver is turned by, positive to the own left; null: not known."
+        ),
+    ] = None
+    views: Annotated[
+        list[float],
+        BeforeValidator(_list_finite),
+        Field(
+            description="G degrees by which the demonstrations were turned to be compared; empty "
+            "in profile paper."
+        ),
+    ] = []
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -179,57 +260,27 @@ class Recognition:
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Recognition:
         """Return the recognition of a dictionary by `to_dict`, of this or an earlier version."""
-        rows = [
-            [np.inf if value is None else value for value in row] for row in content["distances"]
+        entry = RecognitionEntry.model_validate(content)
+        infinite = [
+            [math.inf if value is None else value for value in row] for row in entry.distances
         ]
-        return cls(
-            label=content["label"],
-            pair=None if (pair := content.get("pair")) is None else (pair[0], pair[1]),
-            nearest=content["nearest"],
-            confidence=content["confidence"],
-            profile=content["profile"],
-            voters=tuple(content["voters"]),
-            gestures=tuple(content["gestures"]),
-            distances=np.array(rows, dtype=np.float64),
-            votes=content["votes"],
-            weights=content.get("weights", {}),
-            findings=tuple(content.get("findings", ())),
-            fault=content.get("fault"),
-            fault_kind=content.get("fault_kind"),
-            scores=np.array(content.get("scores", []), dtype=np.float64),
-            novelty=np.array(content.get("novelty", []), dtype=np.float64),
-            novelty_by_view={
+        arrays = {
+            "distances": np.array(infinite, dtype=np.float64),
+            "scores": np.array(entry.scores, dtype=np.float64),
+            "novelty": np.array(entry.novelty, dtype=np.float64),
+            "novelty_by_view": {
                 view: np.array(values, dtype=np.float64)
-                for view, values in content.get("novelty_by_view", {}).items()
+                for view, values in entry.novelty_by_view.items()
             },
-            facing=content.get("facing"),
-            views=np.array(content.get("views", []), dtype=np.float64),
-        )
+            "views": np.array(entry.views, dtype=np.float64),
+        }
+        lists = {name: tuple(getattr(entry, name)) for name in ("voters", "gestures", "findings")}
+        known = {each.name: getattr(entry, each.name) for each in fields(cls)}
+        return cls(**(known | lists | arrays))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values and NaN become None."""
-        return {
-            "profile": self.profile,
-            "label": self.label,
-            "pair": None if self.pair is None else list(self.pair),
-            "nearest": self.nearest,
-            "confidence": self.confidence,
-            "votes": dict(self.votes),
-            "weights": dict(self.weights),
-            "findings": list(self.findings),
-            "fault": self.fault,
-            "fault_kind": self.fault_kind,
-            "voters": list(self.voters),
-            "gestures": list(self.gestures),
-            "distances": [_finite(row) for row in self.distances.tolist()],
-            "scores": _finite(self.scores.tolist()),
-            "novelty": _finite(self.novelty.tolist()),
-            "novelty_by_view": {
-                view: _finite(values.tolist()) for view, values in self.novelty_by_view.items()
-            },
-            "facing": self.facing,
-            "views": self.views.tolist(),
-        }
+        return RecognitionEntry.model_validate(self).model_dump(mode="json")
 
 
 def _freeze(values: FloatArray) -> FloatArray:
@@ -237,7 +288,3 @@ def _freeze(values: FloatArray) -> FloatArray:
     frozen = values.copy()
     frozen.setflags(write=False)
     return frozen
-
-
-def _finite(values: list[float]) -> list[float | None]:
-    return [value if math.isfinite(value) else None for value in values]

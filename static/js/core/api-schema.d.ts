@@ -394,8 +394,45 @@ export interface components {
              * @description The numbers behind the sentence
              */
             details: string[];
+            /**
+             * Score
+             * @description Of the expected gesture; null: not comparable
+             */
+            score: number | null;
+            /**
+             * Other Score
+             * @description Of the other gesture; null: not comparable
+             */
+            other_score: number | null;
+            /**
+             * Novelty
+             * @description Of the expected gesture: above 1 it is rejected; null: not measured
+             */
+            novelty: number | null;
+            /**
+             * Fault
+             * @description Why the keypoints are too poor; null: they are not
+             */
+            fault: string | null;
+            /**
+             * Turned
+             * @description Share of the scores' difference that penalties for other views bring
+             */
+            turned: number | null;
+            /**
+             * Facing
+             * @description Degrees the diver is turned by, positive to the own left; null: not known
+             */
+            facing: number | null;
             /** Votes */
             votes: {
+                [key: string]: number;
+            };
+            /**
+             * Support
+             * @description By label the weight of its voters
+             */
+            support: {
                 [key: string]: number;
             };
             /**
@@ -1948,6 +1985,102 @@ export interface components {
          * @description The full answer of a recognition, kept as a record.
          */
         RecognitionView: {
+            /**
+             * Profile
+             * @enum {string}
+             */
+            profile: "paper" | "full";
+            /**
+             * Label
+             * @description The gesture; null for a pair and where it was rejected.
+             */
+            label: string | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
+             */
+            pair?: [
+                string,
+                string
+            ] | null;
+            /**
+             * Nearest
+             * @description The best gesture even where it was rejected.
+             */
+            nearest: string;
+            /** Confidence */
+            confidence: number;
+            /**
+             * Votes
+             * @description Per voter the gesture nearest to it.
+             */
+            votes: {
+                [key: string]: string;
+            };
+            /**
+             * Weights
+             * @description Per voter its normalised weight; 0: it does not count.
+             * @default {}
+             */
+            weights: {
+                [key: string]: number;
+            };
+            /**
+             * Findings
+             * @description Repairs of keypoints, and an unseen hand, as sentences.
+             * @default []
+             */
+            findings: string[];
+            /**
+             * Fault
+             * @description Why the keypoints are too poor to judge; null: they are not.
+             */
+            fault?: string | null;
+            /**
+             * Fault Kind
+             * @description The kind of fault; null without one.
+             */
+            fault_kind?: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
+            /** Voters */
+            voters: string[];
+            /** Gestures */
+            gestures: string[];
+            /**
+             * Distances
+             * @description V rows of G, each voter in its own unit; smaller is more alike.
+             */
+            distances: (number | null)[][];
+            /**
+             * Scores
+             * @description G fused scores, smaller is more alike.
+             * @default []
+             */
+            scores: (number | null)[];
+            /**
+             * Novelty
+             * @description G values; above 1 a take is rejected.
+             * @default []
+             */
+            novelty: (number | null)[];
+            /**
+             * Novelty By View
+             * @description The same of the movement and of the hands.
+             * @default {}
+             */
+            novelty_by_view: {
+                [key: string]: (number | null)[];
+            };
+            /**
+             * Facing
+             * @description Degrees the diver is turned by, positive to the own left; null: not known.
+             */
+            facing?: number | null;
+            /**
+             * Views
+             * @description G degrees by which the demonstrations were turned to be compared; empty in profile paper.
+             * @default []
+             */
+            views: number[];
             /** Id */
             id: string;
             /** Clip Id */
@@ -1960,8 +2093,6 @@ export interface components {
             start: number;
             /** End */
             end: number;
-            /** Profile */
-            profile: string;
             /** @description Null: as the language says */
             tuning?: components["schemas"]["TuningEntry"] | null;
             /** @description The change it was recognised with; null: none */
@@ -1973,71 +2104,6 @@ export interface components {
              * Format: date-time
              */
             created: string;
-            /**
-             * Label
-             * @description Null for a pair and when rejected
-             */
-            label: string | null;
-            /**
-             * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
-             */
-            pair?: string[] | null;
-            /**
-             * Nearest
-             * @description The best label even when rejected
-             */
-            nearest: string | null;
-            /** Confidence */
-            confidence: number;
-            /** Voters */
-            voters: string[];
-            /** Gestures */
-            gestures: string[];
-            /**
-             * Distances
-             * @description Voters x gestures, smaller: more alike
-             */
-            distances: (number | null)[][];
-            /**
-             * Votes
-             * @description Each voter's nearest gesture
-             */
-            votes: {
-                [key: string]: string | null;
-            };
-            /**
-             * Weights
-             * @description Each voter's normalised weight; 0: not counted
-             */
-            weights?: {
-                [key: string]: number;
-            };
-            /**
-             * Findings
-             * @description What was repaired, or is more than a gesture has, in sentences
-             */
-            findings?: string[];
-            /**
-             * Fault
-             * @description Why the recording is too poor to judge, in words
-             */
-            fault?: string | null;
-            /**
-             * Fault Kind
-             * @description The kind of `fault`
-             */
-            fault_kind?: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
-            /**
-             * Facing
-             * @description Degrees the diver is turned by, positive to the own left; null: not known
-             */
-            facing?: number | null;
-            /**
-             * Views
-             * @description Degrees by which each gesture's demonstration was turned to be compared
-             */
-            views?: number[];
         } & {
             [key: string]: unknown;
         };

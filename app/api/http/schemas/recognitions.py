@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.api.http.schemas.gestures import GestureChange
 from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
+from app.recognition.decision.result import RecognitionEntry
 from app.recognition.language.file_schema import TuningEntry
-from app.recognition.preprocessing.quality import QualityFaultKind
 
 
 class GestureTrial(Body):
@@ -37,10 +37,8 @@ class RecognitionRequest(Body):
     )
 
 
-class RecognitionView(BaseModel):
+class RecognitionView(RecognitionEntry):
     """The full answer of a recognition, kept as a record."""
-
-    model_config = ConfigDict(extra="allow")
 
     id: str
     clip_id: str
@@ -48,40 +46,12 @@ class RecognitionView(BaseModel):
     revision: int
     start: float
     end: float
-    profile: str
     tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
     trial: GestureTrial | None = Field(
         default=None, description="The change it was recognised with; null: none"
     )
     expected: str | None
     created: datetime
-    label: str | None = Field(description="Null for a pair and when rejected")
-    pair: Pair = None
-    nearest: str | None = Field(description="The best label even when rejected")
-    confidence: float
-    voters: list[str]
-    gestures: list[str]
-    distances: list[list[float | None]] = Field(
-        description="Voters x gestures, smaller: more alike"
-    )
-    votes: dict[str, str | None] = Field(description="Each voter's nearest gesture")
-    weights: dict[str, float] = Field(
-        default_factory=dict, description="Each voter's normalised weight; 0: not counted"
-    )
-    findings: list[str] = Field(
-        default_factory=list,
-        description="What was repaired, or is more than a gesture has, in sentences",
-    )
-    fault: str | None = Field(None, description="Why the recording is too poor to judge, in words")
-    fault_kind: QualityFaultKind | None = Field(None, description="The kind of `fault`")
-    facing: float | None = Field(
-        None,
-        description="Degrees the diver is turned by, positive to the own left; null: not known",
-    )
-    views: list[float] = Field(
-        default_factory=list,
-        description="Degrees by which each gesture's demonstration was turned to be compared",
-    )
 
 
 class ExplanationView(BaseModel):
@@ -104,7 +74,20 @@ class ExplanationView(BaseModel):
     )
     sentence: str = Field(description="Why and what the diver can do, in at most fifteen words")
     details: list[str] = Field(description="The numbers behind the sentence")
+    score: float | None = Field(description="Of the expected gesture; null: not comparable")
+    other_score: float | None = Field(description="Of the other gesture; null: not comparable")
+    novelty: float | None = Field(
+        description="Of the expected gesture: above 1 it is rejected; null: not measured"
+    )
+    fault: str | None = Field(description="Why the keypoints are too poor; null: they are not")
+    turned: float | None = Field(
+        description="Share of the scores' difference that penalties for other views bring"
+    )
+    facing: float | None = Field(
+        description="Degrees the diver is turned by, positive to the own left; null: not known"
+    )
     votes: dict[str, int]
+    support: dict[str, float] = Field(description="By label the weight of its voters")
     breakdown: list[dict[str, Any]] = Field(description="Per voter, the most against it first")
     verdicts: list[dict[str, Any]] = Field(description="`breakdown`, as version 0.2 called it")
     alignments: list[dict[str, Any]]
