@@ -63,7 +63,7 @@ def show_explanation(explanation: Explanation) -> None:
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
     )
-    for found in explanation.counterfactuals.found:
+    for found in explanation.counterfactuals:
         effect = found.effect
         table.add_row(
             Text(found.change.words),

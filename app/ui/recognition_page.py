@@ -108,7 +108,7 @@ def _subtitle(view: WorkspaceView, shown: Range) -> str:
 def _why(explanation: Explanation | None) -> str:
     if explanation is None:
         return ""
-    found = explanation.counterfactuals.found
+    found = explanation.counterfactuals
     helps = "".join(f"<li>{escape(each.change.words)}</li>" for each in found)
     listed = (
         f"<p class='dim'>It would have been read as {escape(explanation.expected)}:</p>"

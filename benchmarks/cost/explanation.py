@@ -40,7 +40,7 @@ def main() -> None:
             )
             without.append(_seconds(short) / alone)
             whole.append(_seconds(full) / alone)
-            tried.append(explain(anew(), meant).counterfactuals.tried)
+            tried.append(explain(anew(), meant).tried)
         print(
             f"explanation, {profile}: {median(without):.1f} recognitions "
             f"({min(without):.1f} to {max(without):.1f}); with {median(tried):.0f} changes tried "

@@ -31,7 +31,7 @@ def test_an_explanation_is_a_sentence_and_what_would_help(
     assert shown.out == ""
     read = " ".join(shown.err.split())
     assert explanation.sentence in read
-    for found in explanation.counterfactuals.found:
+    for found in explanation.counterfactuals:
         assert found.change.words.split()[-1] in read
 
 

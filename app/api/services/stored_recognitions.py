@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from app.api.http.problems import ProblemError
@@ -17,6 +17,11 @@ from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import KnownTake, RecognitionContext
+from app.recognition.explanation.counterfactuals import (
+    Counterfactual,
+    DemonstrationCut,
+    LocatedCut,
+)
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
@@ -174,20 +179,20 @@ def load_known(
 
 
 def locate_cuts(
-    studio: Studio, language: Language, counterfactuals: list[dict[str, Any]]
-) -> list[dict[str, Any]]:
-    """Return the counterfactuals with the clip's range of every cut demonstration.
+    studio: Studio, language: Language, counterfactuals: Iterable[Counterfactual]
+) -> Iterator[Counterfactual]:
+    """Yield the counterfactuals with the clip's range of every cut demonstration.
 
     A cut is left out where the clip of the demonstration is not known, or where it is not the
     gesture's first one, which alone can be replaced.
     """
-    sources, located = find_sources(studio, language), []
+    sources = find_sources(studio, language)
     for found in counterfactuals:
-        change = found["change"]
-        if change["kind"] != "demonstration_cut":
-            located.append(found)
+        change = found.change
+        if not isinstance(change, DemonstrationCut):
+            yield found
             continue
-        source = sources[change["label"]][0] if change["demonstration"] == 0 else None
+        source = sources[change.label][0] if change.demonstration == 0 else None
         if source is None:
             continue
         begin = demonstration_in(
@@ -197,13 +202,13 @@ def locate_cuts(
             keep_transit=source.keep_transit,
             trigger=language.trigger,
         ).start
-        where = {
-            "clip_id": source.clip_id,
-            "clip_start": begin + change["start"],
-            "clip_end": begin + change["end"],
-        }
-        located.append(found | {"change": change | where})
-    return located
+        located = LocatedCut(
+            **asdict(change),
+            clip_id=source.clip_id,
+            clip_start=begin + change.start,
+            clip_end=begin + change.end,
+        )
+        yield replace(found, change=located)
 
 
 def make_recognizer(

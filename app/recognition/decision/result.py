@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
 
 from app.recognition.decision.rejection import find_answer
 from app.recognition.gestures.profile import ProfileName
@@ -29,6 +29,15 @@ def _list_finite(values: Any) -> Any:
     return None if isinstance(values, float) and not math.isfinite(values) else values
 
 
+WRITTEN = ConfigDict(json_schema_serialization_defaults_required=True)
+"""Of types whose JSON always has all keys, also those with a default."""
+
+Distance = Annotated[
+    float,
+    PlainSerializer(lambda value: value if math.isfinite(value) else None, float | None),
+]
+"""A number that is null in JSON where it is infinite or NaN: nothing can be compared."""
+
 Number = Annotated[float | None, Field(description="null: it cannot be compared.")]
 Numbers = Annotated[list[Number], BeforeValidator(_list_finite)]
 Pair = Annotated[
@@ -47,7 +56,7 @@ class RecognitionEntry(BaseModel):
     keys with defaults.
     """
 
-    model_config = ConfigDict(extra="allow", from_attributes=True)
+    model_config = ConfigDict(extra="allow", from_attributes=True, **WRITTEN)
 
     profile: ProfileName
     label: Annotated[

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, InstanceOf, PlainSerializer
 
 from app.recognition.features.motion import (
     Movement,
@@ -80,6 +81,53 @@ class Example:
         )
 
 
+def _round(values: Any) -> Any:
+    """Round for JSON; of a place that is not seen, ``(x, y)`` of NaN, None remains."""
+    if isinstance(values, np.ndarray):
+        values = np.round(values, DIGITS).tolist()
+    if isinstance(values, float):
+        return round(values, DIGITS)
+    if isinstance(values, list) and values and isinstance(values[0], float):
+        return values if np.isfinite(values).all() else None
+    return [_round(each) for each in values] if isinstance(values, list) else values
+
+
+Places = Annotated[
+    list[list[tuple[float, float] | None]],
+    BeforeValidator(_round),
+    Field(description="Step by step and part by part, x right and y down; null: not seen."),
+]
+Times = Annotated[list[float], BeforeValidator(_round)]
+
+
+class AlignmentEntry(BaseModel):
+    """An alignment in JSON, rounded; see `Alignment`."""
+
+    model_config = ConfigDict(from_attributes=True)
+
+    label: str
+    voter: str
+    distance: Annotated[float, BeforeValidator(_round)]
+    backward: bool
+    mirrored: bool
+    demonstration: int
+    parts: list[str]
+    pairs: Annotated[
+        list[tuple[int, int]],
+        BeforeValidator(_round),
+        Field(description="Corresponding steps of the take and of the gesture."),
+    ]
+    time: Times
+    gesture_time: Times
+    query: Places
+    gesture: Places
+    costs: Annotated[
+        list[list[float]],
+        BeforeValidator(_round),
+        Field(description="Per pair and part; their sum is `distance`."),
+    ]
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Alignment:
     """The best DTW alignment of a query with a gesture, by one voter.
@@ -138,23 +186,11 @@ class Alignment:
         np.add.at(gathered, self.pairs[:, 0], self.costs)
         return gathered
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types, rounded."""
-        return {
-            "label": self.label,
-            "voter": self.voter,
-            "distance": round(self.distance, DIGITS),
-            "backward": self.backward,
-            "mirrored": self.mirrored,
-            "demonstration": self.demonstration,
-            "parts": list(self.parts),
-            "pairs": self.pairs.tolist(),
-            "time": np.round(self.time, DIGITS).tolist(),
-            "gesture_time": np.round(self.gesture_time, DIGITS).tolist(),
-            "query": _places(self.query),
-            "gesture": _places(self.gesture),
-            "costs": np.round(self.costs, DIGITS).tolist(),
-        }
+
+AlignmentInJson = Annotated[
+    InstanceOf[Alignment], PlainSerializer(AlignmentEntry.model_validate, AlignmentEntry)
+]
+"""An alignment that is an `AlignmentEntry` in JSON."""
 
 
 def align(
@@ -247,11 +283,3 @@ def find_nearest_example(
     read = np.stack([voter.describe(shown.movement.reorder(each.order)) for each in open_to])
     nearest = open_to[int(voter.distances(voter.describe(moved), read).argmin())]
     return Example.of(gesture, landmarks, nearest)
-
-
-def _places(shown: FloatArray) -> list[list[list[float] | None]]:
-    """Round ``(N, P, 2)`` for JSON; NaN becomes None."""
-    return [
-        [place if np.isfinite(place).all() else None for place in step]
-        for step in np.round(shown, DIGITS).tolist()
-    ]

@@ -11,12 +11,14 @@ import math
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
+from pydantic import computed_field
+from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.result import Recognition
+from app.recognition.decision.result import WRITTEN, Recognition
 from app.recognition.errors import OsgError
 from app.recognition.explanation.causes import compare_with, full_recognizer
 from app.recognition.explanation.context import KnownTake
@@ -81,7 +83,7 @@ class Evidence:
         return math.log(max(self.unlike, 1e-9)) + failing * self.failing + of_gain
 
 
-@dataclass(frozen=True, kw_only=True)
+@described_dataclass(frozen=True, kw_only=True, config=WRITTEN)
 class Blame:
     """A demonstration at fault, with the change that repairs most known takes.
 
@@ -115,6 +117,7 @@ class Blame:
     broken: int
     evidence: Evidence
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def sentence(self) -> str:
         """The fault and the remedy, at most fifteen words."""
@@ -126,10 +129,6 @@ class Blame:
                 return f"{of} is unlike its other ones. Leave it out."
             case _:
                 return f"{of} {SENTENCES[FaultKind.unlike_takes]}. Show it again."
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {**vars(self), "evidence": vars(self.evidence), "sentence": self.sentence}
 
 
 def find_blame(

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
+from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
-from app.recognition.decision.result import Recognition
+from app.recognition.decision.result import WRITTEN, Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import PoseError
 from app.recognition.explanation.context import RecognitionContext
@@ -133,7 +134,7 @@ ADDED: Final[Mapping[str, str]] = {
 }
 
 
-@dataclass(frozen=True, kw_only=True)
+@described_dataclass(frozen=True, kw_only=True, config=WRITTEN)
 class Cause:
     """Why a take is not read as the gesture that was meant.
 
@@ -164,11 +165,6 @@ class Cause:
     label: str | None = None
     demonstration: int | None = None
     keep: tuple[float, float] | None = None
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        keep = None if self.keep is None else list(self.keep)
-        return {**vars(self), "kind": self.kind.value, "keep": keep}
 
 
 def find_causes(

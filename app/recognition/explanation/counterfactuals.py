@@ -11,11 +11,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
-from typing import Any, ClassVar, Final, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
+from pydantic import InstanceOf, PlainSerializer
+from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
+from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.blame import read_all
 from app.recognition.explanation.context import KnownTake, RecognitionContext
@@ -117,6 +120,22 @@ class DemonstrationCut(Intervention):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LocatedCut(DemonstrationCut):
+    """A cut of a demonstration whose clip is known.
+
+    Attributes
+    ----------
+    clip_id, clip_start, clip_end
+        The clip, and the seconds of its own clock between which the demonstration is kept.
+
+    """
+
+    clip_id: str
+    clip_start: float
+    clip_end: float
+
+
+@dataclass(frozen=True, kw_only=True)
 class Trim(Intervention):
     """Another stretch of the clip; its size is the share of the stroke added or removed."""
 
@@ -215,12 +234,8 @@ class LanguageEffect:
     repaired: int
     broken: int
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return vars(self) | {"lost": list(self.lost)}
 
-
-@dataclass(frozen=True, kw_only=True)
+@described_dataclass(frozen=True, kw_only=True)
 class Counterfactual:
     """An intervention with which the expected gesture is recognised.
 
@@ -237,21 +252,13 @@ class Counterfactual:
 
     """
 
-    change: Intervention
+    change: Annotated[
+        InstanceOf[Intervention], PlainSerializer(Intervention.to_dict, dict[str, Any])
+    ]
     label: str
     confidence: float
-    margin: float
+    margin: Distance
     effect: LanguageEffect | None
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {
-            "change": self.change.to_dict(),
-            "label": self.label,
-            "confidence": self.confidence,
-            "margin": self.margin if np.isfinite(self.margin) else None,
-            "effect": None if self.effect is None else self.effect.to_dict(),
-        }
 
     @property
     def rank(self) -> tuple[bool, int, int, float, float]:

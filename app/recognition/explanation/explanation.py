@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, InstanceOf, computed_field
 
-from app.recognition.decision.result import Recognition
+from app.recognition.decision.result import WRITTEN, Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import (
     AlignedBy,
     Alignment,
+    AlignmentInJson,
     Example,
     align,
     find_nearest_example,
@@ -25,7 +27,7 @@ from app.recognition.explanation.causes import Cause, find_causes
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     NONE_NEEDED,
-    Counterfactuals,
+    Counterfactual,
     KeptRange,
     find_counterfactuals,
 )
@@ -40,8 +42,7 @@ CLEAR = 0.5
 """Least share of a path's cost in the stretch where it differs most to be told as the reason."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Explanation:
+class Explanation(BaseModel):
     """What decided one recognition, and why.
 
     Attributes
@@ -84,9 +85,13 @@ class Explanation:
     divergence
         Where the query's path differs most from the expected gesture's; None without paths.
     counterfactuals
-        Interventions that would have corrected the recognition.
+        Interventions that would have corrected the recognition, see `Counterfactuals.found`.
+    tried
+        Number of interventions that were tried.
 
     """
+
+    model_config = ConfigDict(frozen=True, **WRITTEN)
 
     profile: str
     expected: str
@@ -94,38 +99,54 @@ class Explanation:
     nearest: str
     runner_up: str | None
     confidence: float
-    between: tuple[str, ...]
+    between: Annotated[tuple[str, ...], Field(exclude=True)]
     other: str | None
-    score: float
-    other_score: float
-    novelty: float
+    score: Distance
+    other_score: Distance
+    novelty: Distance
     fault: str | None
-    votes: Mapping[str, int]
-    support: Mapping[str, float]
+    votes: dict[str, int]
+    support: dict[str, float]
     breakdown: tuple[VoterBreakdown, ...]
     facing: float | None
-    turned: float
-    alignments: tuple[Alignment, ...]
+    turned: Distance
+    alignments: tuple[AlignmentInJson, ...]
     causes: tuple[Cause, ...]
     blame: tuple[Blame, ...]
-    divergence: Divergence | None
-    counterfactuals: Counterfactuals
+    divergence: Annotated[InstanceOf[Divergence] | None, Field(exclude=True)]
+    counterfactuals: tuple[Counterfactual, ...]
+    tried: int
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def right(self) -> bool:
         """Whether the expected gesture was recognised."""
         return self.label == self.expected
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
-    def margin(self) -> float:
+    def margin(self) -> Distance:
         """How much nearer the expected gesture is than the other; negative: farther."""
         return self.other_score - self.score
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def pair(self) -> tuple[str, str] | None:
+        """The two gestures between which the take lies; None where there are not two."""
+        return (self.between[0], self.between[1]) if len(self.between) == 2 else None
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def verdicts(self) -> tuple[VoterBreakdown, ...]:
+        """`breakdown`, as version 0.2 called it."""
+        return self.breakdown
 
     @property
     def cause(self) -> Cause | None:
         """The first cause; None where the recognition is right and without evidence."""
         return self.causes[0] if self.causes else None
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def sentence(self) -> str:
         """The cause and what the diver can do, at most fifteen words with one-word labels."""
@@ -148,6 +169,7 @@ class Explanation:
             f"{parted.expected.removeprefix('goes ')}."
         )
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
     def details(self) -> tuple[str, ...]:
         """The numbers behind the sentence, as sentences of their own."""
@@ -180,36 +202,7 @@ class Explanation:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values become None."""
-        breakdown = [each.to_dict() for each in self.breakdown]
-        return {
-            "profile": self.profile,
-            "expected": self.expected,
-            "label": self.label,
-            "pair": list(self.between) if len(self.between) == 2 else None,
-            "nearest": self.nearest,
-            "runner_up": self.runner_up,
-            "right": self.right,
-            "confidence": self.confidence,
-            "other": self.other,
-            "score": _finite(self.score),
-            "other_score": _finite(self.other_score),
-            "margin": _finite(self.margin),
-            "novelty": _finite(self.novelty),
-            "fault": self.fault,
-            "votes": dict(self.votes),
-            "support": dict(self.support),
-            "breakdown": breakdown,
-            "verdicts": breakdown,  # as version 0.2 called it
-            "turned": _finite(self.turned),
-            "facing": self.facing,
-            "alignments": [alignment.to_dict() for alignment in self.alignments],
-            "causes": [cause.to_dict() for cause in self.causes],
-            "blame": [each.to_dict() for each in self.blame],
-            "counterfactuals": [each.to_dict() for each in self.counterfactuals.found],
-            "tried": self.counterfactuals.tried,
-            "sentence": self.sentence,
-            "details": list(self.details),
-        }
+        return self.model_dump(mode="json")
 
 
 def explain(
@@ -246,6 +239,11 @@ def explain(
     wanted = with_counterfactuals and result.label != expected
     causes = find_causes(context, expected)
     blame = find_blame(context.recognizer, context.known, [expected]) if wanted else ()
+    found = (
+        find_counterfactuals(context, expected, _list_cuts(causes, blame))
+        if wanted
+        else NONE_NEEDED
+    )
     return Explanation(
         profile=result.profile,
         expected=expected,
@@ -273,11 +271,8 @@ def explain(
         causes=causes,
         blame=blame,
         divergence=None if result.label == expected else pairings.divergence(at),
-        counterfactuals=(
-            find_counterfactuals(context, expected, _list_cuts(causes, blame))
-            if wanted
-            else NONE_NEEDED
-        ),
+        counterfactuals=found.found,
+        tried=found.tried,
     )
 
 
@@ -353,7 +348,3 @@ class _Pairings:
             return find_nearest_example(self._query, gesture, self._landmarks)
         mirrored = bool(self._table.mirrored[index])
         return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
-
-
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
 
-from app.recognition.decision.result import Recognition
+from pydantic.dataclasses import dataclass
+
+from app.recognition.decision.result import Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.voters.registry import HAND_VOTERS, MOTION_VOTERS, PAPER_VOTERS
 
@@ -41,17 +41,10 @@ class VoterBreakdown:
     weight: float
     vote: str | None
     wrong: bool
-    distance: float
-    other_distance: float
+    distance: Distance
+    other_distance: Distance
     share: float
-    against: float
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; infinite values become None."""
-        return {
-            name: None if isinstance(value, float) and not math.isfinite(value) else value
-            for name, value in vars(self).items()
-        }
+    against: Distance
 
 
 def break_down_votes(

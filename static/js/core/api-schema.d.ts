@@ -8,6 +8,59 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * AlignmentEntry
+         * @description An alignment in JSON, rounded; see `Alignment`.
+         */
+        AlignmentEntry: {
+            /** Label */
+            label: string;
+            /** Voter */
+            voter: string;
+            /** Distance */
+            distance: number;
+            /** Backward */
+            backward: boolean;
+            /** Mirrored */
+            mirrored: boolean;
+            /** Demonstration */
+            demonstration: number;
+            /** Parts */
+            parts: string[];
+            /**
+             * Pairs
+             * @description Corresponding steps of the take and of the gesture.
+             */
+            pairs: [
+                number,
+                number
+            ][];
+            /** Time */
+            time: number[];
+            /** Gesture Time */
+            gesture_time: number[];
+            /**
+             * Query
+             * @description Step by step and part by part, x right and y down; null: not seen.
+             */
+            query: ([
+                number,
+                number
+            ] | null)[][];
+            /**
+             * Gesture
+             * @description Step by step and part by part, x right and y down; null: not seen.
+             */
+            gesture: ([
+                number,
+                number
+            ] | null)[][];
+            /**
+             * Costs
+             * @description Per pair and part; their sum is `distance`.
+             */
+            costs: number[][];
+        };
+        /**
          * AmbiguityView
          * @description Something that the robot could understand in two ways.
          */
@@ -98,6 +151,103 @@ export interface components {
              */
             request_id: string;
         };
+        /**
+         * Blame
+         * @description A demonstration at fault, with the change that repairs most known takes.
+         *
+         *     Attributes
+         *     ----------
+         *     label, demonstration
+         *         The gesture, and which of its demonstrations, counted from 0.
+         *     change
+         *         See `BlamedChange`.
+         *     start, end
+         *         Seconds of the demonstration's own clock that a cut keeps; None for other changes.
+         *     takes
+         *         Number of known takes.
+         *     failing
+         *         How many takes of the gesture are not read as it.
+         *     repaired, broken
+         *         How many known takes are read right with the change only, and without it only.
+         *     evidence
+         *         Against the demonstration.
+         */
+        Blame: {
+            /** Label */
+            label: string;
+            /** Demonstration */
+            demonstration: number;
+            /**
+             * Change
+             * @enum {string}
+             */
+            change: "cut" | "leave_out" | "show_again";
+            /** Start */
+            start: number | null;
+            /** End */
+            end: number | null;
+            /** Takes */
+            takes: number;
+            /** Failing */
+            failing: number;
+            /** Repaired */
+            repaired: number;
+            /** Broken */
+            broken: number;
+            evidence: components["schemas"]["Evidence"];
+            /**
+             * Sentence
+             * @description The fault and the remedy, at most fifteen words.
+             */
+            readonly sentence: string;
+        };
+        /**
+         * Cause
+         * @description Why a take is not read as the gesture that was meant.
+         *
+         *     Attributes
+         *     ----------
+         *     kind
+         *         See `CauseKind`.
+         *     share
+         *         In [0, 1]: part of the distance beyond that of usual takes that undoing the cause removes;
+         *         1 for what is seen directly, such as an unseen hand.
+         *     sentence
+         *         The cause and what the diver can do, at most fifteen words.
+         *     start, end
+         *         Seconds in the take's clock of what differs; None: throughout. For what is missing, `start`
+         *         equals `end`.
+         *     label, demonstration
+         *         Gesture and number of the demonstration at fault; None where the take is.
+         *     keep
+         *         Seconds of a demonstration's own clock between which it should be kept; None: not known.
+         */
+        Cause: {
+            kind: components["schemas"]["CauseKind"];
+            /** Share */
+            share: number;
+            /** Sentence */
+            sentence: string;
+            /** Start */
+            start: number | null;
+            /** End */
+            end: number | null;
+            /** Label */
+            label: string | null;
+            /** Demonstration */
+            demonstration: number | null;
+            /** Keep */
+            keep: [
+                number,
+                number
+            ] | null;
+        };
+        /**
+         * CauseKind
+         * @description Why a take is not read as the gesture that was meant.
+         * @enum {string}
+         */
+        CauseKind: "mirrored" | "reversed" | "begun_late" | "ended_early" | "part_missing" | "part_added" | "upside_down" | "other_arm" | "turned_away" | "too_small" | "keypoints_jumped" | "no_hand" | "other_hand_shape" | "other_person" | "near_gesture" | "demonstration" | "not_seen";
         /**
          * ClipAccepted
          * @description A clip was stored; its poses are extracted by the job.
@@ -221,13 +371,36 @@ export interface components {
                 string | null,
                 string | null
             ];
-            /**
-             * Alignment
-             * @description Which moment of the first corresponds to which of the second
-             */
-            alignment: {
+            /** @description Which moment of the first corresponds to which of the second */
+            alignment: components["schemas"]["AlignmentEntry"] | null;
+        };
+        /**
+         * Counterfactual
+         * @description An intervention with which the expected gesture is recognised.
+         *
+         *     Attributes
+         *     ----------
+         *     change
+         *         The intervention.
+         *     label, confidence
+         *         The recognition after the intervention.
+         *     margin
+         *         The score of the nearest other gesture minus that of the expected one, after it.
+         *     effect
+         *         Its effect on the rest of the language; None for an intervention on this take alone.
+         */
+        Counterfactual: {
+            /** Change */
+            change: {
                 [key: string]: unknown;
-            } | null;
+            };
+            /** Label */
+            label: string;
+            /** Confidence */
+            confidence: number;
+            /** Margin */
+            margin: number | null;
+            effect: components["schemas"]["LanguageEffect"] | null;
         };
         /**
          * DemonstrationDraft
@@ -343,146 +516,149 @@ export interface components {
             values: number[];
         };
         /**
+         * Divergence
+         * @description The stretch at which a query differs most from a gesture.
+         *
+         *     Attributes
+         *     ----------
+         *     landmark
+         *         The joint with the largest cost there.
+         *     start, end
+         *         Seconds in the query's clock.
+         *     share
+         *         Share of the whole cost between the two.
+         *     shown, expected
+         *         Movement of the joint there in the query and in the gesture: a verb and a direction.
+         */
+        Divergence: {
+            /** Landmark */
+            landmark: string;
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+            /** Share */
+            share: number;
+            /** Shown */
+            shown: string;
+            /** Expected */
+            expected: string;
+        };
+        /**
+         * Evidence
+         * @description Evidence against a demonstration, by the known takes of its gesture.
+         *
+         *     Attributes
+         *     ----------
+         *     unlike
+         *         How many times as far as from each other they are from it.
+         *     failing
+         *         Share of them that fail.
+         *     gain
+         *         Known takes that a change repairs more than it breaks, over those of the gesture.
+         */
+        Evidence: {
+            /** Unlike */
+            unlike: number;
+            /** Failing */
+            failing: number;
+            /** Gain */
+            gain: number;
+        };
+        /**
          * ExplanationView
          * @description Why a recognition came out as it did.
          */
         ExplanationView: {
-            /**
-             * Id
-             * @description The recognition's
-             */
-            id: string;
             /** Profile */
             profile: string;
             /** Expected */
             expected: string;
             /** Label */
             label: string | null;
-            /**
-             * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
-             */
-            pair: string[] | null;
             /** Nearest */
             nearest: string;
-            /** Right */
-            right: boolean;
+            /** Runner Up */
+            runner_up: string | null;
             /** Confidence */
             confidence: number;
-            /**
-             * Other
-             * @description The gesture that the expected one is held against
-             */
+            /** Other */
             other: string | null;
-            /**
-             * Margin
-             * @description Score of the other minus that of the expected
-             */
-            margin: number | null;
-            /**
-             * Runner Up
-             * @description The nearest gesture but `nearest`; null: none is comparable
-             */
-            runner_up?: string | null;
-            /**
-             * Sentence
-             * @description Why and what the diver can do, in at most fifteen words
-             */
-            sentence: string;
-            /**
-             * Details
-             * @description The numbers behind the sentence
-             */
-            details: string[];
-            /**
-             * Score
-             * @description Of the expected gesture; null: not comparable
-             */
+            /** Score */
             score: number | null;
-            /**
-             * Other Score
-             * @description Of the other gesture; null: not comparable
-             */
+            /** Other Score */
             other_score: number | null;
-            /**
-             * Novelty
-             * @description Of the expected gesture: above 1 it is rejected; null: not measured
-             */
+            /** Novelty */
             novelty: number | null;
-            /**
-             * Fault
-             * @description Why the keypoints are too poor; null: they are not
-             */
+            /** Fault */
             fault: string | null;
-            /**
-             * Turned
-             * @description Share of the scores' difference that penalties for other views bring
-             */
-            turned: number | null;
-            /**
-             * Facing
-             * @description Degrees the diver is turned by, positive to the own left; null: not known
-             */
-            facing: number | null;
             /** Votes */
             votes: {
                 [key: string]: number;
             };
-            /**
-             * Support
-             * @description By label the weight of its voters
-             */
+            /** Support */
             support: {
                 [key: string]: number;
             };
-            /**
-             * Breakdown
-             * @description Per voter, the most against it first
-             */
-            breakdown: {
-                [key: string]: unknown;
-            }[];
-            /**
-             * Verdicts
-             * @description `breakdown`, as version 0.2 called it
-             */
-            verdicts: {
-                [key: string]: unknown;
-            }[];
+            /** Breakdown */
+            breakdown: components["schemas"]["VoterBreakdown"][];
+            /** Facing */
+            facing: number | null;
+            /** Turned */
+            turned: number | null;
             /** Alignments */
-            alignments: {
-                [key: string]: unknown;
-            }[];
-            /**
-             * Causes
-             * @description Why, the cause first, each with its evidence; empty: none is known
-             */
-            causes: {
-                [key: string]: unknown;
-            }[];
-            /**
-             * Blame
-             * @description Demonstrations of the gesture meant that are at fault for the known takes
-             */
-            blame: {
-                [key: string]: unknown;
-            }[];
-            /**
-             * Counterfactuals
-             * @description Verified; by none does a gesture lose a demonstration. What repairs most known takes comes first, the take as another demonstration last
-             */
-            counterfactuals: {
-                [key: string]: unknown;
-            }[];
+            alignments: components["schemas"]["AlignmentEntry"][];
+            /** Causes */
+            causes: components["schemas"]["Cause"][];
+            /** Blame */
+            blame: components["schemas"]["Blame"][];
+            /** Counterfactuals */
+            counterfactuals: components["schemas"]["Counterfactual"][];
             /** Tried */
             tried: number;
+            /**
+             * Id
+             * @description The recognition's
+             */
+            id: string;
             /**
              * Notes
              * @description What is wrong with the demonstrations or the range, in sentences
              */
-            notes?: string[];
-        } & {
-            [key: string]: unknown;
+            notes: string[];
+            /**
+             * Right
+             * @description Whether the expected gesture was recognised.
+             */
+            readonly right: boolean;
+            /**
+             * Margin
+             * @description How much nearer the expected gesture is than the other; negative: farther.
+             */
+            readonly margin: number | null;
+            /**
+             * Pair
+             * @description The two gestures between which the take lies; None where there are not two.
+             */
+            readonly pair: [
+                string,
+                string
+            ] | null;
+            /**
+             * Verdicts
+             * @description `breakdown`, as version 0.2 called it.
+             */
+            readonly verdicts: components["schemas"]["VoterBreakdown"][];
+            /**
+             * Sentence
+             * @description The cause and what the diver can do, at most fifteen words with one-word labels.
+             */
+            readonly sentence: string;
+            /**
+             * Details
+             * @description The numbers behind the sentence, as sentences of their own.
+             */
+            readonly details: string[];
         };
         /**
          * ExportView
@@ -893,6 +1069,19 @@ export interface components {
             end?: number | null;
         };
         /**
+         * Intervention
+         * @description Base of interventions.
+         *
+         *     Attributes
+         *     ----------
+         *     size
+         *         In [0, 1]: share of its object that it changes; see each kind.
+         */
+        Intervention: {
+            /** Size */
+            size: number;
+        };
+        /**
          * InvitationDraft
          * @description Whom to invite, for how long.
          */
@@ -1280,6 +1469,29 @@ export interface components {
              * @default
              */
             author: string;
+        };
+        /**
+         * LanguageEffect
+         * @description The effect of an intervention on the rest of the language.
+         *
+         *     Attributes
+         *     ----------
+         *     lost
+         *         Labels of gestures of which a demonstration is no longer recognised.
+         *     takes
+         *         Number of other known takes, see `KnownTake`; 0 without a test set.
+         *     repaired, broken
+         *         How many of these are read right with the intervention only, and without it only.
+         */
+        LanguageEffect: {
+            /** Lost */
+            lost: string[];
+            /** Takes */
+            takes: number;
+            /** Repaired */
+            repaired: number;
+            /** Broken */
+            broken: number;
         };
         /**
          * LanguageRevert
@@ -1704,9 +1916,7 @@ export interface components {
              * Causes
              * @description Why, the cause first; empty: none is known
              */
-            causes: {
-                [key: string]: unknown;
-            }[];
+            causes: components["schemas"]["Cause"][];
             /** Notes */
             notes: string[];
             record: components["schemas"]["PracticeRecordView"];
@@ -1999,7 +2209,7 @@ export interface components {
              * Pair
              * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair?: [
+            pair: [
                 string,
                 string
             ] | null;
@@ -2035,12 +2245,12 @@ export interface components {
              * Fault
              * @description Why the keypoints are too poor to judge; null: they are not.
              */
-            fault?: string | null;
+            fault: string | null;
             /**
              * Fault Kind
              * @description The kind of fault; null without one.
              */
-            fault_kind?: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
+            fault_kind: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
             /** Voters */
             voters: string[];
             /** Gestures */
@@ -2074,7 +2284,7 @@ export interface components {
              * Facing
              * @description Degrees the diver is turned by, positive to the own left; null: not known.
              */
-            facing?: number | null;
+            facing: number | null;
             /**
              * Views
              * @description G degrees by which the demonstrations were turned to be compared; empty in profile paper.
@@ -2094,9 +2304,9 @@ export interface components {
             /** End */
             end: number;
             /** @description Null: as the language says */
-            tuning?: components["schemas"]["TuningEntry"] | null;
+            tuning: components["schemas"]["TuningEntry"] | null;
             /** @description The change it was recognised with; null: none */
-            trial?: components["schemas"]["GestureTrial"] | null;
+            trial: components["schemas"]["GestureTrial"] | null;
             /** Expected */
             expected: string | null;
             /**
@@ -2708,6 +2918,49 @@ export interface components {
              * @default false
              */
             keep_frame: boolean;
+        };
+        /**
+         * VoterBreakdown
+         * @description One voter between two gestures: the expected one and the other.
+         *
+         *     Attributes
+         *     ----------
+         *     voter, unit
+         *         Its name, and what a distance of 1 means.
+         *     weight
+         *         Its weight, see `Recognition.weights`.
+         *     vote
+         *         Its nearest gesture; None where it can compare nothing.
+         *     wrong
+         *         Whether it has weight and votes for another gesture than the expected one.
+         *     distance, other_distance
+         *         To the expected gesture and to the other, in its unit; infinite where not comparable.
+         *     share
+         *         Its share of the expected gesture's score, in [0, 1]; 0 where it compares nothing.
+         *     against
+         *         Its contribution to the expected gesture's score minus that to the other's: positive if it
+         *         is against the expected one. Summed over all voters, with `Explanation.turned`, this is the
+         *         difference of the scores.
+         */
+        VoterBreakdown: {
+            /** Voter */
+            voter: string;
+            /** Unit */
+            unit: string;
+            /** Weight */
+            weight: number;
+            /** Vote */
+            vote: string | null;
+            /** Wrong */
+            wrong: boolean;
+            /** Distance */
+            distance: number | null;
+            /** Other Distance */
+            other_distance: number | null;
+            /** Share */
+            share: number;
+            /** Against */
+            against: number | null;
         };
         /**
          * WorkspaceOptions

@@ -88,41 +88,13 @@ export type Outlook = Schemas["OutlookView"];
 export type Place = [number, number] | null;
 
 /** How dynamic time warping pairs the steps of a take with those of a gesture. */
-export interface Alignment {
-  label: string;
-  voter: string;
-  distance: number;
-  backward: boolean;
-  mirrored: boolean;
-  parts: string[];
-  time: number[];
-  gesture_time: number[];
-  pairs: [number, number][];
-  /** Per step and part, of the take and of the gesture. */
-  query: Place[][];
-  gesture: Place[][];
-  /** Per pair and part. */
-  costs: number[][];
-}
+export type Alignment = Schemas["AlignmentEntry"];
 
 /** Why a take is not read as the gesture meant; `start` is null if it lasts throughout. */
-export interface Cause {
-  kind: string;
-  sentence: string;
-  share: number;
-  start: number | null;
-  end: number | null;
-  label: string | null;
-  demonstration: number | null;
-}
+export type Cause = Schemas["Cause"];
 
 /** The effect of an intervention on the known takes, and on the language's demonstrations. */
-export interface SideEffect {
-  takes: number;
-  repaired: number;
-  broken: number;
-  lost: string[];
-}
+export type SideEffect = Schemas["LanguageEffect"];
 
 /** What an intervention changes, also in words. */
 export type Intervention = { words: string } & (
@@ -144,65 +116,23 @@ export type Intervention = { words: string } & (
 export type SwitchName = "direction" | "tempo" | "mirror" | "hand_shape";
 
 /** A change under which the take is recognised as expected. */
-export interface Counterfactual {
-  change: Intervention;
-  label: string;
-  confidence: number;
-  effect: SideEffect | null;
-}
+export type Counterfactual = Omit<Schemas["Counterfactual"], "change"> & { change: Intervention };
 
-/** The explanation of a recognition; the fields that the page reads. */
-export interface Explanation {
-  id: string;
-  expected: string;
-  label: string | null;
-  nearest: string;
-  right: boolean;
-  sentence: string;
-  alignments: Alignment[];
+/** The explanation of a recognition. */
+export type Explanation = Omit<Schemas["ExplanationView"], "counterfactuals"> & {
   counterfactuals: Counterfactual[];
-  causes: Cause[];
-  blame: { label: string; sentence: string }[];
-  details: string[];
-  /** How many changes were tried. */
-  tried: number;
-  notes: string[];
-}
+};
 
 /** The two gestures between which a take lies, nearest first; null: it lies between no two. */
 export type Pair = string[] | null;
 
-/** The answer to a recognition; the fields that the page reads. */
-export interface Recognition {
-  id: string;
-  clip_id: string;
-  language_id: string;
-  revision: number;
-  start: number;
-  end: number;
-  profile: Language["profile"];
-  tuning: Tuning | null;
-  trial: Schemas["GestureTrial"] | null;
-  expected: string | null;
-  created: string;
-  label: string | null;
-  pair: Pair;
-  nearest: string | null;
-  confidence: number;
-  voters: string[];
-  gestures: string[];
-  distances: (number | null)[][];
-  votes: Record<string, string | null>;
-  weights: Record<string, number>;
-  fault: string | null;
-}
+/** The answer to a recognition. */
+export type Recognition = Schemas["RecognitionView"];
 
 /** The answer to a practised take. */
-export type PracticeAnswer = Omit<Schemas["PracticeAnswerView"], "causes"> & { causes: Cause[] };
+export type PracticeAnswer = Schemas["PracticeAnswerView"];
 
-export type PairDifference = Omit<Schemas["ContrastView"], "alignment"> & {
-  alignment: Alignment | null;
-};
+export type PairDifference = Schemas["ContrastView"];
 
 /** A finding of the health report; `error` marks an error, the others are notes. */
 export interface Finding {

@@ -52,7 +52,9 @@ function gestureChoice() {
   return {
     name: "gesture",
     text: "A gesture of the language",
-    more: labels.length ? "Only what is shown between two of these gestures is read." : "It has no gesture yet.",
+    more: labels.length
+      ? "Only what is shown between two of these gestures is read."
+      : "It has no gesture yet.",
     draft: labels.length ? { ...NO_POSES, ...chosen, kind: "gesture" } : null,
     labels,
   };

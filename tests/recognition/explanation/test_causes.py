@@ -159,7 +159,7 @@ def test_moments_are_those_of_the_takes_clock() -> None:
     )
     cause = find_causes(context, "hook")[0]
     assert cause.start == cause.end == pytest.approx(query.time[-1] + 7, abs=0.15)
-    assert cause.to_dict()["kind"] == "ended_early"
+    assert cause.kind == CauseKind.ended_early
 
 
 @pytest.mark.parametrize("kind", sorted(SENTENCES))

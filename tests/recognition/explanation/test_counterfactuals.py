@@ -203,7 +203,7 @@ def test_a_bad_demonstration_is_cut_first() -> None:
     )
     explanation = explain(made, "hook")
     assert explanation.sentence == fault.describe("hook")
-    assert explanation.counterfactuals.found[0].change.kind == "demonstration_cut"
+    assert explanation.counterfactuals[0].change.kind == "demonstration_cut"
 
 
 def test_a_transit_in_the_stroke_is_trimmed_off() -> None:

@@ -139,5 +139,5 @@ def test_a_refused_sequence_would_be_read_by_the_take_as_its_demonstration(
     recognizer = Recognizer(Language(name="signs", gestures=[*language.gestures, go]))
     found = explain(
         RecognitionContext(recognizer=recognizer, poses=poses, whole=poses), "go"
-    ).counterfactuals.found
+    ).counterfactuals
     assert {each.change.kind for each in found} >= {"further_demonstration"}

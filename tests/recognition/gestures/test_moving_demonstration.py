@@ -78,7 +78,7 @@ def test_switching_the_shape_off_is_found_as_a_remedy(recognizer: Recognizer) ->
     context = RecognitionContext(
         recognizer=Recognizer(Language("pool", [insisting, other])), poses=poses, whole=poses
     )
-    found = explain(context, "fist").counterfactuals.found
+    found = explain(context, "fist").counterfactuals
     assert any("switch hand shape of 'fist' off" in each.change.words for each in found)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
@@ -20,6 +20,7 @@ from app.api.services.stored_recognitions import (
     write_pair,
 )
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
+from app.recognition.explanation.causes import Cause
 from app.recognition.explanation.explanation import explain
 from app.store import LanguageState, PracticeTake
 
@@ -74,7 +75,7 @@ class PracticeAnswerView(BaseModel):
     take: PracticeTakeView
     sentence: str
     details: list[str] = Field(description="The numbers behind the sentence")
-    causes: list[dict[str, Any]] = Field(description="Why, the cause first; empty: none is known")
+    causes: list[Cause] = Field(description="Why, the cause first; empty: none is known")
     notes: list[str]
     record: PracticeRecordView
 
@@ -131,7 +132,7 @@ def show_gesture(
         take=_view(take),
         sentence=why.sentence,
         details=list(why.details),
-        causes=[cause.to_dict() for cause in why.causes],
+        causes=list(why.causes),
         notes=[] if why.right else write_notes(studio, record, language),
         record=next(each for each in records if each.diver == take.diver),
     )

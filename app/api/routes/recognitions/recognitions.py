@@ -93,6 +93,6 @@ def explain_recognition(
     others = [] if explanation.right else [explanation.nearest]
     notes = write_notes(studio, record, context.language, *others)
     notes = [note for note in notes if note != explanation.sentence]
-    answer = explanation.to_dict()
-    cuts = locate_cuts(studio, context.language, answer["counterfactuals"])
-    return ExplanationView(id=record.id, **answer | {"counterfactuals": cuts}, notes=notes)
+    located = tuple(locate_cuts(studio, context.language, explanation.counterfactuals))
+    content = dict(explanation) | {"counterfactuals": located}
+    return ExplanationView(id=record.id, **content, notes=notes)
