@@ -22,6 +22,9 @@ CLAIM: Final = timedelta(minutes=5)
 MOST_LISTED: Final = 50
 """Newest invitations of a language that are listed; older ones are over."""
 
+LONGEST_DAYS: Final = 30
+"""Longest time for which an invitation may be valid."""
+
 ASK: Final = "ask whoever sent it for a new one"
 
 REASONS: Final = {

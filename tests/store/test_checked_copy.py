@@ -11,15 +11,26 @@ import sys
 import zipfile
 from collections.abc import Callable
 from contextlib import closing
+from datetime import datetime, timedelta
 from pathlib import Path
+from typing import Any, get_args
 
 import pytest
-from sqlmodel import select
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+from hypothesis.strategies import SearchStrategy
+from sqlalchemy import Boolean, Column, Float, Integer, String, delete, insert
+from sqlmodel import AutoString, SQLModel, select
 
+from app.api.http.schemas.invitations import TakeStatus
+from app.clip_sources import SOURCES
 from app.recognition.errors import OsgError
 from app.store import Clip, ClipStore, Database, LanguageStore
 from app.store.backup import DATABASE, restore_backup, write_backup
-from app.store.models import new_id
+from app.store.backup.rows import OF_A_SERVER
+from app.store.invitations import LONGEST_DAYS, InvitationStore
+from app.store.models import UPRIGHT, JobStatus, UtcDateTime, new_id, now
+from app.store.tokens import digest
 from tests.postgres import Cluster
 from tests.store.conftest import add_clip
 from tests.store.new_database import put_database
@@ -280,3 +291,105 @@ def test_a_clip_that_was_deleted_comes_back_deleted(tmp_path: Path) -> None:
         with database.reading() as session:
             (clip,) = session.exec(select(Clip)).all()
         assert clip.deleted is not None
+
+
+def _value(column: Column[Any], name: str) -> SearchStrategy[Any]:
+    """Return values that this program may write into a column; ids are `name`."""
+    place = f"{column.table.name}.{column.name}"
+    known: dict[str, SearchStrategy[Any]] = {
+        "clip.source": st.sampled_from([source.name for source in SOURCES]),
+        "clip.media_type": st.sampled_from(["video/mp4", "video/webm", "video/mp2t"]),
+        "clip.topics": st.just("[]"),
+        "clip.options": st.sampled_from([None, '{"turn": 90}']),
+        "job.warnings": st.sampled_from(["[]", '["dark"]']),
+        "job.salute_warnings": st.just("[]"),
+        "job.status": st.sampled_from(list(JobStatus)),
+        "language_revision.labels": st.just('["circle"]'),
+        "language_revision.document": st.just("{}"),
+        "recognition.result": st.just("{}"),
+        "invited_take.status": st.sampled_from(get_args(TakeStatus)),
+        "invitation.expires": st.integers(0, LONGEST_DAYS).map(lambda days: _at(days)),
+    }
+    if place in known:
+        return known[place]
+    if column.foreign_keys:
+        return st.just(name)
+    match column.type:
+        case UtcDateTime():
+            return st.integers(-1000, 0).map(_at)
+        case Boolean():
+            return st.booleans()
+        case Float():
+            return st.floats(0, 1e5)
+        case Integer():
+            return st.integers(1, 2**31 - 1)
+        case String(length=32) | AutoString(length=32) if column.name.endswith("id"):
+            return st.just(name)
+        case String(length=length) | AutoString(length=length):
+            letters = "abc \u00e4\u4e00'\"%\\"
+            return st.text(letters, min_size=1, max_size=min(length or 80, 16))
+        case _:
+            raise AssertionError(f"{place} has a type that this test does not know")
+
+
+def _at(days: int) -> datetime:
+    return now().replace(microsecond=0) + timedelta(days=days)
+
+
+# Without shrinking: an example takes a tenth of a second.
+@settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
+@given(st.data())
+def test_whatever_this_program_writes_comes_back_from_its_own_backup(
+    tmp_path_factory: pytest.TempPathFactory, data: st.DataObject
+) -> None:
+    folder = tmp_path_factory.mktemp("library")
+    put_database(folder / DATABASE)
+    written: dict[str, dict[str, Any]] = {}
+    with closing(Database(f"sqlite:///{folder / DATABASE}")) as database:
+        database.migrate()
+        with database.writing() as session:
+            for table in SQLModel.metadata.sorted_tables:
+                row = {
+                    column.name: data.draw(_value(column, "1" * 32), label=str(column))
+                    for column in table.columns
+                    if column.computed is None
+                }
+                session.connection().execute(delete(table))
+                session.connection().execute(insert(table), [row])
+                written[table.name] = row
+    files = folder / "clips" / ("1" * 32)
+    files.mkdir(parents=True)
+    for name in {"recording.npz", *UPRIGHT.values(), *(each.name for each in SOURCES)}:
+        (files / name).write_bytes(b"kept")
+    assert write_backup(folder, folder / "kept.zip") == 1
+    assert restore_backup(folder / "kept.zip", folder / "new") == 1
+    with (
+        closing(Database(f"sqlite:///{folder / 'new' / DATABASE}")) as database,
+        database.reading() as session,
+    ):
+        for table in SQLModel.metadata.sorted_tables:
+            rows = [dict(row) for row in session.connection().execute(table.select()).mappings()]
+            if table.name == "invitation":
+                assert rows[0]["withdrawn"] is not None
+                written[table.name]["withdrawn"] = rows[0]["withdrawn"]
+            if table.name not in {each.__tablename__ for each in OF_A_SERVER}:
+                assert rows == [written[table.name]]
+
+
+def test_a_planted_invitation_lets_nobody_in(kept: Path, tmp_path: Path) -> None:
+    def change(connection: sqlite3.Connection) -> None:
+        connection.execute(
+            "INSERT INTO language (id, head, sample, created) VALUES (?, 1, 0, ?)",
+            (LANGUAGE_ID, MOMENT),
+        )
+        connection.execute(
+            "INSERT INTO invitation (id, language_id, sha256, owner, most_takes, most_bytes, takes,"
+            " bytes, created, expires) VALUES (?, ?, ?, '', 9, 9, 0, 0, ?, ?)",
+            (CLIP_ID, LANGUAGE_ID, digest("planted"), MOMENT, f"{now() + timedelta(days=7):%F %T}"),
+        )
+
+    restore_backup(changed(kept, change), tmp_path / "new")
+    with closing(Database(f"sqlite:///{tmp_path / 'new' / DATABASE}")) as database:
+        found = InvitationStore(database).find(digest("planted"))
+    assert found is not None
+    assert found.closed == "withdrawn"

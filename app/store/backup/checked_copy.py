@@ -17,18 +17,22 @@ from pathlib import Path
 from typing import Any, Final
 
 from pydantic import TypeAdapter
-from sqlalchemy import Boolean, Column, Float, Integer, String, select
-from sqlmodel import AutoString, SQLModel
+from sqlalchemy import Boolean, Column, Float, Integer, String, select, update
+from sqlmodel import AutoString, SQLModel, col
 
 from app.clip_sources import SOURCES, ClipTopic, ReadOptions
 from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
 from app.store.clip_folder import CLIP_ID
 from app.store.database import Database
-from app.store.models import Clip, UtcDateTime, now
+from app.store.invitations import LONGEST_DAYS
+from app.store.models import Clip, Invitation, UtcDateTime, now
 
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
+
+_AHEAD: Final = {"invitation.expires": timedelta(days=LONGEST_DAYS)}
+"""Longest time by which a time may lie in the future; of other columns none does."""
 
 _MOST: Final = 2**53 - 1
 """Largest integer that browsers read unchanged."""
@@ -64,6 +68,7 @@ def copy_checked(received: Path, target: Path) -> frozenset[str]:
                 _copy(source, writing)
             copy.migrate()
             clips = _check(copy)
+            _withdraw_invitations(copy)
         with closing(sqlite3.connect(target)) as finished:
             # No journal beside the file: it is moved alone.
             finished.execute("PRAGMA journal_mode=DELETE")
@@ -143,11 +148,20 @@ def _check(copy: Database) -> frozenset[str]:
         return frozenset(session.connection().execute(select(Clip.id)).scalars())  # type: ignore[call-overload]
 
 
+def _withdraw_invitations(copy: Database) -> None:
+    """End all invitations: whoever made the backup may have planted the digest of a token."""
+    with copy.writing() as session:
+        still_open = col(Invitation.withdrawn).is_(None)
+        session.exec(update(Invitation).where(still_open).values(withdrawn=now()))
+
+
 def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
     """Return whether a value may be this program's own."""
+    place = f"{column.table.name}.{column.name}"
     match column.type:
         case UtcDateTime():
-            return isinstance(value, datetime) and value <= latest
+            ahead = _AHEAD.get(place, timedelta())
+            return isinstance(value, datetime) and value <= latest + ahead
         case Boolean():
             return isinstance(value, bool)
         case Float():
@@ -159,7 +173,6 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
                 return False
             if column.type.length == 32 and (column.name == "id" or column.name.endswith("_id")):
                 return CLIP_ID.fullmatch(value) is not None
-            place = f"{column.table.name}.{column.name}"
             return place not in _TEXTS or _TEXTS[place](value)
     return False
 

@@ -10,6 +10,7 @@ from pydantic import BaseModel, Field
 from app.api.http.schemas.values import Body
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.triggers.trigger import TriggerKind
+from app.store.invitations import LONGEST_DAYS
 
 MOST_TAKE_BYTES: Final = 64 * 1024 * 1024
 """Largest clip of one take: ten seconds of the finest video that a phone records by itself."""
@@ -29,7 +30,7 @@ class InvitationDraft(Body):
     people: Annotated[
         int, Field(ge=1, lt=MAX_DEMONSTRATIONS, description="How many; they share the link")
     ] = 2
-    days: Annotated[int, Field(ge=1, le=30, description="Until it is over")] = 7
+    days: Annotated[int, Field(ge=1, le=LONGEST_DAYS, description="Until it is over")] = 7
     takes: Annotated[int, Field(ge=1, le=2000)] | None = Field(
         default=None,
         description=f"Most takes, also returned ones; null: {TAKES_OF_A_GESTURE} of each gesture "
