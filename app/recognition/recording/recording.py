@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import tempfile
 import zipfile
@@ -22,6 +23,9 @@ from app.recognition.triggers.trigger import SALUTE, Trigger
 
 FILE_VERSION = 1
 """Version of the file that `Recording.save` writes; increased when older readers would fail."""
+
+MOST_BYTES = 512 * 1024 * 1024
+"""Most memory of a file's arrays: 54,000 frames, the longest clip, of a whole body take 220 MB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,6 +145,7 @@ class Recording:
         """
         source = Path(path)
         try:
+            _require_size(source)
             with np.load(source, allow_pickle=False) as archive:
                 return cls._from_arrays({name: archive[name] for name in archive.files})
         except PoseError:
@@ -185,6 +190,27 @@ class Recording:
             salute_warnings=tuple(str(warning) for warning in arrays.get("salute_warnings", ())),
             people=arrays.get("people"),
         )
+
+
+def _require_size(file: Path) -> None:
+    """Refuse a file whose arrays would take too much memory, by their headers alone.
+
+    Raises
+    ------
+    ValueError
+        When they would, or when a header is not as `Recording.save` writes it.
+
+    """
+    size = 0
+    with zipfile.ZipFile(file) as archive:
+        for info in archive.infolist():
+            with archive.open(info) as packed:
+                if np.lib.format.read_magic(packed) != (1, 0):
+                    raise ValueError(f"{info.filename} has an unknown header")
+                shape, _, dtype = np.lib.format.read_array_header_1_0(packed)
+            size += math.prod(shape) * dtype.itemsize
+            if size > MOST_BYTES:
+                raise ValueError(f"it would take more than {MOST_BYTES >> 20} MB of memory")
 
 
 def _wrists(poses: PoseSequence) -> FloatArray:

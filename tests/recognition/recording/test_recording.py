@@ -1,5 +1,7 @@
 """Recordings: saved ones load unchanged, and damage is reported clearly."""
 
+import tracemalloc
+import zipfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -125,6 +127,27 @@ def test_pickled_objects_are_never_opened(tmp_path: Path) -> None:
     np.savez(tmp_path / "clip.npz", version=np.array({"a": 1}, dtype=object))
     with pytest.raises(PoseError, match="not a readable recording"):
         Recording.load(tmp_path / "clip.npz")
+
+
+def test_a_small_file_whose_arrays_are_huge_is_refused_before_they_are_read(
+    tmp_path: Path,
+) -> None:
+    target = tmp_path / "clip.npz"
+    recording().save(target)
+    header = {"descr": "<f8", "fortran_order": False, "shape": (10**9,)}
+    with (
+        zipfile.ZipFile(target, "a", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("world.npy", "w") as packed,
+    ):
+        np.lib.format.write_array_header_1_0(packed, header)
+        packed.write(bytes(10**6))
+    tracemalloc.start()
+    try:
+        with pytest.raises(PoseError, match="would take more than 512 MB of memory"):
+            Recording.load(target)
+        assert tracemalloc.get_traced_memory()[1] < 10**7
+    finally:
+        tracemalloc.stop()
 
 
 def test_a_newer_file_is_refused_as_such(tmp_path: Path) -> None:
