@@ -14,6 +14,9 @@ from app.recognition.poses.frame import Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
+LARGEST_COORDINATE = 1e6
+"""Largest coordinate of a keypoint in pixels or millimetres; no camera has as many."""
+
 LARGEST_FRACTION = 3.0
 """Coordinates count as fractions of the picture if nearly all are below this value: landmarks
 beyond its edge lie one or two pictures away, and a body of three pixels shows no gesture."""
@@ -160,6 +163,17 @@ class KeypointTable:
     hands: tuple[tuple[Hand, ...], ...] | None = None
     notes: tuple[str, ...] = ()
     people: npt.NDArray[np.int64] | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse places that can be of no picture: computing with them would overflow."""
+        hands = [hand.xy for frame in self.hands or () for hand in frame]
+        for xy in (self.xy, *hands):
+            largest = np.abs(xy[np.isfinite(xy)]).max(initial=0.0)
+            if largest > LARGEST_COORDINATE:
+                raise KeypointFileError(
+                    f"a keypoint has the coordinate {largest:.3g}, which is in no picture; write "
+                    "keypoints that were not found as empty cells or NaN"
+                )
 
     @property
     def around_zero(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -87,3 +88,10 @@ def test_a_damaged_file_is_read_or_refused(
     except OsgError:
         return
     assert poses.seen.any()
+
+
+def test_a_coordinate_that_is_in_no_picture_is_refused(tmp_path: Path) -> None:
+    poses = replace(POSES, xy=np.where(POSES.xy == POSES.xy[2, 1], 1e308, POSES.xy))
+    table = write_named(tmp_path / "named.csv", poses)
+    with pytest.raises(OsgError, match=r"coordinate 1e\+308, which is in no picture"):
+        read_keypoints(table, OPTIONS)
