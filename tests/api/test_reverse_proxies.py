@@ -220,7 +220,13 @@ def test_below_a_path_addresses_are_those_of_the_proxy_and_two_studios_keep_thei
             assert client.get(f"/studio{API}/languages").status_code == 401
 
 
-@pytest.mark.parametrize("claimed", ["//evil.example", "/a b", "/a?b", "studio", "/" + "a" * 900])
+@pytest.mark.parametrize(
+    "claimed",
+    [
+        *("//evil.example", "/a b", "/a?b", "studio", "/" + "a" * 900),
+        *("/a/../b", "/.", "/..", "/./a"),
+    ],
+)
 def test_what_is_no_path_is_no_prefix(claimed: str) -> None:
     behind = Settings(forwarded_allow_ips="127.0.0.1")
     assert prefix_of(Headers({"X-Forwarded-Prefix": "/studio/"}), behind) == "/studio"

@@ -58,7 +58,8 @@ _FOR_A_YEAR = "max-age=31536000, immutable"
 _ASK_FIRST = "no-cache"
 
 
-_PREFIX = re.compile(r"(/[\w.~-]{1,64}){1,8}", re.ASCII)
+_PREFIX = re.compile(r"(/(?!\.{1,2}(/|$))[\w.~-]{1,64}){1,8}", re.ASCII)
+"""A path without ``.`` and ``..``, which browsers resolve to another one."""
 
 
 def prefix_of(headers: Headers, settings: Settings) -> str:
