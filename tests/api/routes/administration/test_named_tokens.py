@@ -382,3 +382,20 @@ def test_every_operation_has_the_role_that_it_needs(settings: Settings) -> None:
         ("PUT", "/api/v1/workspaces/{workspace_id}/view"),
     }
     assert not READING.fullmatch("/api/v1/languages/x/gestures")
+
+
+def test_an_idempotency_key_belongs_to_a_name(
+    guarded: Running, tokens: TokenFile, small_clip: Path
+) -> None:
+    def upload(client: httpx.Client) -> dict[str, Any]:
+        files = {"file": ("dive.mp4", small_clip.read_bytes(), "video/mp4")}
+        accepted: dict[str, Any] = client.post(
+            CLIPS, files=files, headers={"Idempotency-Key": "7f3c"}
+        ).json()
+        return accepted
+
+    ada, bo = tokens.add("Ada", Role.EDIT), tokens.add("Bo", Role.EDIT)
+    with client_with(guarded, ada) as one, client_with(guarded, bo) as other:
+        first = upload(one)
+        assert upload(one)["id"] == first["id"]
+        assert upload(other)["id"] != first["id"]
