@@ -4,7 +4,14 @@ from app.store.audit import AuditStore
 from app.store.clips import ClipPage, ClipQuery, ClipStore, ClipWithJob
 from app.store.data_folder import FolderLock, identity_of
 from app.store.database import Database
-from app.store.errors import Conflict, InvitationClosed, NotFound, StoreError, StoreUnavailable
+from app.store.errors import (
+    Conflict,
+    InvitationClosed,
+    NotFound,
+    StoreError,
+    StoreUnavailable,
+    TooManyInvitations,
+)
 from app.store.invitations import InvitationState, InvitationStore, require_open
 from app.store.jobs import JobStore
 from app.store.languages import Draft, LanguageState, LanguageStore, SourceStore
@@ -77,6 +84,7 @@ __all__ = [
     "TestSetFull",
     "TestedTake",
     "TokenFile",
+    "TooManyInvitations",
     "Upload",
     "UploadStore",
     "Usage",

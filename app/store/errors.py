@@ -26,6 +26,10 @@ class Conflict(StoreError):
         self.current = current
 
 
+class TooManyInvitations(StoreError):
+    """Raised when a language has as many open invitations as are listed."""
+
+
 class InvitationClosed(StoreError):
     """Raised when an invitation is not valid any more, or takes nothing more.
 

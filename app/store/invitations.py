@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Final
 
-from sqlalchemy import ColumnElement, or_, update
+from sqlalchemy import ColumnElement, and_, func, not_, or_, update
 from sqlmodel import Session, col, select
 
 from app.store.database import Database
-from app.store.errors import InvitationClosed, NotFound
+from app.store.errors import InvitationClosed, NotFound, TooManyInvitations
 from app.store.models import Invitation, InvitedTake, new_id, now
 from app.store.tokens import TOKEN_BYTES, digest
 
@@ -20,7 +20,7 @@ CLAIM: Final = timedelta(minutes=5)
 """Time after which another server judges a take that one began to judge: it takes seconds."""
 
 MOST_LISTED: Final = 50
-"""Newest invitations of a language that are listed; older ones are over."""
+"""Most open invitations of a language, and most of those that are over that are listed."""
 
 LONGEST_DAYS: Final = 30
 """Longest time for which an invitation may be valid."""
@@ -56,7 +56,14 @@ class InvitationStore:
     def add(
         self, language_id: str, owner: str, *, most_takes: int, most_bytes: int, days: int
     ) -> tuple[Invitation, str]:
-        """Make an invitation; return it with its token, which is stored nowhere."""
+        """Make an invitation; return it with its token, which is stored nowhere.
+
+        Raises
+        ------
+        TooManyInvitations
+            When `MOST_LISTED` of the language are open.
+
+        """
         token = secrets.token_urlsafe(TOKEN_BYTES)
         made = Invitation(
             language_id=language_id,
@@ -67,6 +74,12 @@ class InvitationStore:
             expires=now() + timedelta(days=days),
         )
         with self._database.writing() as session:
+            of_language = col(Invitation.language_id) == language_id
+            count = select(func.count()).select_from(Invitation).where(of_language, _open())
+            if session.exec(count).one() >= MOST_LISTED:
+                raise TooManyInvitations(
+                    f"this language has {MOST_LISTED} open invitations; withdraw one first"
+                )
             session.add(made)
         return made, token
 
@@ -93,15 +106,19 @@ class InvitationStore:
             return found
 
     def of(self, language_id: str) -> list[InvitationState]:
-        """Return the newest invitations of a language with their takes, the newest first."""
+        """Return the invitations of a language with their takes, the newest first.
+
+        All that are open, then the newest of those that are over.
+        """
         with self._database.reading() as session:
             newest = (
                 select(Invitation)
                 .where(Invitation.language_id == language_id)
                 .order_by(col(Invitation.created).desc(), col(Invitation.id))
-                .limit(MOST_LISTED)
             )
-            invitations = session.exec(newest).all()
+            still_open = session.exec(newest.where(_open())).all()
+            over = session.exec(newest.where(not_(_open())).limit(MOST_LISTED)).all()
+            invitations = [*still_open, *over]
             query = (
                 select(InvitedTake)
                 .where(col(InvitedTake.invitation_id).in_([each.id for each in invitations]))
@@ -217,6 +234,10 @@ def require_open(invitation: Invitation, size: int) -> None:
 def closed(code: str) -> InvitationClosed:
     """Return the error of an invitation that is closed for this reason, see `REASONS`."""
     return InvitationClosed(REASONS[code], code)
+
+
+def _open() -> ColumnElement[bool]:
+    return and_(col(Invitation.withdrawn).is_(None), col(Invitation.expires) > now())
 
 
 def _unclaimed() -> ColumnElement[bool]:

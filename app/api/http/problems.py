@@ -28,7 +28,14 @@ from app.recognition.errors import (
 )
 from app.recognition.language.file import list_document_steps
 from app.recognition.text.strict_json import build_pointer
-from app.store import Conflict, InvitationClosed, NotFound, QuotaExceeded, StoreError
+from app.store import (
+    Conflict,
+    InvitationClosed,
+    NotFound,
+    QuotaExceeded,
+    StoreError,
+    TooManyInvitations,
+)
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -159,6 +166,8 @@ def problem_of(error: Exception) -> ProblemError:
             )
         case QuotaExceeded():
             return _convert_quota(error)
+        case TooManyInvitations():
+            return ProblemError(409, "too_many_invitations", str(error))
         case InvitationClosed():
             # The rest of a body stays unread, so the connection cannot be used again.
             headers = {"Connection": "close"}

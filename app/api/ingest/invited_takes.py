@@ -133,7 +133,7 @@ def _add(
 
     """
     invitation = studio.invitations.get(take.invitation_id)
-    owner = identities.of_inviter(invitation.owner)
+    owner = identities.of_inviter(invitation.owner, invitation.created)
     if owner is None or invitation.closed == "withdrawn":
         raise Returned("This invitation was withdrawn.")
     if found is None:

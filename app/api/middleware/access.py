@@ -317,7 +317,7 @@ class TokenRequired:
             waits = self._guesses.too_many(client)
             self._guesses.add(client)
             return _too_many(GUESS_SECONDS, "a minute") if waits else _not_invited()
-        owner = self._identities.of_inviter(found.owner)
+        owner = self._identities.of_inviter(found.owner, found.created)
         if found.closed or owner is None:
             return problem_of(closed(found.closed or "withdrawn"))
         scope.setdefault("state", {})["invitation"] = found

@@ -6,7 +6,9 @@ import hashlib
 import hmac
 import logging
 import os
+from contextlib import suppress
 from dataclasses import dataclass
+from datetime import datetime
 
 from starlette.types import Scope
 
@@ -14,7 +16,7 @@ from app.settings import Settings
 from app.store import NamedToken, Role, StoreUnavailable, TokenFile
 from app.store.models import SignIn
 from app.store.sign_ins import proof_of
-from app.store.tokens import ADMINISTRATOR, is_reserved
+from app.store.tokens import ADMINISTRATOR, TokensUnavailable, is_reserved
 
 logger = logging.getLogger(__name__)
 
@@ -31,6 +33,8 @@ class Identity:
         Role of the token.
     quota_bytes, quota_clips
         Most bytes and clips that this name may keep; 0 is no limit.
+    since
+        When its token was made; None for the token of the settings, and without tokens.
 
     """
 
@@ -38,6 +42,7 @@ class Identity:
     role: Role
     quota_bytes: int = 0
     quota_clips: int = 0
+    since: datetime | None = None
 
 
 ANYBODY = Identity("", Role.ADMIN)
@@ -64,6 +69,9 @@ class Identities:
         self._own = None if secret is None else hashlib.sha256(secret).hexdigest()
         self._read: tuple[NamedToken, ...] | None = None
         self._by_digest: dict[str, Identity] = {}
+        # A list that is lost with all memory of it before the first request is missed as well.
+        with suppress(TokensUnavailable):
+            self._file.read()
 
     @property
     def required(self) -> bool:
@@ -108,15 +116,21 @@ class Identities:
                     return identity
         return None
 
-    def of_inviter(self, name: str) -> Identity | None:
+    def of_inviter(self, name: str, invited: datetime) -> Identity | None:
         """Return the identity in whose name invited people add takes, by its name.
 
-        None if nobody of that name may edit any more; raises as `of_token`.
+        None if nobody of that name may edit any more, or the name's token is newer than the
+        invitation: one that was removed comes back without the invitations that it made. Raises as
+        `of_token`.
         """
         if not self.required:
             return ANYBODY if name == ANYBODY.name else None
         self._update()
-        named = [each for each in self._by_digest.values() if each.name == name]
+        named = [
+            each
+            for each in self._by_digest.values()
+            if each.name == name and (each.since is None or each.since <= invited)
+        ]
         return next((each for each in named if each.role is not Role.READ), None)
 
     def is_own(self, token_digest: str) -> bool:
@@ -148,6 +162,7 @@ class Identities:
             token.role,
             settings.quota_bytes if token.quota_bytes is None else token.quota_bytes,
             settings.quota_clips if token.quota_clips is None else token.quota_clips,
+            token.created,
         )
 
 

@@ -63,6 +63,17 @@ def test_a_link_to_a_list_on_a_disk_that_is_not_mounted_opens_nothing(
     assert "nobody is let in" in (check_tokens(settings) or "")
 
 
+def test_a_list_lost_with_all_memory_of_it_before_the_first_request_opens_nothing(
+    settings: Settings, tokens: TokenFile
+) -> None:
+    tokens.add("Ada", Role.EDIT)
+    started = Identities(settings)
+    settings.tokens.unlink()
+    settings.tokens_seen.unlink()
+    assert started.required
+    assert started.nobody
+
+
 def test_a_damaged_list_is_said_too(settings: Settings, tokens: TokenFile) -> None:
     tokens.add("Ada", Role.EDIT)
     settings.tokens.write_text("{")

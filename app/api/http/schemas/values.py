@@ -10,10 +10,19 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+from app.recognition.text.joiners import is_printable
 from app.recognition.text.look_alikes import compose
 
 MOST_SECONDS = 24 * 60 * 60
 """Largest number of seconds in a request: no clip is a day long, so more is a mistake."""
+
+
+def _require_printable(text: str) -> str:
+    """Refuse line breaks, NUL, and characters that turn the direction of writing."""
+    if not is_printable(text):
+        raise ValueError("a name holds printable characters only")
+    return text
+
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_NAME_LENGTH, pattern=r"\S")]
 Author = Annotated[str, Field(max_length=MAX_AUTHOR_LENGTH)]
@@ -22,7 +31,12 @@ NewName = Annotated[Name, AfterValidator(compose)]
 """Name in the form that is stored."""
 NewLabel = Annotated[Label, AfterValidator(compose)]
 """Label in the form that is stored; one of an imported file may have another form."""
-Diver = Annotated[str, Field(max_length=MAX_DIVER_LENGTH), AfterValidator(compose)]
+Diver = Annotated[
+    str,
+    Field(max_length=MAX_DIVER_LENGTH),
+    AfterValidator(compose),
+    AfterValidator(_require_printable),
+]
 Seconds = Annotated[float, Field(ge=0, le=MOST_SECONDS, allow_inf_nan=False)]
 Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]

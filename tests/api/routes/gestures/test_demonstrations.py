@@ -126,7 +126,7 @@ def test_a_lost_race_is_refused(client: httpx.Client, place: str, backwards_clip
         ({"start": 3.0, "end": 1.0}, 422, "range_empty"),
         ({"salient": ["third_hand"]}, 422, "gesture_unusable"),
         ({"diver": "x" * 81}, 422, "request_invalid"),
-        ({"diver": "a\nb"}, 422, "gesture_unusable"),
+        ({"diver": "a\nb"}, 422, "request_invalid"),
         ({"clip_id": "none"}, 404, "not_found"),
         ({"colour": "blue"}, 422, "request_invalid"),
     ],

@@ -23,6 +23,7 @@ from app.recognition import Recording
 from app.resources import static_dir
 from app.settings import Settings
 from app.store import Invitation, InvitedTake, Role, TokenFile
+from app.store.invitations import MOST_LISTED
 from app.store.models import now
 from app.ui.qr_code import draw_qr_code
 from tests.api.languages import LANGUAGES, add_gesture
@@ -262,6 +263,39 @@ def test_it_ends_with_the_right_of_its_maker_to_edit(
         tokens.remove("Ada")
     assert_closed(guest.get(INVITED), "withdrawn")
     assert_closed(send(guest), "withdrawn")
+
+
+def test_it_stays_over_when_the_name_of_its_maker_comes_back(
+    guest: httpx.Client, tokens: TokenFile
+) -> None:
+    tokens.remove("Ada")
+    tokens.add("Ada", Role.EDIT)
+    assert_closed(guest.get(INVITED), "withdrawn")
+    assert_closed(send(guest), "withdrawn")
+
+
+@pytest.mark.parametrize("diver", ["a\nb", "a\0b", "a\u202eb"])
+def test_a_name_that_would_be_shown_otherwise_is_refused(guest: httpx.Client, diver: str) -> None:
+    answer = guest.post(
+        f"{INVITED}/takes", params={"label": "circle", "diver": diver}, files={"file": b"x"}
+    )
+    assert_problem(answer, 422, "request_invalid")
+
+
+def test_all_open_invitations_are_listed_and_there_are_not_more_than_can_be_looked_through(
+    client: httpx.Client, pool: str
+) -> None:
+    place = f"{LANGUAGES}/{pool}/invitations"
+    first = invite(client, pool)
+    for _ in range(MOST_LISTED - 1):
+        invite(client, pool)
+    refused = assert_problem(client.post(place, json={}), 409, "too_many_invitations")
+    assert "withdraw one" in str(refused["detail"])
+    assert client.delete(f"{place}/{first['id']}").status_code == 204
+    invite(client, pool)
+    listed = client.get(place).json()
+    assert [each["closed"] for each in listed].count(None) == MOST_LISTED
+    assert listed[-1]["id"] == first["id"]
 
 
 def test_it_ends_with_its_language(client: httpx.Client, guest: httpx.Client, pool: str) -> None:
