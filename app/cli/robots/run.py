@@ -418,6 +418,7 @@ def open_bridge(
         now,
         tell_answer,
         without_salutes=without_salutes,
+        memory=table_file.with_name(f"{table_file.name}.before"),
     )
 
 

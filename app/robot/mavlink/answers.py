@@ -4,7 +4,11 @@ Lights are set as the table's lights action sets them (``DO_SET_SERVO``), the ti
 manager's (``DO_GIMBAL_MANAGER_PITCHYAW``), never by ``MANUAL_CONTROL``, which would take the sticks
 from the pilot. A pattern begins only when the vehicle reports the present value, and the pilot did
 not change it a moment ago. A value that is neither ours nor the one before is the pilot's: the
-pattern ends, and that value stays.
+pattern ends, and that value stays. The value before is kept in a file while a pattern is played, so
+that a robot that starts again restores it too.
+
+Times are seconds of a steady clock, or heard seconds: only those in which the vehicle reports the
+value, so that a lost link uses up none.
 """
 
 from __future__ import annotations
@@ -18,6 +22,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import PULSE_SECONDS, Answer
 from app.robot.mavlink.actions import LEAST_PWM, MOST_PWM, CommandStep, Message, Step
+from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
 from app.robot.mavlink.table import Answers, Vehicle
 
@@ -37,11 +42,11 @@ AGAIN_SECONDS: Final = 0.2
 """Seconds after which a value that is not reported is sent again: twice the reports' period."""
 
 LONGEST_LEVEL: Final = 1.5
-"""Seconds after which the next value is sent though the present one was never reported."""
+"""Heard seconds after which the next value is sent though the present one was never reported."""
 
 LONGEST_RESTORE: Final = 30.0
-"""Seconds, while the vehicle is heard, after which the value before is given up: the vehicle does
-not do what it is asked."""
+"""Heard seconds after which the value before is given up: the vehicle does not do what it is
+asked."""
 
 PAUSE_SECONDS: Final = 1.0
 """Seconds between two patterns, twice the time between two pulses, so that they are counted
@@ -81,6 +86,8 @@ class Output(Protocol):
     ----------
     name
         For people.
+    key
+        Its name in the memory, other for another vehicle or servo output.
     vehicle
         Whose it is.
     pulse_seconds
@@ -97,6 +104,7 @@ class Output(Protocol):
     """
 
     name: str
+    key: str
     vehicle: Vehicle
     pulse_seconds: float
     command: int
@@ -129,6 +137,7 @@ class LightsOutput:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
+        self.key = f"{self.name} {vehicle.system} {vehicle.lights_servo}"
         # A message reports sixteen outputs.
         self._port, self._index = divmod(vehicle.lights_servo - 1, 16)
 
@@ -159,6 +168,7 @@ class TiltOutput:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
+        self.key = f"{self.name} {vehicle.system}"
 
     def read(self, message: Message) -> float | None:
         """Return the pitch of the reported attitude, a quaternion w, x, y, z."""
@@ -185,11 +195,14 @@ class PatternPlayer:
     ----------
     output
         What shows the pulses.
+    memory
+        Keeps the value before a pattern until it is restored.
 
     """
 
-    def __init__(self, output: Output) -> None:
+    def __init__(self, output: Output, memory: Memory) -> None:
         self.output = output
+        self._memory = memory
         self._is_refused = False
         self._value = self._before = self._expected = math.nan
         # What is sent for a pulse, and what is then reported: the vehicle may have limits.
@@ -198,9 +211,16 @@ class PatternPlayer:
         self._heard = self._changed = self._asked = self._rested = self._handed = -math.inf
         # Whether a pulse is on, and whether the following parts of the pattern are.
         self._is_on: bool | None = None
-        self._begun = self._sent = -math.inf
+        self._sent = self._ticked = -math.inf
+        # Heard seconds of the present part, and those before an order's value is restored over.
+        self._lasted = self._yields = 0.0
+        # Whether the next report ends a silence, in which the pilot may have set anything.
+        self._was_silent = True
         self._following: deque[bool] = deque()
         self._unanswered = 0
+        if kept := memory.find(output.key, 3):
+            self._before, self._peak, self._shown_peak = kept
+            self._is_on = False
 
     @property
     def is_active(self) -> bool:
@@ -227,20 +247,25 @@ class PatternPlayer:
         self._peak = self._shown_peak = self.output.find_peak(self._value)
         self._has_shown = False
         self._following = deque([True, False] * pulses)
-        self._turn(self._following.popleft(), now)
+        self._remember()
+        self._turn(self._following.popleft())
 
     def stop(self, now: float) -> None:
-        """End the pattern and restore the value before it."""
+        """End the pattern and restore the value before it, once the vehicle is heard."""
         if self._following:
             self._following.clear()
-            self._turn(False, now)
+            self._turn(False)
 
     def hand_over(self, value: float, now: float) -> Sequence[Message]:
         """Leave the output to an order that sets `value`; return what restores the value before."""
-        restored = [self._set(self._before)] if self.is_active else []
-        self._drop()
         self._expected, self._handed = value, now
-        return restored
+        if not self.is_active:
+            return []
+        self._following.clear()
+        self._turn(False)
+        # The order may be lost: until it is given up, what is reported shows who has set it.
+        self._yields = self.output.vehicle.give_up_seconds
+        return [self._set(self._before)]
 
     def forget(self) -> None:
         """Forget pattern and value, of a vehicle that has started again."""
@@ -270,9 +295,12 @@ class PatternPlayer:
         return True
 
     def _hear_value(self, value: float, now: float) -> None:
+        self._was_silent |= now - self._heard > FRESH_SECONDS
         last, self._value, self._heard = self._value, value, now
         if self.is_active:
-            if not self._is_ours(value):
+            if self._yields and self._equals(value, self._expected):
+                self._drop()
+            elif not self._is_ours(value):
                 self._drop()
                 self._changed = self._rested = now
         elif self._equals(value, self._expected):
@@ -284,9 +312,16 @@ class PatternPlayer:
             or now - self._handed < PAUSE_SECONDS
         ):
             self._changed = now
+        self._was_silent = False
 
     def _is_ours(self, value: float) -> bool:
-        """Return whether a value is that of a pulse, or that before, and so no pilot's."""
+        """Return whether a value is that of a pulse, or that before, and so no pilot's.
+
+        After a silence only these two are: what lies between them does not travel any more.
+        """
+        if self._was_silent:
+            ours = (self._before, self._peak, self._shown_peak)
+            return any(self._equals(value, sent) for sent in ours)
         low, high = sorted((self._before, self._peak))
         lies_between = low - self.output.tolerance <= value <= high + self.output.tolerance
         if self.output.travels:
@@ -296,6 +331,7 @@ class PatternPlayer:
         # The first pulse shows how far the vehicle goes.
         if self._is_on and not self._has_shown and lies_between:
             self._shown_peak = value
+            self._remember()
         self._has_shown |= self._equals(value, self._shown_peak)
         return self._equals(value, self._shown_peak)
 
@@ -311,17 +347,21 @@ class PatternPlayer:
     def list_due(self, now: float) -> Iterator[Message]:
         """Yield the messages to send now: a value again until it is reported, then the next."""
         is_fresh = now - self._heard <= FRESH_SECONDS
+        self._lasted += min(now - self._ticked, FRESH_SECONDS) if is_fresh else 0
+        self._ticked = now
         if not is_fresh:
             self.stop(now)
             if now - self._asked > ASK_SECONDS:
                 self._asked = now
                 yield self._ask_for_reports()
-        if not self.is_active:
+            # Nothing is set unseen: the pilot may have another value by now.
             return
-        if is_fresh:
+        if self.is_active:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
         if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
+            if self._lasted < self._yields:
+                return
             self._sent = now
             yield self._set(self._peak if self._is_on else self._before)
 
@@ -330,20 +370,25 @@ class PatternPlayer:
         if not self._following:
             # A report on its way before the last message proves nothing.
             restored = self._is_reached and now - self._sent > REPORT_SECONDS
-            if restored or now - self._begun > LONGEST_RESTORE:
+            if restored or self._lasted > LONGEST_RESTORE + self._yields:
                 self._drop()
                 self._rested = now
-        elif now - self._begun > LONGEST_LEVEL or (
+        elif self._lasted > LONGEST_LEVEL or (
             self._is_reached and now - self._sent >= self.output.pulse_seconds / 2
         ):
-            self._turn(self._following.popleft(), now)
+            self._turn(self._following.popleft())
 
-    def _turn(self, is_on: bool, now: float) -> None:
-        self._is_on, self._begun, self._sent = is_on, now, -math.inf
+    def _turn(self, is_on: bool) -> None:
+        self._is_on, self._sent, self._lasted, self._yields = is_on, -math.inf, 0.0, 0.0
+
+    def _remember(self) -> None:
+        self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
 
     def _drop(self) -> None:
         self._following.clear()
         self._is_on = None
+        self._yields = 0.0
+        self._memory.keep(self.output.key)
 
     def _set(self, value: float) -> Message:
         self._unanswered += 1
@@ -364,6 +409,8 @@ class AnswerDesk:
     ----------
     answers, vehicle
         The table's.
+    memory
+        Keeps what was before a pattern.
 
     Attributes
     ----------
@@ -374,10 +421,10 @@ class AnswerDesk:
 
     """
 
-    def __init__(self, answers: Answers, vehicle: Vehicle) -> None:
+    def __init__(self, answers: Answers, vehicle: Vehicle, memory: Memory | None = None) -> None:
         outputs: dict[str, Output] = {"lights": LightsOutput(vehicle), "tilt": TiltOutput(vehicle)}
         self._answers = answers
-        self._players = [PatternPlayer(outputs[name]) for name in answers.show]
+        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in answers.show]
         self._waiting: tuple[Answer, float, bool] | None = None
         self.is_take_open = False
         self.notices: list[str] = []

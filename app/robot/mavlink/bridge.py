@@ -8,6 +8,7 @@ import threading
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -38,6 +39,7 @@ from app.robot.events import (
 from app.robot.mavlink.actions import Message, Step, build_steps
 from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
+from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
@@ -100,6 +102,8 @@ class MavlinkBridge:
         words.
     without_salutes
         Whether gestures are spotted without triggers, whatever the language's.
+    memory
+        File that keeps what lights and tilt were before a pattern; None: a restart forgets it.
 
     """
 
@@ -113,6 +117,7 @@ class MavlinkBridge:
         tell_answer: Callable[[Answer, int, str], None] = lambda answer, pulses, text: None,
         *,
         without_salutes: bool = False,
+        memory: Path | None = None,
     ) -> None:
         self._table = table
         self._link = link
@@ -120,7 +125,11 @@ class MavlinkBridge:
         self._tell_people = tell
         self._now = now
         self._tell_answer = tell_answer
-        self._answers = None if table.answers is None else AnswerDesk(table.answers, table.vehicle)
+        self._answers = (
+            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell))
+            if table.answers is not None
+            else None
+        )
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
