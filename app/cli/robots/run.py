@@ -408,7 +408,9 @@ def open_bridge(
             "by phrases alone, or with salutes"
         )
     key = read_signing_key(table, table_file)
-    link = open_link(address, table.vehicle.system, table.vehicle.component, key)
+    named = table.vehicle.key_file
+    time_file = None if named is None else table_file.parent / f"{named}.time"
+    link = open_link(address, table.vehicle.system, table.vehicle.component, key, time_file)
     now = source.now if isinstance(source, LiveSource) else None
     return MavlinkBridge(
         table,

@@ -57,6 +57,8 @@ CLOSE_SECONDS: Final = 3.5
 """Longest time that closing waits for the active order and the last texts, whatever the vehicle
 answers: a service that is stopped must let go of its vehicle."""
 
+SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
+
 SEVERITIES: Final = {
     "done": mavlink.MAV_SEVERITY_NOTICE,
     "replaced": mavlink.MAV_SEVERITY_NOTICE,
@@ -140,7 +142,7 @@ class MavlinkBridge:
         self._pictures = 0
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
-        self._silent = self._broken = False
+        self._silent = self._broken = self._is_answered = False
         self._reboots = 0
         self._fault: Exception | None = None
         # Reentrant, because a line for people may cause an event: that it cannot be printed.
@@ -364,6 +366,7 @@ class MavlinkBridge:
         for message, sender in packets:
             if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 continue
+            self._is_answered |= message.get_type() == "COMMAND_ACK"
             if self._answers is None or not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now))
         self._report(self._desk.check_deadline(now))
@@ -430,6 +433,11 @@ class MavlinkBridge:
         }[outcome.kind]
         self._say(text, SEVERITIES[outcome.kind])
         self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
+        # A vehicle drops without a word what is signed wrongly, or with a time before the last.
+        is_heard = self._peer.sender is not None and not self._silent
+        signs = self._table.vehicle.key_file is not None
+        if outcome.kind == "unanswered" and signs and is_heard and not self._is_answered:
+            self._say(SIGNATURE_REJECTED, mavlink.MAV_SEVERITY_ALERT)
 
     def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         """Announce a text here and on the displays of the vehicle's network."""
