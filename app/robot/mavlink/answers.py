@@ -16,12 +16,19 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from typing import Final, Protocol
+from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import PULSE_SECONDS, Answer
-from app.robot.mavlink.actions import LEAST_PWM, MOST_PWM, CommandStep, Message, Step
+from app.robot.mavlink.actions import (
+    LEAST_PWM,
+    MOST_PWM,
+    CommandStep,
+    LightsServo,
+    Message,
+    Step,
+)
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
 from app.robot.mavlink.table import Answers, Vehicle
@@ -79,70 +86,30 @@ def build_command(vehicle: Vehicle, command: int, *parameters: float) -> Message
     return CommandStep(command, parameters, vehicle.system, vehicle.component).build(0)
 
 
-class Output(Protocol):
-    """Protocol of what shows pulses.
-
-    Attributes
-    ----------
-    name
-        For people.
-    key
-        Its name in the memory, other for another vehicle or servo output.
-    vehicle
-        Whose it is.
-    pulse_seconds
-        Seconds from one pulse to the next.
-    command
-        Number of the command that sets it.
-    reported_by
-        Number of the message that reports its value.
-    tolerance
-        Largest difference of two values that count as equal.
-    travels
-        Whether it takes time to reach a value, so that those between are no pilot's.
-
-    """
-
-    name: str
-    key: str
-    vehicle: Vehicle
-    pulse_seconds: float
-    command: int
-    reported_by: int
-    tolerance: float
-    travels: bool
-
-    def read(self, message: Message) -> float | None:
-        """Return the value that a message of the vehicle reports; None for another message."""
-        ...
-
-    def find_peak(self, before: float) -> float:
-        """Return the value of a pulse, clearly different from the one before."""
-        ...
-
-    def build(self, value: float) -> Message:
-        """Build the message that sets a value."""
-        ...
-
-
 class LightsOutput:
-    """Lights, dimmed by a servo output; values are pulse lengths in microseconds; an `Output`."""
+    """Lights, dimmed by a servo output; values are pulse lengths in microseconds."""
 
-    name = "lights"
+    name: str = "lights"
     pulse_seconds = PULSE_SECONDS
     command: int = mavlink.MAV_CMD_DO_SET_SERVO
     reported_by: int = mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW
-    tolerance = 10.0
+    tolerance = 0.5
     travels = False
 
-    def __init__(self, vehicle: Vehicle) -> None:
+    def __init__(self, vehicle: Vehicle, servo: LightsServo | None = None) -> None:
         self.vehicle = vehicle
+        self._servo = servo
         self.key = f"{self.name} {vehicle.system} {vehicle.lights_servo}"
         # A message reports sixteen outputs.
         self._port, self._index = divmod(vehicle.lights_servo - 1, 16)
 
+    @property
+    def obstacle(self) -> str:
+        """Why the lights must not be set; empty if they may."""
+        return "" if self._servo is None else self._servo.obstacle
+
     def read(self, message: Message) -> float | None:
-        """Return the pulse length; see `Output`. An output that does nothing reports 0."""
+        """Return the pulse length that a message reports. An output that does nothing reports 0."""
         if message.get_type() != "SERVO_OUTPUT_RAW" or message.port != self._port:
             return None
         return float(getattr(message, f"servo{self._index + 1}_raw")) or None
@@ -159,12 +126,13 @@ class LightsOutput:
 class TiltOutput:
     """Camera tilt, by the autopilot's gimbal manager; values are degrees, up is positive."""
 
-    name = "tilt"
+    name: str = "tilt"
     pulse_seconds = NOD_SECONDS
     command: int = mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW
     reported_by: int = mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS
     tolerance = 2.0
     travels = True
+    obstacle = ""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
@@ -186,6 +154,12 @@ class TiltOutput:
         """Build the message that sets an angle and leaves the yaw as it is."""
         rest = (math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
         return build_command(self.vehicle, self.command, value, *rest)
+
+
+Output = LightsOutput | TiltOutput
+"""What shows pulses. `key` names it in the memory, `reported_by` the message that reports its
+value, `tolerance` is the largest difference of equal values; `travels`: those between are no
+pilot's."""
 
 
 class PatternPlayer:
@@ -231,6 +205,8 @@ class PatternPlayer:
         """Return, in few words, why no pattern can begin now; empty if one can."""
         if self._is_refused:
             return f"vehicle refuses to set {self.output.name}"
+        if self.output.obstacle:
+            return self.output.obstacle
         if now - self._heard > FRESH_SECONDS:
             return f"vehicle does not report {self.output.name}"
         if now - self._changed < PILOT_SECONDS:
@@ -360,7 +336,7 @@ class PatternPlayer:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
         if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
-            if self._lasted < self._yields:
+            if self._lasted < self._yields or self.output.obstacle:
                 return
             self._sent = now
             yield self._set(self._peak if self._is_on else self._before)
@@ -411,6 +387,8 @@ class AnswerDesk:
         The table's.
     memory
         Keeps what was before a pattern.
+    servo
+        What the lights' output does; None: it is known to be the lights'.
 
     Attributes
     ----------
@@ -421,8 +399,15 @@ class AnswerDesk:
 
     """
 
-    def __init__(self, answers: Answers, vehicle: Vehicle, memory: Memory | None = None) -> None:
-        outputs: dict[str, Output] = {"lights": LightsOutput(vehicle), "tilt": TiltOutput(vehicle)}
+    def __init__(
+        self,
+        answers: Answers,
+        vehicle: Vehicle,
+        memory: Memory | None = None,
+        servo: LightsServo | None = None,
+    ) -> None:
+        lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
+        outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
         self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in answers.show]
         self._waiting: tuple[Answer, float, bool] | None = None

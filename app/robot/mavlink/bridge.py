@@ -36,7 +36,7 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.mavlink.actions import Message, Step, build_steps
+from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
 from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
@@ -127,8 +127,9 @@ class MavlinkBridge:
         self._tell_people = tell
         self._now = now
         self._tell_answer = tell_answer
+        self._servo = LightsServo(table.vehicle)
         self._answers = (
-            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell))
+            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
             if table.answers is not None
             else None
         )
@@ -140,6 +141,7 @@ class MavlinkBridge:
         self._texts: list[Message] = []
         self._handed: list[Message] = []
         self._pictures = 0
+        self._asked = -math.inf
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
         self._silent = self._broken = self._is_answered = False
@@ -304,7 +306,8 @@ class MavlinkBridge:
         severity = mavlink.MAV_SEVERITY_CRITICAL if order.emergency else mavlink.MAV_SEVERITY_NOTICE
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
-        if fault := self._peer.find_fault(now):
+        is_known = self._servo.function is not None
+        if fault := self._peer.find_fault(now) or (is_known and self._find_obstacle(order)):
             self._report(Outcome(order, "stopped", fault))
             return
         if self._answers is not None:
@@ -366,6 +369,7 @@ class MavlinkBridge:
         for message, sender in packets:
             if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 continue
+            self._servo.hear(message)
             self._is_answered |= message.get_type() == "COMMAND_ACK"
             if self._answers is None or not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now))
@@ -376,7 +380,7 @@ class MavlinkBridge:
             self.answer(decision.answer, decision.reason)
         self._watch_vehicle(now)
         # Orders first: an emergency does not wait for texts, of which each may take its time.
-        due = [*self._handed, *self._desk.list_due(now)] if self._peer.is_proven(now) else []
+        due = self._list_orders(now) if self._peer.is_proven(now) else []
         self._handed.clear()
         due += self._texts
         self._texts.clear()
@@ -385,6 +389,21 @@ class MavlinkBridge:
             self._beaten = now
             due.append(build_heartbeat())
         return due
+
+    def _list_orders(self, now: float) -> list[Message]:
+        """Return the messages of orders to send now, and the question before the first light."""
+        due = [*self._handed]
+        if self._servo.function is None and now - self._asked >= self._table.vehicle.repeat_seconds:
+            self._asked = now
+            due.append(self._servo.ask())
+        if self._desk.order is not None and not self._find_obstacle(self._desk.order):
+            due += self._desk.list_due(now)
+        return due
+
+    def _find_obstacle(self, order: Order) -> str:
+        """Return why an order for the lights must not be sent; empty if it may."""
+        sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
+        return self._servo.obstacle if sets else ""
 
     def _list_answers(self, now: float) -> Iterator[Message]:
         """Yield the messages that show answers to the diver."""
@@ -422,6 +441,8 @@ class MavlinkBridge:
         if outcome is None:
             return
         words = outcome.order.words
+        if outcome.kind == "unanswered" and (obstacle := self._find_obstacle(outcome.order)):
+            outcome = replace(outcome, kind="stopped", answer=obstacle)
         text = {
             "done": f"done: {words}",
             "replaced": f"replaced: {words}",

@@ -11,7 +11,7 @@ import select
 import socket
 import time as clock
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 from urllib.parse import urlsplit
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -19,6 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.recognition.errors import VehicleError
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
 from app.robot.mavlink.peer import Sender
+from app.robot.mavlink.rest_link import RestLink
 from app.robot.publishing.robot_files import write_atomically
 
 LARGEST_DATAGRAM: Final = 4096
@@ -61,39 +62,6 @@ FORMS: Final = "udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or http://HOST[
 
 Packet = tuple[Message, Sender]
 """A message and where it came from."""
-
-
-class VehicleLink(Protocol):
-    """Protocol of a connection to a vehicle, used by one thread.
-
-    Attributes
-    ----------
-    expected
-        The only address that may be the vehicle's; None for any. It changes with a new connection,
-        whose other end may be another vehicle.
-    dropped
-        Number of messages that were damaged, or not signed as they should be.
-
-    """
-
-    dropped: int
-
-    @property
-    def expected(self) -> Sender | None:
-        """See the class."""
-        ...
-
-    def send(self, message: Message, to: Sender | None) -> None:
-        """Send a message to the vehicle's address; raises `OSError` when that fails."""
-        ...
-
-    def receive(self, seconds: float) -> list[Packet]:
-        """Return the messages that arrived; wait at most `seconds` for the first."""
-        ...
-
-    def close(self) -> None:
-        """End the connection."""
-        ...
 
 
 class Reader:
@@ -226,7 +194,7 @@ class DatagramLink:
         self._time = time or SigningTime(None, None)
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
-        self.expected = None if listens else address
+        self.expected: Sender | None = None if listens else address
         self.dropped = 0
         if listens:
             self._socket.bind(address)
@@ -345,6 +313,12 @@ class StreamLink:
             self._socket = None
 
 
+VehicleLink = DatagramLink | StreamLink | RestLink
+"""A connection to a vehicle, used by one thread. `expected` is the only address that may be the
+vehicle's; None for any. It changes with a new connection, whose other end may be another vehicle.
+`dropped` counts messages that were damaged, or not signed as they should be."""
+
+
 def open_link(
     address: str,
     system: int,
@@ -372,8 +346,6 @@ def open_link(
         or the time of the signatures cannot be kept.
 
     """
-    from app.robot.mavlink.rest_link import RestLink
-
     kind, _, rest = address.partition(":")
     try:
         if kind in ("http", "https"):

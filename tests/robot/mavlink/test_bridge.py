@@ -43,7 +43,7 @@ from tests.api.recordings import recording_of
 from tests.robot.languages import language_of, run_listener, spoken
 from tests.robot.mavlink.vehicle import Ardusub, sailing
 
-TABLE = {
+TABLE: dict[str, Any] = {
     "format": "osg-studio/vehicle-table",
     "version": 1,
     "gestures": {

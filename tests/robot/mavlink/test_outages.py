@@ -15,6 +15,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import Answer
+from app.robot.mavlink import answers
 from app.robot.mavlink.actions import CommandStep
 from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.bridge import MavlinkBridge
@@ -167,6 +168,46 @@ def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start
             wait_until(lambda: not file.exists())
             time.sleep(0.5)
             assert vehicle.pulse == (1800 if pilot is None else pilot)
+
+
+@pytest.mark.parametrize(
+    ("function", "reason"),
+    [
+        (33, "output 1 drives a motor"),
+        (84, "output 1 drives a motor"),
+        (None, "function of output 1 unknown"),
+    ],
+)
+def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
+    monkeypatch: pytest.MonkeyPatch, function: int | None, reason: str
+) -> None:
+    monkeypatch.setattr(answers, "LATEST_SECONDS", 1.5)
+    changes = {
+        **LIGHTS,
+        "vehicle": {**TABLE["vehicle"], "lights_servo": 1, "give_up_seconds": 1},
+    }
+    with answering(changes, function=function, servo=1) as diver:
+        time.sleep(1.2)
+        diver.show("stop")
+        assert diver.wait_for("not shown") == f"not shown to the diver, {reason}: repeat"
+        diver.confirm("bright")
+        assert diver.wait_for("NOT DONE", "done") == f"NOT DONE, {reason}: lights 50 %"
+    assert diver.vehicle.shown == []
+    assert diver.vehicle.obeyed == []
+
+
+def test_a_pilot_sets_lights_a_little_less_bright_than_the_pulse() -> None:
+    dive = Dive("lights")
+    dive.value = 1100.0
+    dive.wait(6)
+    dive.desk.give(Answer.refused, dive.now)
+    while dive.value == 1100:
+        dive.wait(STEP)
+    dive.wait(STEP)
+    assert dive.value == 1660
+    dive.value = 1655.0
+    dive.wait(40)
+    assert dive.value == 1655
 
 
 @pytest.mark.parametrize(
