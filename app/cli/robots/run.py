@@ -9,7 +9,7 @@ import json
 import signal
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing, contextmanager, nullcontext, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
@@ -200,6 +200,9 @@ def run_robot(
 
     """
     with ExitStack() as opened:
+        # First in, last out: a signal ends the robot in order while a bridge opens or closes too.
+        if not options.upload:
+            opened.enter_context(handle_signals(control.stop, control.reload))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
         frames = opened.enter_context(closing(open_source(options.source)))
@@ -240,9 +243,7 @@ def run_robot(
         )
         control.begin(runtime, watcher, bridge)
         begin()
-        signals = handle_signals(control.stop, control.reload)
-        with nullcontext() if options.upload else signals:
-            recognised = emit_all(runtime, channels)
+        recognised = emit_all(runtime, channels)
     return bool(recognised) or frames.live
 
 
@@ -322,7 +323,7 @@ def profile_until_stopped(options: RobotOptions) -> None:
 
 @contextmanager
 def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
-    """Stop after the current frame on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
+    """Stop in order on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
     actions = {signal.SIGINT: stop, signal.SIGTERM: stop}
     if hasattr(signal, "SIGHUP"):  # not on Windows
         actions[signal.SIGHUP] = reload
@@ -408,7 +409,9 @@ def open_bridge(
             "by phrases alone, or with salutes"
         )
     key = read_signing_key(table, table_file)
-    link = open_link(address, table.vehicle.system, table.vehicle.component, key)
+    named = table.vehicle.key_file
+    time_file = None if named is None else table_file.parent / f"{named}.time"
+    link = open_link(address, table.vehicle.system, table.vehicle.component, key, time_file)
     now = source.now if isinstance(source, LiveSource) else None
     return MavlinkBridge(
         table,
@@ -418,6 +421,7 @@ def open_bridge(
         now,
         tell_answer,
         without_salutes=without_salutes,
+        memory=table_file.with_name(f"{table_file.name}.before"),
     )
 
 

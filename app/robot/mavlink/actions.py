@@ -9,7 +9,7 @@ camera are only acknowledged.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -33,6 +33,10 @@ OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 
 LEAST_PWM, MOST_PWM = 1100, 1900
 """Pulse lengths in microseconds at which the lights are off, and brightest."""
+
+MOTORS: Final = (range(33, 41), range(70, 71), range(73, 75), range(81, 86), range(160, 180))
+"""Functions of outputs that drive motors: motors 1 to 8, throttles, boost and motors 9 to 12,
+13 to 32 (ArduPilot, `SRV_Channel.h`)."""
 
 TARGET_TOLERANCE: Final = 0.3
 """Largest difference in metres between the requested depth and the target that the vehicle reports.
@@ -87,31 +91,38 @@ class Reported:
                 self.altitude_error = message.alt_error
 
 
-class Step(Protocol):
-    """Protocol of one request to a vehicle."""
+class LightsServo:
+    """What the vehicle's output for the lights does: that of a motor must never be set.
+
+    Attributes
+    ----------
+    function
+        Number of its ``SERVOn_FUNCTION``; None: not known.
+
+    """
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
+        self._name = f"SERVO{vehicle.lights_servo}_FUNCTION"
+        self.function: int | None = None
 
     @property
-    def command(self) -> int | None:
-        """Number of the command whose acknowledgement answers it; None for no answer."""
-        ...
+    def obstacle(self) -> str:
+        """Why the lights must not be set, in few words; empty if they may."""
+        if self.function is None:
+            return f"function of output {self._vehicle.lights_servo} unknown"
+        is_motor = any(self.function in motors for motors in MOTORS)
+        return f"output {self._vehicle.lights_servo} drives a motor" if is_motor else ""
 
-    @property
-    def mode(self) -> int | None:
-        """Mode that it sets; None for no mode."""
-        ...
+    def hear(self, message: Message) -> None:
+        """Note the vehicle's answer to the question."""
+        if message.get_type() == "PARAM_VALUE" and message.param_id == self._name:
+            self.function = round(message.param_value)
 
-    @property
-    def moves(self) -> bool:
-        """Whether it moves the vehicle."""
-        ...
-
-    def build(self, repetition: int) -> Message:
-        """Build the message; `repetition` counts from 0."""
-        ...
-
-    def is_done(self, reported: Reported) -> bool:
-        """Return whether the vehicle's reports since the first sending prove the step done."""
-        ...
+    def ask(self) -> Message:
+        """Build the question what the output does."""
+        address = (self._vehicle.system, self._vehicle.component)
+        return mavlink.MAVLink_param_request_read_message(*address, self._name.encode(), -1)
 
 
 @dataclass(frozen=True)
@@ -204,6 +215,11 @@ class DepthStep:
         return abs(target + self.metres) <= TARGET_TOLERANCE
 
 
+Step = CommandStep | ModeStep | DepthStep
+"""A request: the `command` whose acknowledgement answers it, the `mode` that it sets, whether it
+`moves` the vehicle."""
+
+
 def describe_sent(action: Action, vehicle: Vehicle) -> str:
     """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
     if isinstance(action, Depth) and isinstance(action.metres, SlotName):
@@ -222,7 +238,6 @@ def _describe_step(step: Step) -> str:
         case CommandStep(command=command, parameters=parameters):
             name = mavlink.enums["MAV_CMD"][command].name.removeprefix("MAV_CMD_")
             return f"{name} {', '.join(f'{each:g}' for each in parameters)}"
-    raise ValueError(f"{step!r} is no step")
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:

@@ -4,7 +4,11 @@ Lights are set as the table's lights action sets them (``DO_SET_SERVO``), the ti
 manager's (``DO_GIMBAL_MANAGER_PITCHYAW``), never by ``MANUAL_CONTROL``, which would take the sticks
 from the pilot. A pattern begins only when the vehicle reports the present value, and the pilot did
 not change it a moment ago. A value that is neither ours nor the one before is the pilot's: the
-pattern ends, and that value stays.
+pattern ends, and that value stays. The value before is kept in a file while a pattern is played, so
+that a robot that starts again restores it too.
+
+Times are seconds of a steady clock, or heard seconds: only those in which the vehicle reports the
+value, so that a lost link uses up none.
 """
 
 from __future__ import annotations
@@ -12,12 +16,20 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Iterator, Sequence
-from typing import Final, Protocol
+from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import PULSE_SECONDS, Answer
-from app.robot.mavlink.actions import LEAST_PWM, MOST_PWM, CommandStep, Message, Step
+from app.robot.mavlink.actions import (
+    LEAST_PWM,
+    MOST_PWM,
+    CommandStep,
+    LightsServo,
+    Message,
+    Step,
+)
+from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
 from app.robot.mavlink.table import Answers, Vehicle
 
@@ -37,11 +49,11 @@ AGAIN_SECONDS: Final = 0.2
 """Seconds after which a value that is not reported is sent again: twice the reports' period."""
 
 LONGEST_LEVEL: Final = 1.5
-"""Seconds after which the next value is sent though the present one was never reported."""
+"""Heard seconds after which the next value is sent though the present one was never reported."""
 
 LONGEST_RESTORE: Final = 30.0
-"""Seconds, while the vehicle is heard, after which the value before is given up: the vehicle does
-not do what it is asked."""
+"""Heard seconds after which the value before is given up: the vehicle does not do what it is
+asked."""
 
 PAUSE_SECONDS: Final = 1.0
 """Seconds between two patterns, twice the time between two pulses, so that they are counted
@@ -74,66 +86,30 @@ def build_command(vehicle: Vehicle, command: int, *parameters: float) -> Message
     return CommandStep(command, parameters, vehicle.system, vehicle.component).build(0)
 
 
-class Output(Protocol):
-    """Protocol of what shows pulses.
-
-    Attributes
-    ----------
-    name
-        For people.
-    vehicle
-        Whose it is.
-    pulse_seconds
-        Seconds from one pulse to the next.
-    command
-        Number of the command that sets it.
-    reported_by
-        Number of the message that reports its value.
-    tolerance
-        Largest difference of two values that count as equal.
-    travels
-        Whether it takes time to reach a value, so that those between are no pilot's.
-
-    """
-
-    name: str
-    vehicle: Vehicle
-    pulse_seconds: float
-    command: int
-    reported_by: int
-    tolerance: float
-    travels: bool
-
-    def read(self, message: Message) -> float | None:
-        """Return the value that a message of the vehicle reports; None for another message."""
-        ...
-
-    def find_peak(self, before: float) -> float:
-        """Return the value of a pulse, clearly different from the one before."""
-        ...
-
-    def build(self, value: float) -> Message:
-        """Build the message that sets a value."""
-        ...
-
-
 class LightsOutput:
-    """Lights, dimmed by a servo output; values are pulse lengths in microseconds; an `Output`."""
+    """Lights, dimmed by a servo output; values are pulse lengths in microseconds."""
 
-    name = "lights"
+    name: str = "lights"
     pulse_seconds = PULSE_SECONDS
     command: int = mavlink.MAV_CMD_DO_SET_SERVO
     reported_by: int = mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW
-    tolerance = 10.0
+    tolerance = 0.5
     travels = False
 
-    def __init__(self, vehicle: Vehicle) -> None:
+    def __init__(self, vehicle: Vehicle, servo: LightsServo | None = None) -> None:
         self.vehicle = vehicle
+        self._servo = servo
+        self.key = f"{self.name} {vehicle.system} {vehicle.lights_servo}"
         # A message reports sixteen outputs.
         self._port, self._index = divmod(vehicle.lights_servo - 1, 16)
 
+    @property
+    def obstacle(self) -> str:
+        """Why the lights must not be set; empty if they may."""
+        return "" if self._servo is None else self._servo.obstacle
+
     def read(self, message: Message) -> float | None:
-        """Return the pulse length; see `Output`. An output that does nothing reports 0."""
+        """Return the pulse length that a message reports. An output that does nothing reports 0."""
         if message.get_type() != "SERVO_OUTPUT_RAW" or message.port != self._port:
             return None
         return float(getattr(message, f"servo{self._index + 1}_raw")) or None
@@ -150,15 +126,17 @@ class LightsOutput:
 class TiltOutput:
     """Camera tilt, by the autopilot's gimbal manager; values are degrees, up is positive."""
 
-    name = "tilt"
+    name: str = "tilt"
     pulse_seconds = NOD_SECONDS
     command: int = mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW
     reported_by: int = mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS
     tolerance = 2.0
     travels = True
+    obstacle = ""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
+        self.key = f"{self.name} {vehicle.system}"
 
     def read(self, message: Message) -> float | None:
         """Return the pitch of the reported attitude, a quaternion w, x, y, z."""
@@ -178,6 +156,12 @@ class TiltOutput:
         return build_command(self.vehicle, self.command, value, *rest)
 
 
+Output = LightsOutput | TiltOutput
+"""What shows pulses. `key` names it in the memory, `reported_by` the message that reports its
+value, `tolerance` is the largest difference of equal values; `travels`: those between are no
+pilot's."""
+
+
 class PatternPlayer:
     """State of one output; every method takes the time in seconds of a steady clock.
 
@@ -185,11 +169,14 @@ class PatternPlayer:
     ----------
     output
         What shows the pulses.
+    memory
+        Keeps the value before a pattern until it is restored.
 
     """
 
-    def __init__(self, output: Output) -> None:
+    def __init__(self, output: Output, memory: Memory) -> None:
         self.output = output
+        self._memory = memory
         self._is_refused = False
         self._value = self._before = self._expected = math.nan
         # What is sent for a pulse, and what is then reported: the vehicle may have limits.
@@ -198,9 +185,16 @@ class PatternPlayer:
         self._heard = self._changed = self._asked = self._rested = self._handed = -math.inf
         # Whether a pulse is on, and whether the following parts of the pattern are.
         self._is_on: bool | None = None
-        self._begun = self._sent = -math.inf
+        self._sent = self._ticked = -math.inf
+        # Heard seconds of the present part, and those before an order's value is restored over.
+        self._lasted = self._yields = 0.0
+        # Whether the next report ends a silence, in which the pilot may have set anything.
+        self._was_silent = True
         self._following: deque[bool] = deque()
         self._unanswered = 0
+        if kept := memory.find(output.key, 3):
+            self._before, self._peak, self._shown_peak = kept
+            self._is_on = False
 
     @property
     def is_active(self) -> bool:
@@ -211,6 +205,8 @@ class PatternPlayer:
         """Return, in few words, why no pattern can begin now; empty if one can."""
         if self._is_refused:
             return f"vehicle refuses to set {self.output.name}"
+        if self.output.obstacle:
+            return self.output.obstacle
         if now - self._heard > FRESH_SECONDS:
             return f"vehicle does not report {self.output.name}"
         if now - self._changed < PILOT_SECONDS:
@@ -227,20 +223,25 @@ class PatternPlayer:
         self._peak = self._shown_peak = self.output.find_peak(self._value)
         self._has_shown = False
         self._following = deque([True, False] * pulses)
-        self._turn(self._following.popleft(), now)
+        self._remember()
+        self._turn(self._following.popleft())
 
     def stop(self, now: float) -> None:
-        """End the pattern and restore the value before it."""
+        """End the pattern and restore the value before it, once the vehicle is heard."""
         if self._following:
             self._following.clear()
-            self._turn(False, now)
+            self._turn(False)
 
     def hand_over(self, value: float, now: float) -> Sequence[Message]:
         """Leave the output to an order that sets `value`; return what restores the value before."""
-        restored = [self._set(self._before)] if self.is_active else []
-        self._drop()
         self._expected, self._handed = value, now
-        return restored
+        if not self.is_active:
+            return []
+        self._following.clear()
+        self._turn(False)
+        # The order may be lost: until it is given up, what is reported shows who has set it.
+        self._yields = self.output.vehicle.give_up_seconds
+        return [self._set(self._before)]
 
     def forget(self) -> None:
         """Forget pattern and value, of a vehicle that has started again."""
@@ -270,9 +271,12 @@ class PatternPlayer:
         return True
 
     def _hear_value(self, value: float, now: float) -> None:
+        self._was_silent |= now - self._heard > FRESH_SECONDS
         last, self._value, self._heard = self._value, value, now
         if self.is_active:
-            if not self._is_ours(value):
+            if self._yields and self._equals(value, self._expected):
+                self._drop()
+            elif not self._is_ours(value):
                 self._drop()
                 self._changed = self._rested = now
         elif self._equals(value, self._expected):
@@ -284,9 +288,16 @@ class PatternPlayer:
             or now - self._handed < PAUSE_SECONDS
         ):
             self._changed = now
+        self._was_silent = False
 
     def _is_ours(self, value: float) -> bool:
-        """Return whether a value is that of a pulse, or that before, and so no pilot's."""
+        """Return whether a value is that of a pulse, or that before, and so no pilot's.
+
+        After a silence only these two are: what lies between them does not travel any more.
+        """
+        if self._was_silent:
+            ours = (self._before, self._peak, self._shown_peak)
+            return any(self._equals(value, sent) for sent in ours)
         low, high = sorted((self._before, self._peak))
         lies_between = low - self.output.tolerance <= value <= high + self.output.tolerance
         if self.output.travels:
@@ -296,6 +307,7 @@ class PatternPlayer:
         # The first pulse shows how far the vehicle goes.
         if self._is_on and not self._has_shown and lies_between:
             self._shown_peak = value
+            self._remember()
         self._has_shown |= self._equals(value, self._shown_peak)
         return self._equals(value, self._shown_peak)
 
@@ -311,17 +323,21 @@ class PatternPlayer:
     def list_due(self, now: float) -> Iterator[Message]:
         """Yield the messages to send now: a value again until it is reported, then the next."""
         is_fresh = now - self._heard <= FRESH_SECONDS
+        self._lasted += min(now - self._ticked, FRESH_SECONDS) if is_fresh else 0
+        self._ticked = now
         if not is_fresh:
             self.stop(now)
             if now - self._asked > ASK_SECONDS:
                 self._asked = now
                 yield self._ask_for_reports()
-        if not self.is_active:
+            # Nothing is set unseen: the pilot may have another value by now.
             return
-        if is_fresh:
+        if self.is_active:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
         if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
+            if self._lasted < self._yields or self.output.obstacle:
+                return
             self._sent = now
             yield self._set(self._peak if self._is_on else self._before)
 
@@ -330,20 +346,25 @@ class PatternPlayer:
         if not self._following:
             # A report on its way before the last message proves nothing.
             restored = self._is_reached and now - self._sent > REPORT_SECONDS
-            if restored or now - self._begun > LONGEST_RESTORE:
+            if restored or self._lasted > LONGEST_RESTORE + self._yields:
                 self._drop()
                 self._rested = now
-        elif now - self._begun > LONGEST_LEVEL or (
+        elif self._lasted > LONGEST_LEVEL or (
             self._is_reached and now - self._sent >= self.output.pulse_seconds / 2
         ):
-            self._turn(self._following.popleft(), now)
+            self._turn(self._following.popleft())
 
-    def _turn(self, is_on: bool, now: float) -> None:
-        self._is_on, self._begun, self._sent = is_on, now, -math.inf
+    def _turn(self, is_on: bool) -> None:
+        self._is_on, self._sent, self._lasted, self._yields = is_on, -math.inf, 0.0, 0.0
+
+    def _remember(self) -> None:
+        self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
 
     def _drop(self) -> None:
         self._following.clear()
         self._is_on = None
+        self._yields = 0.0
+        self._memory.keep(self.output.key)
 
     def _set(self, value: float) -> Message:
         self._unanswered += 1
@@ -364,6 +385,10 @@ class AnswerDesk:
     ----------
     answers, vehicle
         The table's.
+    memory
+        Keeps what was before a pattern.
+    servo
+        What the lights' output does; None: it is known to be the lights'.
 
     Attributes
     ----------
@@ -374,10 +399,17 @@ class AnswerDesk:
 
     """
 
-    def __init__(self, answers: Answers, vehicle: Vehicle) -> None:
-        outputs: dict[str, Output] = {"lights": LightsOutput(vehicle), "tilt": TiltOutput(vehicle)}
+    def __init__(
+        self,
+        answers: Answers,
+        vehicle: Vehicle,
+        memory: Memory | None = None,
+        servo: LightsServo | None = None,
+    ) -> None:
+        lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
+        outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
-        self._players = [PatternPlayer(outputs[name]) for name in answers.show]
+        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in answers.show]
         self._waiting: tuple[Answer, float, bool] | None = None
         self.is_take_open = False
         self.notices: list[str] = []

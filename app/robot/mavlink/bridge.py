@@ -8,6 +8,7 @@ import threading
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -35,9 +36,10 @@ from app.robot.events import (
     TakeRecognized,
     TakeRejected,
 )
-from app.robot.mavlink.actions import Message, Step, build_steps
+from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
 from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
+from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
@@ -54,6 +56,8 @@ HEARTBEAT_SECONDS: Final = 1.0
 CLOSE_SECONDS: Final = 3.5
 """Longest time that closing waits for the active order and the last texts, whatever the vehicle
 answers: a service that is stopped must let go of its vehicle."""
+
+SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
 SEVERITIES: Final = {
     "done": mavlink.MAV_SEVERITY_NOTICE,
@@ -100,6 +104,8 @@ class MavlinkBridge:
         words.
     without_salutes
         Whether gestures are spotted without triggers, whatever the language's.
+    memory
+        File that keeps what lights and tilt were before a pattern; None: a restart forgets it.
 
     """
 
@@ -113,6 +119,7 @@ class MavlinkBridge:
         tell_answer: Callable[[Answer, int, str], None] = lambda answer, pulses, text: None,
         *,
         without_salutes: bool = False,
+        memory: Path | None = None,
     ) -> None:
         self._table = table
         self._link = link
@@ -120,7 +127,12 @@ class MavlinkBridge:
         self._tell_people = tell
         self._now = now
         self._tell_answer = tell_answer
-        self._answers = None if table.answers is None else AnswerDesk(table.answers, table.vehicle)
+        self._servo = LightsServo(table.vehicle)
+        self._answers = (
+            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
+            if table.answers is not None
+            else None
+        )
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
@@ -129,9 +141,10 @@ class MavlinkBridge:
         self._texts: list[Message] = []
         self._handed: list[Message] = []
         self._pictures = 0
+        self._asked = -math.inf
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
-        self._silent = self._broken = False
+        self._silent = self._broken = self._is_answered = False
         self._reboots = 0
         self._fault: Exception | None = None
         # Reentrant, because a line for people may cause an event: that it cannot be printed.
@@ -293,7 +306,8 @@ class MavlinkBridge:
         severity = mavlink.MAV_SEVERITY_CRITICAL if order.emergency else mavlink.MAV_SEVERITY_NOTICE
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
-        if fault := self._peer.find_fault(now):
+        is_known = self._servo.function is not None
+        if fault := self._peer.find_fault(now) or (is_known and self._find_obstacle(order)):
             self._report(Outcome(order, "stopped", fault))
             return
         if self._answers is not None:
@@ -355,6 +369,8 @@ class MavlinkBridge:
         for message, sender in packets:
             if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 continue
+            self._servo.hear(message)
+            self._is_answered |= message.get_type() == "COMMAND_ACK"
             if self._answers is None or not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now))
         self._report(self._desk.check_deadline(now))
@@ -364,7 +380,7 @@ class MavlinkBridge:
             self.answer(decision.answer, decision.reason)
         self._watch_vehicle(now)
         # Orders first: an emergency does not wait for texts, of which each may take its time.
-        due = [*self._handed, *self._desk.list_due(now)] if self._peer.is_proven(now) else []
+        due = self._list_orders(now) if self._peer.is_proven(now) else []
         self._handed.clear()
         due += self._texts
         self._texts.clear()
@@ -373,6 +389,21 @@ class MavlinkBridge:
             self._beaten = now
             due.append(build_heartbeat())
         return due
+
+    def _list_orders(self, now: float) -> list[Message]:
+        """Return the messages of orders to send now, and the question before the first light."""
+        due = [*self._handed]
+        if self._servo.function is None and now - self._asked >= self._table.vehicle.repeat_seconds:
+            self._asked = now
+            due.append(self._servo.ask())
+        if self._desk.order is not None and not self._find_obstacle(self._desk.order):
+            due += self._desk.list_due(now)
+        return due
+
+    def _find_obstacle(self, order: Order) -> str:
+        """Return why an order for the lights must not be sent; empty if it may."""
+        sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
+        return self._servo.obstacle if sets else ""
 
     def _list_answers(self, now: float) -> Iterator[Message]:
         """Yield the messages that show answers to the diver."""
@@ -410,6 +441,8 @@ class MavlinkBridge:
         if outcome is None:
             return
         words = outcome.order.words
+        if outcome.kind == "unanswered" and (obstacle := self._find_obstacle(outcome.order)):
+            outcome = replace(outcome, kind="stopped", answer=obstacle)
         text = {
             "done": f"done: {words}",
             "replaced": f"replaced: {words}",
@@ -421,6 +454,11 @@ class MavlinkBridge:
         }[outcome.kind]
         self._say(text, SEVERITIES[outcome.kind])
         self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
+        # A vehicle drops without a word what is signed wrongly, or with a time before the last.
+        is_heard = self._peer.sender is not None and not self._silent
+        signs = self._table.vehicle.key_file is not None
+        if outcome.kind == "unanswered" and signs and is_heard and not self._is_answered:
+            self._say(SIGNATURE_REJECTED, mavlink.MAV_SEVERITY_ALERT)
 
     def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:
         """Announce a text here and on the displays of the vehicle's network."""

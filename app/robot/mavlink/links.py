@@ -10,7 +10,8 @@ import math
 import select
 import socket
 import time as clock
-from typing import Final, Protocol
+from pathlib import Path
+from typing import Final
 from urllib.parse import urlsplit
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -18,6 +19,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.recognition.errors import VehicleError
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
 from app.robot.mavlink.peer import Sender
+from app.robot.mavlink.rest_link import RestLink
+from app.robot.publishing.robot_files import write_atomically
 
 LARGEST_DATAGRAM: Final = 4096
 """Bytes of a datagram that are read; a vehicle's or router's are at most 1500."""
@@ -44,44 +47,21 @@ SIGNING_BEGAN: Final = 1_420_070_400
 SIGNING_TICKS: Final = 100_000
 """Units of that time in a second."""
 
+AHEAD_SECONDS: Final = 120
+"""Seconds by which the kept signature time is ahead: twice the period of its renewal."""
+
+RENEW_SECONDS: Final = 60
+"""Least seconds by which the kept time stays ahead: it is written once in a minute."""
+
+LATEST_TIME: Final = 2**47
+"""Signature time in the year 2059, half the range of its 48 bits: a later one was not written by
+the bridge."""
+
 FORMS: Final = "udpout:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or http://HOST[:PORT][/PATH]"
 
 
 Packet = tuple[Message, Sender]
 """A message and where it came from."""
-
-
-class VehicleLink(Protocol):
-    """Protocol of a connection to a vehicle, used by one thread.
-
-    Attributes
-    ----------
-    expected
-        The only address that may be the vehicle's; None for any. It changes with a new connection,
-        whose other end may be another vehicle.
-    dropped
-        Number of messages that were damaged, or not signed as they should be.
-
-    """
-
-    dropped: int
-
-    @property
-    def expected(self) -> Sender | None:
-        """See the class."""
-        ...
-
-    def send(self, message: Message, to: Sender | None) -> None:
-        """Send a message to the vehicle's address; raises `OSError` when that fails."""
-        ...
-
-    def receive(self, seconds: float) -> list[Packet]:
-        """Return the messages that arrived; wait at most `seconds` for the first."""
-        ...
-
-    def close(self) -> None:
-        """End the connection."""
-        ...
 
 
 class Reader:
@@ -109,7 +89,11 @@ class Reader:
         faults = 0
         while faults < self._most_faults:
             known, bad = dict(self._signing.stream_timestamps), self._signing.badsig_count
+            # A restart goes ahead of its vehicle, whose first message is not too old for that.
+            ahead = self._signing.timestamp
+            self._signing.timestamp -= AHEAD_SECONDS * SIGNING_TICKS
             message = self._codec.parse_char(data)
+            self._signing.timestamp = max(ahead, self._signing.timestamp)
             data = b""
             if self._signing.badsig_count != bad:
                 # pymavlink notes the time of a message before it verifies the signature: a forged
@@ -134,6 +118,58 @@ def create_signing(key: bytes | None) -> mavlink.MAVLinkSigning:
     return signing
 
 
+class SigningTime:
+    """Time of the signatures, which never goes back, whatever the machine's clock does.
+
+    A vehicle rejects what is older than the last message it heard. A file holds a time ahead of all
+    that was sent, where the next start begins unless the clock is later.
+
+    Parameters
+    ----------
+    key
+        Key of the signatures; None for none.
+    file
+        File of the time, beside the key; None: there is none.
+
+    Raises
+    ------
+    VehicleError
+        When the file holds no time, or cannot be written: the next start would not be heard.
+
+    """
+
+    def __init__(self, key: bytes | None, file: Path | None) -> None:
+        self.signing = create_signing(key)
+        self._file, self._began = file, clock.monotonic()
+        try:
+            kept = int(file.read_bytes()) if file is not None and file.exists() else 0
+            if not 0 <= kept < LATEST_TIME:
+                raise ValueError("out of range")
+        except (OSError, ValueError) as error:
+            raise VehicleError(
+                f"{file} holds no signature time ({error}); set the clock and delete the file"
+            ) from error
+        self._base = self.signing.timestamp = max(self.signing.timestamp, kept)
+        self._keep(self._base)
+
+    def go_on(self) -> None:
+        """Let the time go on with a steady clock; called before each message that is sent."""
+        passed = round((clock.monotonic() - self._began) * SIGNING_TICKS)
+        time = self.signing.timestamp = max(self.signing.timestamp, self._base + passed)
+        if time + RENEW_SECONDS * SIGNING_TICKS > self._kept:
+            self._keep(time + AHEAD_SECONDS * SIGNING_TICKS)
+
+    def _keep(self, time: int) -> None:
+        self._kept = time
+        try:
+            if self._file is not None:
+                write_atomically(self._file, str(time).encode())
+        except OSError as error:
+            raise VehicleError(
+                f"{self._file} cannot be written ({error.strerror}): make its folder writable"
+            ) from error
+
+
 class DatagramLink:
     """UDP to a vehicle; a `VehicleLink`.
 
@@ -147,33 +183,35 @@ class DatagramLink:
         Our MAVLink system id: that of the vehicle, of which this computer is a part.
     listens
         Whether the vehicle sends first; its address is then not known before.
-    key
-        Key of the signatures; None for none.
+    time
+        Time and key of the signatures; None for none.
 
     """
 
     def __init__(
-        self, host: str, port: int, system: int, *, listens: bool, key: bytes | None = None
+        self, host: str, port: int, system: int, *, listens: bool, time: SigningTime | None = None
     ) -> None:
+        self._time = time or SigningTime(None, None)
         family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
         self._socket = socket.socket(family, socket.SOCK_DGRAM)
-        self.expected = None if listens else address
+        self.expected: Sender | None = None if listens else address
         self.dropped = 0
         if listens:
             self._socket.bind(address)
         self._to: Sender | None = None
         self._codec = mavlink.MAVLink(self, system, OUR_COMPONENT)
-        self._codec.signing = create_signing(key)
+        self._codec.signing = self._time.signing
 
     def write(self, data: bytes) -> None:
-        """Send bytes; pymavlink calls this. Nothing is sent before the vehicle is known."""
-        if self._to is not None:
-            self._socket.sendto(data, self._to)
+        """Send bytes; pymavlink calls this."""
+        self._socket.sendto(data, self._to or ())
 
     def send(self, message: Message, to: Sender | None) -> None:
-        """Send a message."""
+        """Send a message; nothing before the vehicle is known."""
         self._to = to if self.expected is None else self.expected
-        self._codec.send(message)
+        if self._to is not None:
+            self._time.go_on()
+            self._codec.send(message)
 
     def receive(self, seconds: float) -> list[Packet]:
         """Return the messages that arrived."""
@@ -201,16 +239,16 @@ class StreamLink:
         Address to connect to.
     system
         Our MAVLink system id.
-    key
-        Key of the signatures; None for none.
+    time
+        Time and key of the signatures; None for none.
 
     """
 
-    def __init__(self, host: str, port: int, system: int, key: bytes | None = None) -> None:
+    def __init__(self, host: str, port: int, system: int, time: SigningTime | None = None) -> None:
         self.expected: Sender = (0,)
         self._address = (host, port)
         self._system = system
-        self._signing = create_signing(key)
+        self._time = time or SigningTime(None, None)
         self.dropped = 0
         self._tried = 0.0
         self._socket: socket.socket | None = None
@@ -230,6 +268,7 @@ class StreamLink:
         if self._socket is None:
             self._connect()
         if to in (None, self.expected):
+            self._time.go_on()
             self._codec.send(message)
 
     def receive(self, seconds: float) -> list[Packet]:
@@ -265,8 +304,8 @@ class StreamLink:
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNANSWERED_MS)
         self.expected = (self.expected[0] + 1,)
         self._codec = mavlink.MAVLink(self, self._system, OUR_COMPONENT)
-        self._codec.signing = self._signing
-        self._reader = Reader(self._signing)
+        self._codec.signing = self._time.signing
+        self._reader = Reader(self._time.signing)
 
     def _drop(self) -> None:
         if self._socket is not None:
@@ -274,7 +313,19 @@ class StreamLink:
             self._socket = None
 
 
-def open_link(address: str, system: int, component: int, key: bytes | None = None) -> VehicleLink:
+VehicleLink = DatagramLink | StreamLink | RestLink
+"""A connection to a vehicle, used by one thread. `expected` is the only address that may be the
+vehicle's; None for any. It changes with a new connection, whose other end may be another vehicle.
+`dropped` counts messages that were damaged, or not signed as they should be."""
+
+
+def open_link(
+    address: str,
+    system: int,
+    component: int,
+    key: bytes | None = None,
+    time_file: Path | None = None,
+) -> VehicleLink:
     """Open the link of an address.
 
     Parameters
@@ -285,16 +336,16 @@ def open_link(address: str, system: int, component: int, key: bytes | None = Non
         MAVLink ids of the vehicle.
     key
         Key of 32 bytes that signs all messages; None: they are not signed.
+    time_file
+        File that keeps the time of the signatures; None: a restart relies on the clock.
 
     Raises
     ------
     VehicleError
-        When the address has another form, nothing answers there, or messages cannot be signed
-        there.
+        When the address has another form, nothing answers there, messages cannot be signed there,
+        or the time of the signatures cannot be kept.
 
     """
-    from app.robot.mavlink.rest_link import RestLink
-
     kind, _, rest = address.partition(":")
     try:
         if kind in ("http", "https"):
@@ -308,9 +359,10 @@ def open_link(address: str, system: int, component: int, key: bytes | None = Non
         host, port = place.hostname, place.port
         if kind not in ("udpout", "udpin", "tcp") or not host or not port or place.path:
             raise ValueError("no such form")
+        time = SigningTime(key, time_file)
         if kind == "tcp":
-            return StreamLink(host, port, system, key)
-        return DatagramLink(host, port, system, listens=kind == "udpin", key=key)
+            return StreamLink(host, port, system, time)
+        return DatagramLink(host, port, system, listens=kind == "udpin", time=time)
     except VehicleError:
         raise
     except ValueError as error:

@@ -23,9 +23,16 @@ ANSWER_SECONDS: Final = 2.0
 POLL_SECONDS: Final = 0.1
 """Seconds between two polls: well below the vehicle's heartbeat period of one second."""
 
-WANTED: Final = ("HEARTBEAT", "COMMAND_ACK", "SYSTEM_TIME", "VFR_HUD", "NAV_CONTROLLER_OUTPUT")
-"""Messages that report the state of the vehicle; further ones are polled once they are requested
-(``SET_MESSAGE_INTERVAL``)."""
+WANTED: Final = (
+    "HEARTBEAT",
+    "COMMAND_ACK",
+    "SYSTEM_TIME",
+    "VFR_HUD",
+    "NAV_CONTROLLER_OUTPUT",
+    "PARAM_VALUE",
+)
+"""Messages that report the state of the vehicle, and what an output does; further ones are polled
+once they are requested (``SET_MESSAGE_INTERVAL``)."""
 
 RENAMED: Final = {"type": "mavtype"}
 """Fields with another name in mavlink2rest, where ``type`` names the message."""

@@ -292,6 +292,37 @@ def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
+    installed_models: None,
+    sample_clips: Path,
+    thin_clip: Callable[[str], Path],
+    tmp_path: Path,
+    number: signal.Signals,
+) -> None:
+    """The vehicle denies the emergency, so the bridge goes on with it at the end of the clip."""
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    from tests.robot.mavlink.vehicle import sailing
+
+    table = tmp_path / "vehicle.toml"
+    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
+    language = sample_clips.parent / "osg-table-2.json"
+    with (
+        sailing(refused=frozenset({176})) as vehicle,  # MAV_CMD_DO_SET_MODE
+        running(
+            *("robot", "--language", language, "--source", thin_clip("line-test-1")),
+            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
+        ) as process,
+    ):
+        until(process, "source_ended")
+        time.sleep(0.3)
+        process.send_signal(number)
+        _, error = process.communicate(timeout=30)
+    assert process.returncode == 0, error
+    assert "NOT DONE, robot has ended" in error
+
+
+@pytest.mark.slow
 def test_a_robot_without_files_waits_for_them_on_its_page(
     installed_models: None, tmp_path: Path
 ) -> None:

@@ -23,6 +23,8 @@ def as_json(message: Any) -> dict[str, Any]:
             value = {"bits": value}
         elif name in message.fieldenums_by_name:
             value = {"type": mavlink.enums[message.fieldenums_by_name[name]][value].name}
+        elif isinstance(value, str):  # one character a byte, filled with zeros
+            value = [*value.ljust(16, "\0")]
         served["mavtype" if name == "type" else name] = value
     return served
 

@@ -31,6 +31,8 @@ def answering(changes: Mapping[str, object] = LIGHTS, **settings: Any) -> Iterat
     """Put a diver into the water whose vehicle answers, and reports its lights already."""
     with diving(changes=changes, **settings) as diver:
         wait_until(lambda: bool(diver.vehicle.reports))
+        if diver.vehicle.function is not None:
+            wait_until(lambda: diver.bridge._servo.function == diver.vehicle.function)
         time.sleep(0.05)
         yield diver
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -42,7 +43,7 @@ from tests.api.recordings import recording_of
 from tests.robot.languages import language_of, run_listener, spoken
 from tests.robot.mavlink.vehicle import Ardusub, sailing
 
-TABLE = {
+TABLE: dict[str, Any] = {
     "format": "osg-studio/vehicle-table",
     "version": 1,
     "gestures": {
@@ -106,6 +107,7 @@ class Diver:
         address: str,
         table: VehicleTable,
         link: VehicleLink | None = None,
+        memory: Path | None = None,
     ) -> None:
         self.time = 0.0
         self.delay = 0.0
@@ -114,7 +116,7 @@ class Diver:
             self.vehicle = vehicle
         link = link or open_link(address, table.vehicle.system, table.vehicle.component)
         clock: Callable[[], float] = lambda: self.time + self.delay  # noqa: E731
-        self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock)
+        self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock, memory=memory)
         self.bridge.publish(build_language_changed(0.0, crew()))
 
     def show(
@@ -159,13 +161,16 @@ def wait_until(happens: Callable[[], bool]) -> None:
 
 @contextmanager
 def diving(
-    kind: str = "udpin", changes: Mapping[str, object] = TABLE, **settings: Any
+    kind: str = "udpin",
+    changes: Mapping[str, object] = TABLE,
+    memory: Path | None = None,
+    **settings: Any,
 ) -> Iterator[Diver]:
     """Put a diver and a vehicle into the water, with a bridge between them."""
     table = VehicleTable.model_validate({**TABLE, **changes})
     with sailing(kind=kind, **settings) as vehicle:
         scheme = {"udpin": "udpout", "tcpin": "tcp"}[kind]
-        diver = Diver(vehicle, f"{scheme}:127.0.0.1:{vehicle.port}", table)
+        diver = Diver(vehicle, f"{scheme}:127.0.0.1:{vehicle.port}", table, memory=memory)
         with closing(diver.bridge):
             yield diver
 

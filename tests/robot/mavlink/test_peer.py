@@ -21,9 +21,6 @@ from app.robot.mavlink.links import (
     MOST_DATAGRAMS,
     MOST_FAULTS,
     DatagramLink,
-    Reader,
-    create_signing,
-    open_link,
 )
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
@@ -365,60 +362,6 @@ def test_a_new_connection_gets_no_command_before_a_heartbeat(
                 second.sendall(packed(beat()))
                 while "COMMAND_LONG" not in receive(second):
                     pass
-
-
-KEY = bytes(range(32))
-
-
-def test_a_signed_vehicle_is_obeyed_and_an_unsigned_one_is_not_heard(tmp_path: Any) -> None:
-    signed = VehicleTable.model_validate({**TABLE, **QUICK})
-    for key, answer in [(KEY, "done: hold"), (None, "NOT DONE"), (bytes(32), "NOT DONE")]:
-        with sailing(key=key) as vehicle:
-            link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1, KEY)
-            diver = Diver(vehicle, "", signed, link)
-            with closing(diver.bridge):
-                diver.confirm("stop")
-                assert diver.wait_for("done", "NOT DONE").startswith(answer)
-            assert vehicle.obeyed == (["ALT_HOLD"] if key == KEY else [])
-            assert (link.dropped > 0) == (key != KEY)
-
-
-def test_a_forged_signature_from_the_future_does_not_deafen_the_bridge() -> None:
-    signing = mavlink.MAVLinkSigning()
-    signing.secret_key, signing.sign_outgoing = bytes(32), True
-    signing.timestamp = 2**47
-    with (
-        listening_diver_of(KEY) as (diver, port),
-        closing(Socket(port)) as forger,
-        sailing(kind=f"udpout:{port}", key=KEY) as vehicle,
-    ):
-        forger.send_always(lambda: [packed(beat(), signing=signing)], 0.005)
-        diver.confirm("stop")
-        assert diver.wait_for("done", "NOT DONE") == "done: hold"
-    assert vehicle.obeyed == ["ALT_HOLD"]
-
-
-def test_a_signed_message_counts_once_also_beside_a_forged_one() -> None:
-    def signing(key: bytes) -> Any:
-        made = create_signing(key)
-        made.link_id = 7
-        return made
-
-    ours = create_signing(KEY)
-    once = packed(beat(), signing=signing(KEY))
-    forged = packed(beat(), signing=signing(bytes(32)))
-    counts = [len(Reader(ours).read(data)[0]) for data in (once + forged, once + forged, once)]
-    assert counts == [1, 0, 0]
-
-
-@contextmanager
-def listening_diver_of(key: bytes) -> Iterator[tuple[Diver, int]]:
-    port = free_port()
-    table = VehicleTable.model_validate(TABLE)
-    link = open_link(f"udpin:127.0.0.1:{port}", 1, 1, key)
-    diver = Diver(None, "", table, link)
-    with closing(diver.bridge):
-        yield diver, port
 
 
 def test_a_flood_leaves_time_to_send() -> None:

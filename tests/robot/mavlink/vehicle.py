@@ -55,6 +55,10 @@ class Ardusub:
         Pulse length of its lights at the start, and the largest that it sets, in microseconds.
     key
         Key of its signatures; None: it signs nothing.
+    function
+        What the lights' output does, as its parameter says; None: the question is not answered.
+    servo
+        Output of the lights.
     reports
         Messages that it was asked to report, by number: the lights' output, the gimbal's attitude.
     shown
@@ -78,6 +82,8 @@ class Ardusub:
     lights: float = 1100.0
     brightest: float = 1900.0
     key: bytes | None = None
+    function: int | None = 0
+    servo: int = 13
     reports: set[int] = field(default_factory=set)
     shown: list[tuple[float, str, float]] = field(default_factory=list)
 
@@ -177,6 +183,10 @@ class Ardusub:
             case "COMMAND_LONG":
                 self.asked += 1
                 self._hear_command(message)
+            case "PARAM_REQUEST_READ" if self.function is not None:
+                assert message.param_id == f"SERVO{self.servo}_FUNCTION"
+                name, kind = message.param_id.encode(), mavlink.MAV_PARAM_TYPE_INT16
+                self._send(mavlink.MAVLink_param_value_message(name, self.function, kind, 900, 77))
             case "SET_POSITION_TARGET_GLOBAL_INT":
                 self.asked += 1
                 if self.mode == mavlink.SUB_MODE_ALT_HOLD and self.target != message.alt:

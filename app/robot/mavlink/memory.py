@@ -1,0 +1,72 @@
+"""Memory of the bridge: small files that outlive a restart of the robot or a loss of its power."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Final
+
+from app.robot.publishing.robot_files import write_atomically
+
+MOST_BYTES: Final = 4096
+"""Largest size in bytes of a file that is read: a few numbers."""
+
+
+class Memory:
+    """Numbers under names, kept in a file; without one, for this run alone.
+
+    A file that cannot be read counts as empty. One that cannot be written is told once, and the
+    bridge goes on without it.
+
+    Parameters
+    ----------
+    file
+        The file; it exists only while there is something to keep. None: there is none.
+    tell
+        Called with a line for people.
+
+    """
+
+    def __init__(self, file: Path | None = None, tell: Callable[[str], None] = print) -> None:
+        self._file, self._tell, self._told = file, tell, False
+        self._kept = {} if file is None else read_numbers(file)
+
+    def find(self, name: str, count: int) -> list[float] | None:
+        """Return so many numbers that were kept under a name; None where there are not."""
+        found = self._kept.get(name, [])
+        return found if len(found) == count else None
+
+    def keep(self, name: str, *numbers: float) -> None:
+        """Keep numbers under a name, also through a loss of power; none to forget it."""
+        if self._kept.pop(name, []) == [*numbers] == []:
+            return
+        if numbers:
+            self._kept[name] = [*map(float, numbers)]
+        if self._file is None:
+            return
+        try:
+            if self._kept:
+                write_atomically(self._file, json.dumps(self._kept, allow_nan=False).encode())
+            else:
+                self._file.unlink(missing_ok=True)
+        except OSError as error:
+            if not self._told:
+                self._tell(f"{self._file} cannot be written ({error.strerror}): a restart forgets")
+            self._told = True
+
+
+def read_numbers(file: Path) -> dict[str, list[float]]:
+    """Read what a memory's file holds; nothing of it that is not numbers."""
+    try:
+        with file.open("rb") as opened:
+            found = json.loads(opened.read(MOST_BYTES))
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return {
+        name: numbers
+        for name, numbers in (found.items() if isinstance(found, dict) else ())
+        if isinstance(numbers, list)
+        and all(isinstance(each, float) and math.isfinite(each) for each in numbers)
+    }

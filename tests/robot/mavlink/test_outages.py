@@ -1,0 +1,228 @@
+"""Outages: lights and tilt are as before after any silence, unless the pilot has set them."""
+
+from __future__ import annotations
+
+import math
+import time
+from contextlib import closing
+from pathlib import Path
+from typing import Any, Literal
+
+import pytest
+
+pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from app.robot.commands.answers import Answer
+from app.robot.mavlink import answers
+from app.robot.mavlink.actions import CommandStep
+from app.robot.mavlink.answers import AnswerDesk
+from app.robot.mavlink.bridge import MavlinkBridge
+from app.robot.mavlink.links import open_link
+from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
+from tests.robot.mavlink.test_answers import LIGHTS, answering
+from tests.robot.mavlink.test_bridge import TABLE, crew, wait_until
+from tests.robot.mavlink.vehicle import sailing
+
+OUTAGES = (5.0, 12.0, 36.0, 600.0)
+STEP = 0.05
+Shown = Literal["lights", "tilt"]
+BEFORE = {"lights": 1800.0, "tilt": 0.0}
+PILOT = {"lights": 1655.0, "tilt": -5.0}
+
+
+class Dive:
+    """An answer desk and what it sets, in simulated time; a link that can be lost.
+
+    Attributes
+    ----------
+    value
+        Present value of lights or tilt.
+    linked
+        Whether anything arrives, in either direction.
+
+    """
+
+    def __init__(self, shown: Shown) -> None:
+        self.shown = shown
+        self.desk = AnswerDesk(Answers(show=(shown,)), Vehicle())
+        self.now = 0.0
+        self.value = BEFORE[shown]
+        self.linked = True
+        self.wait(3.0)
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        for _ in range(round(seconds / STEP)):
+            self.now += STEP
+            if self.linked:
+                self.desk.hear(self._report(), self.now)
+            self.obey(*self.desk.list_due(self.now, may_begin=True))
+
+    def obey(self, *messages: Any) -> None:
+        """Set what messages request, if they arrive."""
+        for message in messages:
+            if self.linked and message.command == mavlink.MAV_CMD_DO_SET_SERVO:
+                self.value = message.param2
+            if self.linked and message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
+                self.value = message.param1
+
+    def _report(self) -> Any:
+        if self.shown == "lights":
+            outputs = [*[1500] * 12, round(self.value), *[1500] * 3]
+            report = mavlink.MAVLink_servo_output_raw_message(0, 0, *outputs)
+        else:
+            half = math.radians(self.value) / 2
+            attitude = [math.cos(half), 0.0, math.sin(half), 0.0]
+            report = mavlink.MAVLink_gimbal_device_attitude_status_message(
+                0, 0, 0, 0, attitude, 0, 0, 0, 0
+            )
+        report.pack(mavlink.MAVLink(None, 1, 1))
+        return report
+
+    def begin_pulse(self) -> None:
+        """Give an answer, and wait until its first pulse is shown."""
+        self.desk.give(Answer.refused, self.now)
+        while self.value == BEFORE[self.shown]:
+            self.wait(STEP)
+
+    def order(self) -> None:
+        """Give an order for the same output, whose messages are lost."""
+        command = {
+            "lights": mavlink.MAV_CMD_DO_SET_SERVO,
+            "tilt": mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
+        }[self.shown]
+        self.obey(*self.desk.hand_over(CommandStep(command, (13.0, 1400.0), 1, 1), self.now))
+
+
+@pytest.mark.parametrize("seconds", OUTAGES)
+@pytest.mark.parametrize("state", ["pattern", "restoring", "order", "emergency"])
+@pytest.mark.parametrize("shown", ["lights", "tilt"])
+def test_what_was_before_a_pattern_is_restored_after_any_outage(
+    shown: Shown, state: str, seconds: float
+) -> None:
+    dive = Dive(shown)
+    dive.begin_pulse()
+    dive.linked = False
+    if state == "restoring":
+        dive.desk.stop(dive.now)
+    elif state == "order":
+        dive.order()
+    elif state == "emergency":
+        dive.desk.give(Answer.done, dive.now, emergency=True)
+    dive.wait(seconds)
+    assert dive.value != BEFORE[shown]
+    dive.linked = True
+    dive.wait(0.5 if state != "order" else 11)
+    assert dive.value == BEFORE[shown]
+    dive.wait(5)
+    assert dive.value == BEFORE[shown]
+    assert dive.desk.is_idle
+
+
+@pytest.mark.parametrize("seconds", OUTAGES)
+@pytest.mark.parametrize("shown", ["lights", "tilt"])
+def test_what_the_pilot_sets_during_an_outage_stays(shown: Shown, seconds: float) -> None:
+    dive = Dive(shown)
+    dive.begin_pulse()
+    dive.linked = False
+    dive.wait(seconds)
+    dive.value = PILOT[shown]
+    dive.linked = True
+    dive.wait(40)
+    assert dive.value == PILOT[shown]
+    assert dive.desk.is_idle
+
+
+def test_nothing_is_set_while_nothing_is_reported() -> None:
+    dive = Dive("lights")
+    dive.begin_pulse()
+    dive.linked = False
+    dive.wait(3)
+    sets = [
+        message.command
+        for _ in range(600)
+        for message in dive.desk.list_due(dive.now, may_begin=True)
+    ]
+    assert mavlink.MAV_CMD_DO_SET_SERVO not in sets
+
+
+@pytest.mark.parametrize("pilot", [None, 1300.0])
+def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start(
+    tmp_path: Path, pilot: float | None
+) -> None:
+    """A fresh bridge knows nothing but the file that the killed one left."""
+    table = VehicleTable.model_validate({**TABLE, **LIGHTS})
+    kept, file = b"", tmp_path / "vehicle.toml.before"
+    with answering(lights=1800.0, memory=file) as diver:
+        diver.show(None)
+        wait_until(lambda: diver.vehicle.pulse == 1100)
+        kept = file.read_bytes()
+    assert not file.exists()
+    file.write_bytes(kept)
+    with sailing(lights=1100.0 if pilot is None else pilot) as vehicle:
+        link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
+        lines: list[str] = []
+        with closing(MavlinkBridge(table, link, crew, lines.append, memory=file)):
+            wait_until(lambda: not file.exists())
+            time.sleep(0.5)
+            assert vehicle.pulse == (1800 if pilot is None else pilot)
+
+
+@pytest.mark.parametrize(
+    ("function", "reason"),
+    [
+        (33, "output 1 drives a motor"),
+        (84, "output 1 drives a motor"),
+        (None, "function of output 1 unknown"),
+    ],
+)
+def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
+    monkeypatch: pytest.MonkeyPatch, function: int | None, reason: str
+) -> None:
+    monkeypatch.setattr(answers, "LATEST_SECONDS", 1.5)
+    changes = {
+        **LIGHTS,
+        "vehicle": {**TABLE["vehicle"], "lights_servo": 1, "give_up_seconds": 1},
+    }
+    with answering(changes, function=function, servo=1) as diver:
+        time.sleep(1.2)
+        diver.show("stop")
+        assert diver.wait_for("not shown") == f"not shown to the diver, {reason}: repeat"
+        diver.confirm("bright")
+        assert diver.wait_for("NOT DONE", "done") == f"NOT DONE, {reason}: lights 50 %"
+    assert diver.vehicle.shown == []
+    assert diver.vehicle.obeyed == []
+
+
+def test_a_pilot_sets_lights_a_little_less_bright_than_the_pulse() -> None:
+    dive = Dive("lights")
+    dive.value = 1100.0
+    dive.wait(6)
+    dive.desk.give(Answer.refused, dive.now)
+    while dive.value == 1100:
+        dive.wait(STEP)
+    dive.wait(STEP)
+    assert dive.value == 1660
+    dive.value = 1655.0
+    dive.wait(40)
+    assert dive.value == 1655
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"[1]", b'{"lights 1 13": [NaN, 1100.0, 1100.0]}', b"\xff"]
+)
+def test_a_damaged_memory_sets_nothing(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / "vehicle.toml.before"
+    file.write_bytes(content)
+    with answering(lights=1100.0, memory=file) as diver:
+        time.sleep(0.5)
+        assert diver.vehicle.shown == []
+
+
+def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_path: Path) -> None:
+    with answering(memory=tmp_path / "no folder" / "before") as diver:
+        diver.show(None)
+        assert "cannot be written" in diver.wait_for(str(tmp_path))
+        wait_until(lambda: len(diver.vehicle.shown) == 2)
