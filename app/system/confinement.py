@@ -78,6 +78,10 @@ _DENIED: Final = {
         132, 235, 261, 280,  # utime, utimes, futimesat, utimensat
         188, 189, 190, 197, 198, 199,  # setxattr, removexattr, and those of links and files
         29, 64, 68, 240,  # shmget, semget, msgget, mq_open
+        141, 142, 144, 203,  # setpriority, sched_setparam, sched_setscheduler, sched_setaffinity
+        251, 314,  # ioprio_set, sched_setattr
+        253, 294, 300,  # inotify_init, inotify_init1, fanotify_init
+        248, 249, 250,  # add_key, request_key, keyctl
     ),
     "aarch64": (
         198,  # socket
@@ -86,10 +90,15 @@ _DENIED: Final = {
         88,  # utimensat
         5, 6, 7, 14, 15, 16,  # setxattr, removexattr, and those of links and files
         180, 186, 190, 194,  # mq_open, msgget, semget, shmget
+        140, 118, 119, 122,  # setpriority, sched_setparam, sched_setscheduler, sched_setaffinity
+        30, 274,  # ioprio_set, sched_setattr
+        26, 262,  # inotify_init1, fanotify_init
+        217, 218, 219,  # add_key, request_key, keyctl
     ),
 }
 """System calls by machine: sockets, processes, and what Landlock leaves to every process of a user:
-owner, rights, times and attributes of all files, and memory that outlives the process."""
+owner, rights, times and attributes of all files, the processor's and the disk's time of all
+processes, names of files that change, keys, and memory that outlives the process."""
 # fmt: on
 
 _DENIED_ANYWHERE: Final = (
@@ -114,8 +123,8 @@ def confine(grants: Iterable[tuple[Path, int]]) -> bool:
     """Confine this thread and its later children to the system's libraries and what is granted.
 
     Call it while the process has one thread. It may start no process, make no socket, connect to
-    nothing, change neither rights of files nor limits of others and, with a new kernel, signal no
-    process outside.
+    nothing, change neither rights of files nor limits and priority of processes and, with a new
+    kernel, signal no process outside.
 
     Parameters
     ----------

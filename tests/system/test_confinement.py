@@ -132,6 +132,29 @@ def test_limits_of_other_processes_are_not_changed(place: Path) -> None:
 
 
 @filtered
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "os.setpriority(os.PRIO_PROCESS, os.getppid(), 19)",
+        "os.sched_setaffinity(os.getppid(), {0})",
+        "os.sched_setscheduler(os.getppid(), os.SCHED_IDLE, os.sched_param(0))",
+    ],
+)
+def test_no_other_process_gets_less_of_the_processor(place: Path, expression: str) -> None:
+    assert attempt(place, expression) == "PermissionError"
+
+
+@filtered
+@pytest.mark.parametrize(
+    "call", ["inotify_init1(0)", "syscall({add_key}, b'user', b'k', b'v', 1, -1)"]
+)
+def test_neither_names_of_files_are_watched_nor_keys_kept(place: Path, call: str) -> None:
+    add_key = {"x86_64": 248, "aarch64": 217}[platform.machine()]
+    expression = f'__import__("ctypes").CDLL(None).{call.format(add_key=add_key)}'
+    assert attempt(place, expression) == "-1"
+
+
+@filtered
 def test_no_memory_is_kept_that_would_outlive_the_job(place: Path) -> None:
     kept = '__import__("ctypes").CDLL(None).shmget(0, 4096, 0o600)'
     assert attempt(place, kept) == "-1"

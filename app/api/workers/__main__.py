@@ -43,6 +43,8 @@ def main() -> None:
             start = json.loads(line)
             os.environ.clear()
             os.environ.update(start["environment"])
+            with contextlib.suppress(OSError):
+                os.nice(5)  # The page stays responsive while a clip is read.
             confine([(Path(path), right) for path, right in start["grants"]])
             run(start["task"], start["scratch"], *start["limits"])
 
@@ -148,8 +150,6 @@ def limit_resources(memory_bytes: int, cpu_seconds: int, file_bytes: int) -> Non
             resource.setrlimit(kind, (most, most))
     # Crashes are expected here, and core dumps of videos are useless.
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    with contextlib.suppress(OSError):
-        os.nice(5)  # The page stays responsive while a clip is read.
 
 
 def show_name(name: str) -> None:
