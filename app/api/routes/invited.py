@@ -28,6 +28,7 @@ from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.recognition import Gesture
 from app.store import Invitation, require_open
+from app.store.invitations import closed
 from app.store.models import VIDEO
 from app.ui.charts import data_url
 from app.ui.direction_marks import mark_gesture
@@ -103,7 +104,7 @@ async def send_take(
     await require_quota(quota, studio, least)
     received = studio.clips.new_partial()
     try:
-        upload = await receive_file(request, received, studio.settings, reserved=reserved)
+        upload = await _receive_within(invitation, request, received, studio, reserved)
         receive = studio.invitations.receive
         count = partial(receive, invitation.id, label=label, diver=diver, size=upload.size)
         # Counted before it is read, so that files that cannot be used are limited as well.
@@ -129,6 +130,20 @@ async def send_take(
 def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedTakeView:
     """Tell whether a take was added, or why it was returned."""
     return InvitedTakeView(**studio.invitations.take(invitation.id, take_id).model_dump())
+
+
+async def _receive_within(
+    invitation: Invitation, request: Request, received: Path, studio: Studio, reserved: int
+) -> Upload:
+    """Receive a file as `receive_file`; one that does not state its size ends at the limit."""
+    largest, left = studio.settings.max_clip_bytes, invitation.most_bytes - invitation.bytes
+    settings = studio.settings.model_copy(update={"max_clip_bytes": min(largest, left)})
+    try:
+        return await receive_file(request, received, settings, reserved=reserved)
+    except ProblemError as error:
+        if error.code == "too_large" and left < largest:
+            raise closed("used_up") from error
+        raise
 
 
 async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Inspected:

@@ -102,6 +102,17 @@ def send(
     )
 
 
+def send_in_chunks(guest: httpx.Client, content: bytes) -> httpx.Response:
+    """Send a take whose size is not stated."""
+    head = b'--b\r\nContent-Disposition: form-data; name="file"; filename="take.mp4"\r\n\r\n'
+    return guest.post(
+        f"{INVITED}/takes",
+        params={"label": "circle", "diver": "Bo"},
+        content=iter([head, content, b"\r\n--b--\r\n"]),
+        headers={"Content-Type": "multipart/form-data; boundary=b"},
+    )
+
+
 def show(
     studio: Studio,
     made: dict[str, Any],
@@ -461,6 +472,8 @@ def test_what_is_sent_is_within_the_limits_a_video_and_the_makers(
         too_much = video + bytes(200_000)
         assert_closed(send(guest, too_much), "used_up")
         assert_problem(send(guest, bytes(MOST_BYTES + 2**17)), 413, "too_large")
+        assert_closed(send_in_chunks(guest, too_much), "used_up")
+        assert not list((studio.settings.data_dir / "clips").glob("*.part*"))
         assert studio.invitations.get(made["id"]).takes == 2
         sent = send(guest, video)
         assert sent.status_code == 202
