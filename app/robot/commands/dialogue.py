@@ -45,7 +45,7 @@ class RecognizedGesture:
     pair
         The two gestures between which the take lies; None: it lies between no two.
     novelty
-        That of the gesture, see `Recognition`; NaN or 0 where it is not known.
+        That of the gesture, see `Recognition`; 0 where it is not known. NaN is not sure.
 
     """
 
@@ -56,7 +56,7 @@ class RecognizedGesture:
     start: float | None = None
     body_id: str = ""
     pair: tuple[str, str] | None = None
-    novelty: float = math.nan
+    novelty: float = 0.0
 
     @property
     def began(self) -> float:
@@ -263,9 +263,9 @@ class CommandDialogue:
         least = 0.0 if gesture.pair else self.rules.least_confidence
         if is_emergency := gesture.label in self.rules.emergency:
             least = max(least, self.rules.emergency_confidence)
-        # False for NaN too: what is no share of 1 is no confidence.
+        # False for NaN too, of both: what is no share of 1 is no confidence.
         sure = least <= gesture.confidence <= 1
-        sure &= not (is_emergency and gesture.novelty > EMERGENCY_LIMIT)
+        sure &= gesture.novelty <= (EMERGENCY_LIMIT if is_emergency else math.inf)
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
         if sure and gesture.label in self.rules.cancel:
@@ -401,7 +401,7 @@ class CommandDialogue:
     ) -> str | None:
         """Return why a gesture or message is not of here and now; None where it is."""
         what, age = _name(input_), now - input_.stamp
-        if math.isnan(input_.stamp):
+        if math.isnan(input_.stamp + input_.began):
             return f"ignored: the {what} has no stamp"
         if not abs(age) <= oldest:
             return f"ignored: the {what} is stamped {age:.1f} s ago, stale or of another clock"

@@ -42,18 +42,8 @@ TARGET_TOLERANCE: Final = 0.3
 """Largest difference in metres between the requested depth and the target that the vehicle reports.
 The target is computed from the measured depth, which pressure and waves change by about as much."""
 
-IGNORE_ALL_BUT_DEPTH: Final = (
-    mavlink.POSITION_TARGET_TYPEMASK_X_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_Y_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_VX_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_VY_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_VZ_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_AX_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_AY_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_AZ_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_YAW_IGNORE
-    | mavlink.POSITION_TARGET_TYPEMASK_YAW_RATE_IGNORE
-)
+IGNORE_ALL_BUT_DEPTH: Final = 0b1101_1111_1011
+"""All bits of ``POSITION_TARGET_TYPEMASK`` but ``Z_IGNORE`` (4) and ``FORCE_SET`` (512)."""
 
 
 @dataclass
@@ -220,6 +210,12 @@ Step = CommandStep | ModeStep | DepthStep
 `moves` the vehicle."""
 
 
+def name_entry(enum: str, number: int) -> str:
+    """Return the name of a number in one of MAVLink's enumerations; empty for no name."""
+    known = mavlink.enums[enum]
+    return str(known[number].name.removeprefix(f"{enum}_")) if number in known else ""
+
+
 def describe_sent(action: Action, vehicle: Vehicle) -> str:
     """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
     if isinstance(action, Depth) and isinstance(action.metres, SlotName):
@@ -232,12 +228,12 @@ def describe_sent(action: Action, vehicle: Vehicle) -> str:
 def _describe_step(step: Step) -> str:
     match step:
         case ModeStep(mode=mode):
-            return f"DO_SET_MODE {mavlink.enums['SUB_MODE'][mode].name.removeprefix('SUB_MODE_')}"
+            return f"DO_SET_MODE {name_entry('SUB_MODE', mode)}"
         case DepthStep(metres=metres):
             return f"SET_POSITION_TARGET_GLOBAL_INT depth {metres:g} m"
         case CommandStep(command=command, parameters=parameters):
-            name = mavlink.enums["MAV_CMD"][command].name.removeprefix("MAV_CMD_")
-            return f"{name} {', '.join(f'{each:g}' for each in parameters)}"
+            shown = ", ".join(f"{each:g}" for each in parameters)
+            return f"{name_entry('MAV_CMD', command)} {shown}"
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:

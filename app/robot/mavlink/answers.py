@@ -192,7 +192,7 @@ class PatternPlayer:
         self._was_silent = True
         self._following: deque[bool] = deque()
         self._unanswered = 0
-        if kept := memory.find(output.key, 3):
+        if len(kept := memory.find(output.key)) == 3:
             self._before, self._peak, self._shown_peak = kept
             self._is_on = False
 

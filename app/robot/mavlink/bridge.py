@@ -62,16 +62,14 @@ SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 SEVERITIES: Final = {
     "done": mavlink.MAV_SEVERITY_NOTICE,
     "replaced": mavlink.MAV_SEVERITY_NOTICE,
-    "refused": mavlink.MAV_SEVERITY_WARNING,
-    "unanswered": mavlink.MAV_SEVERITY_WARNING,
     "cancelled": mavlink.MAV_SEVERITY_NOTICE,
-    "stopped": mavlink.MAV_SEVERITY_WARNING,
     "waits": mavlink.MAV_SEVERITY_CRITICAL,
 }
 
 
 ANSWERS: Final = {
     "done": Answer.done,
+    "late": Answer.done,
     "cancelled": Answer.done,
     "refused": Answer.refused,
     "unanswered": Answer.refused,
@@ -448,16 +446,16 @@ class MavlinkBridge:
             "replaced": f"replaced: {words}",
             "refused": f"refused ({outcome.answer}): {words}",
             "unanswered": f"NOT DONE, no answer: {words}",
+            "late": f"done after all: {words}",
             "cancelled": f"{', '.join(filter(None, ('cancelled', outcome.answer)))}: {words}",
             "stopped": f"NOT DONE, {outcome.answer}: {words}",
             "waits": f"{outcome.answer}: {words}",
         }[outcome.kind]
-        self._say(text, SEVERITIES[outcome.kind])
+        self._say(text, SEVERITIES.get(outcome.kind, mavlink.MAV_SEVERITY_WARNING))
         self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
         # A vehicle drops without a word what is signed wrongly, or with a time before the last.
-        is_heard = self._peer.sender is not None and not self._silent
-        signs = self._table.vehicle.key_file is not None
-        if outcome.kind == "unanswered" and signs and is_heard and not self._is_answered:
+        is_deaf = not (self._silent or self._is_answered or self._peer.sender is None)
+        if outcome.kind == "unanswered" and is_deaf and self._table.vehicle.key_file:
             self._say(SIGNATURE_REJECTED, mavlink.MAV_SEVERITY_ALERT)
 
     def _say(self, text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> None:

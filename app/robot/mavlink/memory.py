@@ -33,10 +33,9 @@ class Memory:
         self._file, self._tell, self._told = file, tell, False
         self._kept = {} if file is None else read_numbers(file)
 
-    def find(self, name: str, count: int) -> list[float] | None:
-        """Return so many numbers that were kept under a name; None where there are not."""
-        found = self._kept.get(name, [])
-        return found if len(found) == count else None
+    def find(self, name: str) -> list[float]:
+        """Return the numbers that were kept under a name; none where there are none."""
+        return self._kept.get(name, [])
 
     def keep(self, name: str, *numbers: float) -> None:
         """Keep numbers under a name, also through a loss of power; none to forget it."""

@@ -12,7 +12,7 @@ from typing import Final, Literal
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.actions import OUR_COMPONENT, Message, Reported, Step
+from app.robot.mavlink.actions import OUR_COMPONENT, Message, Reported, Step, name_entry
 from app.robot.mavlink.table import Vehicle
 
 EMERGENCY_SECONDS: Final = 60.0
@@ -38,14 +38,16 @@ MOST_OVERRIDES: Final = 2
 old one. The first answer may be a late one to an earlier request."""
 
 LATE_SECONDS: Final = 10.0
-"""Seconds after a request in which the vehicle may still take that mode, for an order that was
-cancelled or replaced meanwhile: no pilot has set it then."""
+"""Seconds after a request, or heard seconds after it was given up, in which the vehicle may still
+take that mode, for an order that was cancelled or replaced meanwhile: no pilot has set it then."""
 
 OTHER_PILOT: Final = "the pilot changed the mode"
 
 DISARMED: Final = "vehicle is disarmed"
 
-OutcomeKind = Literal["done", "refused", "unanswered", "replaced", "cancelled", "stopped", "waits"]
+OutcomeKind = Literal[
+    "done", "refused", "unanswered", "replaced", "cancelled", "stopped", "waits", "late"
+]
 
 
 @dataclass(frozen=True)
@@ -83,9 +85,10 @@ class Outcome:
         The order.
     kind
         ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
-        time. ``replaced``: by a newer order. ``cancelled``: by the diver; `answer` says
-        if it was sent before, so that the vehicle may still do it. ``stopped``: for the reason in
-        `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
+        time. ``replaced``: by a newer order. ``cancelled``: by the diver. ``stopped``:
+        for the reason in `answer`. Of these three `answer` says if the order was sent before, so
+        that the vehicle may still do it. ``waits``: it goes on, in spite of the reason in `answer`.
+        ``late``: the vehicle shows what was given up, after all.
     answer
         Result of a refusal, such as ``DENIED``, or the reason.
 
@@ -130,6 +133,9 @@ class OrderDesk:
         self._armed: bool | None = None
         self._waits = False
         self._watch = ModeWatch(None)
+        self._late: Order | None = None
+        self._heard = self._late_by = 0.0
+        self._is_heard = False
 
     def give(self, order: Order, now: float) -> Outcome | None:
         """Begin an order.
@@ -147,7 +153,7 @@ class OrderDesk:
                 return Outcome(order, "stopped", DISARMED)
         replaced = None if self.order is None else Outcome(self.order, "replaced")
         seconds = EMERGENCY_SECONDS if order.emergency else self._vehicle.give_up_seconds
-        self.order = order
+        self.order, self._late = order, None
         self._refused = self._waits = False
         self._deadline = now + seconds * len(order.steps)
         self._begin(0, now)
@@ -159,24 +165,43 @@ class OrderDesk:
             return None
         if self.order.emergency:
             return Outcome(self.order, "waits", "EMERGENCY is not cancelled")
-        was_sent = self._sent > 0 or self._position > 0
-        return self._end("cancelled", "but it was sent" if was_sent else "")
+        return self._give_up("cancelled")
 
     def stop(self, reason: str) -> Outcome | None:
         """Drop the active order, also an emergency, for a reason; return its outcome."""
-        return None if self.order is None else self._end("stopped", reason)
+        return None if self.order is None else self._give_up("stopped", reason)
+
+    def _give_up(self, kind: OutcomeKind, *reasons: str) -> Outcome:
+        """End an order before it is proven; if it was sent, watch whether it is done after all."""
+        order, was_sent = self.order, self._sent > 0 or self._position > 0
+        outcome = self._end(kind, ", ".join([*reasons, *["but it was sent"] * was_sent]))
+        self._late, self._late_by = (order if was_sent else None), self._heard + LATE_SECONDS
+        return self._find_late() or outcome
+
+    def _find_late(self) -> Outcome | None:
+        """Return that an order which was given up is done, once mode and depth show it."""
+        if self._late is None or self._armed is False:
+            return None
+        steps, shown = self._late.steps, self._reported
+        modes = [step.mode == shown.mode for step in steps if step.mode is not None]
+        if not all(modes + [step.is_done(shown) for step in steps if step.mode is None]):
+            return None
+        order, self._late = self._late, None
+        return Outcome(order, "late")
 
     def list_due(self, now: float) -> Sequence[Message]:
         """Return the messages to send now."""
         if self.order is None or now < self._next or now > self._deadline:
             return ()
-        if self._watch.keeps_back:
+        # What a vehicle has not answered waits there, and would be obeyed late, once for each.
+        waits = self._sent > 0 and not self._is_heard and not self.order.emergency
+        if self._watch.keeps_back or waits:
             return ()
         step = self.order.steps[self._position]
         message = step.build(self._sent)
         if step.mode is not None:
             self._requested[step.mode] = now
-        self._sent += 1
+        self._sent, self._is_heard = self._sent + 1, False
         self._next = now + self._vehicle.repeat_seconds
         return (message,)
 
@@ -186,7 +211,7 @@ class OrderDesk:
             return None
         if self.order.moves and self._armed is False:
             return self._end("stopped", DISARMED)
-        return self._end("unanswered")
+        return self._give_up("unanswered")
 
     def hear(self, message: Message, now: float) -> Outcome | None:
         """Process a message of the vehicle.
@@ -199,9 +224,12 @@ class OrderDesk:
         """
         if not is_from_vehicle(message, self._vehicle):
             return None
+        # The time in which an order may be done late goes on only while the vehicle is heard.
+        self._late_by += max(now - self._heard - SHOW_SECONDS, 0)
+        self._heard, self._is_heard = now, True
         self._note_state(message, now)
         if self.order is None:
-            return None
+            return self._find_late() if now <= self._late_by else None
         if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
             return outcome
         if self._watch.contradiction:
@@ -241,9 +269,7 @@ class OrderDesk:
     def _refuse(self, result: int) -> Outcome | None:
         """End a refused order; an emergency goes on, and only its first refusal is reported."""
         assert self.order is not None
-        names = mavlink.enums["MAV_RESULT"]
-        answer = names[result].name if result in names else str(result)
-        answer = answer.removeprefix("MAV_RESULT_")
+        answer = name_entry("MAV_RESULT", result) or str(result)
         if not self.order.emergency:
             return self._end("refused", answer)
         told, self._refused = self._refused, True
@@ -380,5 +406,4 @@ def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
 
 def name_mode(mode: int) -> str:
     """Return the name of one of ArduSub's modes, or its number."""
-    known = mavlink.enums["SUB_MODE"]
-    return known[mode].name.removeprefix("SUB_MODE_") if mode in known else f"mode {mode}"
+    return name_entry("SUB_MODE", mode) or f"mode {mode}"

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.actions import Message
+from app.robot.mavlink.actions import Message, name_entry
 from app.robot.mavlink.orders import REBOOT_MS
 from app.robot.mavlink.table import Vehicle
 
@@ -175,12 +175,5 @@ def describe_other_kind(heartbeat: Message) -> str:
         mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA,
     ):
         return ""
-    words = []
-    for prefix, number in (
-        ("MAV_AUTOPILOT", heartbeat.autopilot),
-        ("MAV_TYPE", heartbeat.type),
-    ):
-        known = mavlink.enums[prefix]
-        name = known[number].name.removeprefix(f"{prefix}_") if number in known else ""
-        words.append(name or f"{prefix} {number}")
-    return ", ".join(words)
+    numbers = {"MAV_AUTOPILOT": heartbeat.autopilot, "MAV_TYPE": heartbeat.type}
+    return ", ".join(name_entry(enum, each) or f"{enum} {each}" for enum, each in numbers.items())

@@ -11,7 +11,7 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from typing_extensions import Self
@@ -72,10 +72,7 @@ class Hold(_Entry):
 
     do: Literal["hold"] = "hold"
 
-    @property
-    def words(self) -> str:
-        """The action in words."""
-        return "hold"
+    words: ClassVar[str] = "hold"
 
 
 class Surface(_Entry):
@@ -83,10 +80,7 @@ class Surface(_Entry):
 
     do: Literal["surface"] = "surface"
 
-    @property
-    def words(self) -> str:
-        """The action in words."""
-        return "surface"
+    words: ClassVar[str] = "surface"
 
 
 class Mode(_Entry):
@@ -118,10 +112,7 @@ class Camera(_Entry):
 
     do: Literal["camera"]
 
-    @property
-    def words(self) -> str:
-        """The action in words."""
-        return "camera"
+    words: ClassVar[str] = "camera"
 
 
 class SlotName(_Entry):

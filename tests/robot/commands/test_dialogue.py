@@ -277,7 +277,7 @@ def test_the_take_of_a_pair_recognised_by_another_camera_does_not_answer_it() ->
         (EMERGENCY_LIMIT, "surface"),
         (EMERGENCY_LIMIT + 0.01, None),
         (0.0, "surface"),
-        (math.nan, "surface"),
+        (math.nan, None),
     ],
 )
 def test_an_emergency_has_a_limit_of_its_own(novelty: float, command: str | None) -> None:
@@ -288,6 +288,16 @@ def test_an_emergency_has_a_limit_of_its_own(novelty: float, command: str | None
     # Other gestures are accepted as before.
     ordinary = [replace(shown("circle", second), novelty=0.99) for second in (3, 4)]
     assert [made.decide(each, each.stamp).command for each in ordinary] == [None, "photo"]
+
+
+@pytest.mark.parametrize("field", ["confidence", "novelty", "start", "stamp"])
+def test_a_gesture_with_a_number_that_is_none_commands_nothing(field: str) -> None:
+    made = dialogue()
+    for label in ("line", "circle", "circle"):
+        missing: dict[str, Any] = {field: math.nan}
+        broken = replace(shown(label, 1), **missing)
+        assert made.decide(broken, 1).command is None
+        assert made.pending is None
 
 
 def phrase_of(pair: tuple[str, str], stamp: float) -> RecognizedPhrase:

@@ -100,6 +100,9 @@ def test_a_depth_is_proven_by_the_vehicles_target() -> None:
 def test_it_is_repeated_until_it_is_given_up() -> None:
     desk = begun(Hold())
     assert desk.list_due(0.4) == ()
+    # Nothing is repeated to a vehicle that says nothing: it would obey all of it later.
+    assert desk.list_due(0.5) == ()
+    desk.hear(heartbeat(0), 0.5)
     assert [message.confirmation for message in desk.list_due(0.5)] == [1]
     assert desk.check_deadline(10.0) is None
     ended = desk.check_deadline(10.1)

@@ -14,6 +14,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from app.robot import SourceEnded
 from app.robot.commands.answers import Answer
 from app.robot.mavlink import answers
 from app.robot.mavlink.actions import CommandStep
@@ -22,7 +23,7 @@ from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
 from tests.robot.mavlink.test_answers import LIGHTS, answering
-from tests.robot.mavlink.test_bridge import TABLE, crew, wait_until
+from tests.robot.mavlink.test_bridge import TABLE, crew, diving, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 OUTAGES = (5.0, 12.0, 36.0, 600.0)
@@ -133,6 +134,31 @@ def test_what_the_pilot_sets_during_an_outage_stays(shown: Shown, seconds: float
     dive.wait(40)
     assert dive.value == PILOT[shown]
     assert dive.desk.is_idle
+
+
+@pytest.mark.parametrize("ends", ["alone", "cancel", "stop"])
+def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -> None:
+    changes = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 1}}
+    with diving(changes=changes) as diver:
+        wait_until(lambda: diver.bridge._desk._mode is not None)
+        diver.vehicle.hangs = True
+        time.sleep(0.1)
+        asked = diver.vehicle.asked
+        diver.confirm("stop")
+        time.sleep(0.5)
+        if ends == "cancel":
+            diver.show("no")
+            assert diver.wait_for("cancelled") == "cancelled, but it was sent: hold"
+        elif ends == "stop":
+            diver.bridge.publish(SourceEnded(diver.time, 100, 0, True))
+            said = diver.wait_for("NOT DONE")
+            assert said == "NOT DONE, robot is stopped, but it was sent: hold"
+        else:
+            assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+        diver.vehicle.hangs = False
+        assert diver.wait_for("done") == "done after all: hold"
+        assert diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD
+        assert diver.vehicle.asked == asked + 1
 
 
 def test_nothing_is_set_while_nothing_is_reported() -> None:

@@ -100,7 +100,7 @@ class Socket:
             for message in codec.parse_buffer(data) or []:
                 if message.get_type() == "STATUSTEXT":
                     self.texts.append(message.text)
-                elif message.get_type() != "HEARTBEAT":
+                elif message.get_type() not in ("HEARTBEAT", "PARAM_REQUEST_READ"):
                     self.commands.append(message)
 
     def close(self) -> None:

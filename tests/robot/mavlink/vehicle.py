@@ -51,6 +51,8 @@ class Ardusub:
         Whether it accepts modes, and stays in the old one until this is False.
     pilot
         Mode that a pilot sets again before every heartbeat; None: there is no pilot.
+    hangs
+        Whether it does nothing, and what it is sent waits.
     lights, brightest
         Pulse length of its lights at the start, and the largest that it sets, in microseconds.
     key
@@ -79,6 +81,7 @@ class Ardusub:
     armed: bool = True
     is_slow: bool = False
     pilot: int | None = None
+    hangs: bool = False
     lights: float = 1100.0
     brightest: float = 1900.0
     key: bytes | None = None
@@ -125,6 +128,8 @@ class Ardusub:
     def _run(self) -> None:
         beat = 0.0
         while True:
+            while self.hangs and not self._closing.is_set():
+                clock.sleep(BEAT_SECONDS)
             message = self._connection.recv_msg()
             if message is None:
                 if self._closing.is_set():
