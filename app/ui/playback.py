@@ -132,10 +132,13 @@ class Playback:
             self._unplayed = True
             self._set(frame)
 
-    def set_span(self, span: tuple[int, int]) -> None:
-        """Set first and last frame of the range on display; the clock goes on where it is."""
+    def set_span(self, span: tuple[int, int], times: Sequence[float]) -> None:
+        """Set first and last frame of the range on display; the clock goes on where it is.
+
+        `times` as in `load`: a clip whose frames are being read has more of them each time.
+        """
         with self._changed:
-            self._span = span
+            self._times, self._span = tuple(times), span
             self._set(self._frame)
 
     def seek(self, frame: int) -> None:

@@ -176,7 +176,8 @@ class Workspace:
     def show(self, view: WorkspaceView, *, keep_frame: bool = False) -> None:
         """Show another clip, range or recognition; its frames arrive in the background.
 
-        With `keep_frame`, the clock goes on where it is, if the clip stays the same.
+        With `keep_frame`, the clock goes on where it is, if the clip stays the same. It does so in
+        any case if the clip has grown, because its frames are being read.
 
         Raises
         ------
@@ -187,9 +188,10 @@ class Workspace:
         shown = Range.of(view)
         with self._lock:
             before, self._view = self._view, view
-            if before is None or _frames_of(before) != _frames_of(view):
+            grown = before is not None and _has_grown(before, view)
+            if before is None or grown or _frames_of(before) != _frames_of(view):
                 same = before is not None and _clip_of(before) == _clip_of(view)
-                self._load(before, view, shown, keep_frame=keep_frame and same)
+                self._load(before, view, shown, keep_frame=grown or (keep_frame and same))
             if before is None or _answer_of(before) != _answer_of(view):
                 found = view.recognition
                 images = [] if found is None else compared_images(view, found, shown.poses)
@@ -275,11 +277,11 @@ class Workspace:
         last = first + len(times) - 1
         trajectory = self._draw_scene(view, shown)
         self._shown = shown
+        moments = view.recording.poses.time.tolist()
         if keep_frame:
-            self.playback.set_span((first, last))
+            self.playback.set_span((first, last), moments)
         else:
-            begin = first + initial_frame(len(times))
-            self.playback.load(view.recording.poses.time.tolist(), begin, (first, last))
+            self.playback.load(moments, first + initial_frame(len(times)), (first, last))
         self._inspector.show_tracks(trajectory, float(times[0]), (times, shown.held), view.trigger)
         if before is None or _pictures_of(before) != _pictures_of(view):
             self._decode(view, first, last)
@@ -403,9 +405,15 @@ def _frames_of(view: WorkspaceView) -> tuple[object, ...]:
     return view.video, view.start, view.end, view.salient, view.trigger
 
 
-def _clip_of(view: WorkspaceView) -> tuple[object, ...]:
+def _clip_of(view: WorkspaceView) -> tuple[Path, int]:
     """Return the values of a view that determine the frames that its clip has."""
     return view.video, len(view.recording.poses)
+
+
+def _has_grown(before: WorkspaceView, view: WorkspaceView) -> bool:
+    """Return whether it is the same clip, of which more frames have been read."""
+    (video, frames), (same, more) = _clip_of(before), _clip_of(view)
+    return video == same and frames < more
 
 
 def _size_of(view: WorkspaceView) -> tuple[int, int]:
@@ -420,4 +428,4 @@ def _answer_of(view: WorkspaceView) -> tuple[object, ...]:
 def _pictures_of(view: WorkspaceView) -> tuple[object, ...]:
     """Return the values of a view that determine the pictures kept."""
     whole = len(view.recording.poses) <= MAX_FRAMES
-    return (view.video,) if whole else (view.video, view.start, view.end)
+    return _clip_of(view) if whole else (*_clip_of(view), view.start, view.end)

@@ -106,6 +106,17 @@ def test_one_frame_cannot_be_played(playback: Playback) -> None:
     assert not playback.playing
 
 
+def test_a_clip_that_grows_plays_on_to_its_new_end(playback: Playback, screen: Screen) -> None:
+    playback.load([0.0, 0.01], 1)
+    playback.set_loop(False)
+    playback.set_span((0, 4), [0.0, 0.01, 0.02, 0.03, 0.04])
+    until(shows(screen, 1))
+    assert playback.position.frames == 5
+    playback.seek(1)
+    playback.play(1.0)
+    until(shows(screen, 4))
+
+
 def test_another_recording_stops_the_last_one(playback: Playback) -> None:
     playback.load([0.0, 3600.0])
     playback.play(1)
