@@ -70,7 +70,8 @@ export async function remove(language) {
     return true;
   });
   if (!done) return reloadLanguages();
-  recordAction({ title: `Deletion of ${language.name}`, kind: "language", id: language.id });
+  const { id, revision } = language;
+  recordAction({ title: `Deletion of ${language.name}`, kind: "language", id, revision });
   if (state.language === language.id) update({ language: null, recognition: null });
   await reloadLanguages();
   return showDone("Language deleted", language.name);

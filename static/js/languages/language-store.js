@@ -6,7 +6,7 @@ import { plural } from "../core/format.js";
 import { refresh } from "../core/list-refresh.js";
 import { state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
-import { recordAction, registerUndo, showDone } from "../core/undo.js";
+import { recordAction, showDone } from "../core/undo.js";
 
 /** @import { Language, LanguageSummary } from "../core/types.d.ts" */
 
@@ -99,7 +99,7 @@ export function choose(id) {
  * @param {string} words
  */
 export async function begin(language, title, words) {
-  recordAction({ title, kind: "created", id: language.id });
+  recordAction({ title, kind: "created", id: language.id, revision: language.revision });
   update({ languages: await api.languages.list() });
   await choose(language.id);
   showDone(words, `${language.name}, ${plural(language.gestures.length, "gesture")}`);
@@ -139,11 +139,3 @@ export async function importLanguage(file) {
   );
   if (language) await begin(language, `Import of ${file.name}`, "Language imported");
 }
-
-/** @param {string} id */
-const remove = (id) => api.languages.remove({ id }).then(reloadLanguages);
-/** @param {string} id */
-const restore = (id) => api.languages.restore(id).then(reloadLanguages);
-
-registerUndo("language", { undo: ({ id }) => restore(id), redo: ({ id }) => remove(id) });
-registerUndo("created", { undo: ({ id }) => remove(id), redo: ({ id }) => restore(id) });

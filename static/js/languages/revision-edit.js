@@ -42,17 +42,51 @@ function setHead(language, head) {
 async function revert(language, from, to) {
   const newest = await api.languages.get(language);
   const left = heads[language];
-  if (left?.revision !== newest.revision || left.shows !== from) {
-    const error = new Error(
-      `The language was changed elsewhere as well; its newest revision is ${newest.revision}. Its history shows every revision, and can go back to any.`,
-    );
-    throw Object.assign(error, { status: 412 });
-  }
+  if (left?.revision !== newest.revision || left.shows !== from)
+    throw await changedElsewhere(newest, left?.revision);
   const now = await api.languages.revert(newest, to);
   setHead(language, { revision: now.revision, shows: to });
   await reloadLanguages();
 }
 
+/**
+ * The error of an undo that would take back what others did, with their changes.
+ *
+ * @param {Language} newest
+ * @param {number} [left]
+ */
+async function changedElsewhere(newest, left = newest.revision - 1) {
+  const revisions = await api.languages.revisions(newest.id);
+  const theirs = revisions.filter(({ revision }) => revision > left);
+  const named = theirs.slice(0, 3).map(({ revision, change }) => `${revision}, ${change}`);
+  const words = named.length ? ` (revision ${named.join("; ")})` : "";
+  const error = new Error(
+    `The language was changed elsewhere as well${words}. Its history shows every revision, and can go back to any.`,
+  );
+  return Object.assign(error, { status: 412 });
+}
+
+/**
+ * Delete a language that this tab made or restored, unless others have changed it since.
+ *
+ * @param {{ id: string, revision?: number }} action
+ */
+async function remove({ id, revision }) {
+  const newest = await api.languages.get(id);
+  const left = heads[id]?.revision ?? revision ?? newest.revision;
+  if (newest.revision !== left) throw await changedElsewhere(newest, left);
+  await api.languages.remove(newest);
+  await reloadLanguages();
+}
+
+/** @param {{ id: string }} action */
+const restore = ({ id }) => api.languages.restore(id).then(reloadLanguages);
+
+/** @param {{ id: string, revision: number }} action */
+const record = ({ id, revision }) => setHead(id, { revision, shows: revision });
+
+registerUndo("language", { undo: restore, redo: remove, record });
+registerUndo("created", { undo: remove, redo: restore, record });
 registerUndo("edit", {
   undo: ({ language, before, after }) => revert(language, after, before),
   redo: ({ language, before, after }) => revert(language, before, after),

@@ -162,6 +162,25 @@ def test_going_back_to_a_revision_can_itself_be_taken_back(
     expect(page.get_by_text("1 added")).to_be_visible()
 
 
+def test_undo_of_a_new_language_does_not_take_back_what_others_did(
+    open_page: OpenPage, library: Library
+) -> None:
+    page = open_page({"view": "languages"}, scene=False)
+    page.get_by_role("button", name="New language").first.click()
+    page.get_by_label("Name").fill("shared")
+    page.get_by_role("button", name="Create").click()
+    expect(page.get_by_text("Language made")).to_be_visible()
+    listed = library.client.get("/api/v1/languages").json()
+    (made,) = (each for each in listed if each["name"] == "shared")
+    place = f"/api/v1/languages/{made['id']}"
+    assert library.client.patch(place, json={"author": "Bo"}).status_code == 200
+    page.keyboard.press("Control+z")
+    expect(
+        page.get_by_text("The language was changed elsewhere as well (revision 2")
+    ).to_be_visible()
+    assert library.client.get(place).json()["author"] == "Bo"
+
+
 def test_a_second_tab_sees_a_change_by_itself(open_page: OpenPage, library: Library) -> None:
     watching = open_page(library.address, scene=False)
     expect(watching.get_by_role("img", name="Trajectory of line")).to_be_visible()
