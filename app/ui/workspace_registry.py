@@ -33,9 +33,10 @@ class WorkspaceRegistry:
         self.limit, self.ttl = limit, ttl
         self._lock = Lock()
         self._workspaces: dict[str, Workspace] = {}
+        self._owners: dict[str, str] = {}
 
-    def create(self, *, dark: bool = True) -> Workspace:
-        """Open a workspace; when the limit is reached, the one idle longest makes room.
+    def create(self, *, owner: str = "", dark: bool = True) -> Workspace:
+        """Open a workspace of a name; when the limit is reached, the one idle longest makes room.
 
         Raises
         ------
@@ -56,25 +57,27 @@ class WorkspaceRegistry:
         workspace = Workspace(dark=dark)
         with self._lock:
             self._workspaces[workspace.id] = workspace
+            self._owners[workspace.id] = owner
         return workspace
 
-    def get(self, name: str) -> Workspace | None:
-        """Return an open workspace and count this as its use; None if there is none."""
+    def get(self, name: str, owner: str = "") -> Workspace | None:
+        """Return an open workspace of a name, counted as used; None if it has no such one."""
         with self._lock:
-            workspace = self._workspaces.get(name)
+            workspace = self._workspaces.get(name) if self._owners.get(name) == owner else None
         if workspace is not None:
             workspace.last_seen = clock.monotonic()
         return workspace
 
-    def port_of(self, name: str) -> int | None:
-        """Return the loopback port of a workspace's viser server, None when there is none."""
-        workspace = self.get(name)
+    def port_of(self, name: str, owner: str = "") -> int | None:
+        """Return the loopback port of a workspace's viser server; None as in `get`."""
+        workspace = self.get(name, owner)
         return None if workspace is None else workspace.port
 
     def remove(self, name: str) -> bool:
         """Close a workspace; False when there is none of that name."""
         with self._lock:
             workspace = self._workspaces.pop(name, None)
+            self._owners.pop(name, None)
         if workspace is None:
             return False
         workspace.close()

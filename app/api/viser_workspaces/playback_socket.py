@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
-from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner
 from app.ui.playback import Playback, Position
 
 
@@ -58,10 +58,10 @@ router = APIRouter(prefix="/workspaces", tags=["workspaces"])
 
 @router.websocket("/{workspace_id}/playback")
 async def follow_playback(
-    workspace_id: str, browser: WebSocket, workspaces: CurrentWorkspaces
+    workspace_id: str, browser: WebSocket, workspaces: CurrentWorkspaces, owner: Owner
 ) -> None:
     """Send every position of the playback, and obey the page's commands."""
-    workspace = workspaces.get(workspace_id)
+    workspace = workspaces.get(workspace_id, owner)
     if workspace is None or not same_origin(browser):
         await browser.close(code=POLICY_VIOLATION)
         return

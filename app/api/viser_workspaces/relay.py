@@ -23,7 +23,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
 from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
-from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, no_workspace
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner, no_workspace
 from app.ui.loopback_server import RELAY_HEADERS
 
 CLIENT: Final = Path(viser.__file__).parent / "client" / "build" / "index.html"
@@ -45,9 +45,9 @@ router = APIRouter(prefix="/viser", include_in_schema=False)
 
 
 @router.get("/{name}/")
-def get_viser_page(name: str, workspaces: CurrentWorkspaces) -> FileResponse:
+def get_viser_page(name: str, workspaces: CurrentWorkspaces, owner: Owner) -> FileResponse:
     """Send viser's client, whose address names the workspace."""
-    if workspaces.port_of(name) is None:
+    if workspaces.port_of(name, owner) is None:
         raise no_workspace()
     headers = {
         "Content-Security-Policy": CONTENT_SECURITY_POLICY,
@@ -58,9 +58,11 @@ def get_viser_page(name: str, workspaces: CurrentWorkspaces) -> FileResponse:
 
 
 @router.websocket("/{name}")
-async def relay_viser(name: str, browser: WebSocket, workspaces: CurrentWorkspaces) -> None:
+async def relay_viser(
+    name: str, browser: WebSocket, workspaces: CurrentWorkspaces, owner: Owner
+) -> None:
     """Pass messages between a page and the viser server of its workspace."""
-    port = workspaces.port_of(name)
+    port = workspaces.port_of(name, owner)
     if port is None or not same_origin(browser):
         await browser.close(code=POLICY_VIOLATION)
         return

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.services.running_studio import CurrentStudio
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
-from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, find
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner, find
 from app.recognition.errors import OsgError
 from app.ui.workspace_registry import TooManyWorkspacesError
 
@@ -46,11 +46,11 @@ router = APIRouter(prefix="/workspaces", tags=["workspaces"], responses=problem_
 
 @router.post("", status_code=201)
 def open_workspace(
-    workspaces: CurrentWorkspaces, options: WorkspaceOptions | None = None
+    workspaces: CurrentWorkspaces, owner: Owner, options: WorkspaceOptions | None = None
 ) -> OpenedWorkspace:
     """Open a workspace for one browser tab."""
     try:
-        workspace = workspaces.create(dark=(options or WorkspaceOptions()).dark)
+        workspace = workspaces.create(owner=owner, dark=(options or WorkspaceOptions()).dark)
     except TooManyWorkspacesError as error:
         headers = {"Retry-After": "30"}
         raise ProblemError(503, "service_unavailable", str(error), headers=headers) from error
@@ -58,18 +58,23 @@ def open_workspace(
 
 
 @router.get("/{workspace_id}")
-def find_workspace(workspace_id: WorkspaceId, workspaces: CurrentWorkspaces) -> OpenedWorkspace:
+def find_workspace(
+    workspace_id: WorkspaceId, workspaces: CurrentWorkspaces, owner: Owner
+) -> OpenedWorkspace:
     """Return whether a workspace is still open."""
-    workspace = find(workspaces, workspace_id)
+    workspace = find(workspaces, workspace_id, owner)
     return OpenedWorkspace(id=workspace.id, url=f"/viser/{workspace.id}/")
 
 
 @router.patch("/{workspace_id}", status_code=204)
 def change_workspace(
-    workspace_id: WorkspaceId, options: WorkspaceOptions, workspaces: CurrentWorkspaces
+    workspace_id: WorkspaceId,
+    options: WorkspaceOptions,
+    workspaces: CurrentWorkspaces,
+    owner: Owner,
 ) -> Response:
     """Change how a workspace looks; what is left out stays."""
-    workspace = find(workspaces, workspace_id)
+    workspace = find(workspaces, workspace_id, owner)
     if "dark" in options.model_fields_set:
         workspace.set_dark(options.dark)
     if "flat" in options.model_fields_set:
@@ -82,10 +87,11 @@ def show_view(
     workspace_id: WorkspaceId,
     request: ViewRequest,
     workspaces: CurrentWorkspaces,
+    owner: Owner,
     studio: CurrentStudio,
 ) -> Response:
     """Show a clip, a range of it, or a recognition."""
-    workspace = find(workspaces, workspace_id)
+    workspace = find(workspaces, workspace_id, owner)
     view = view_of(studio, request)
     try:
         workspace.show(view, keep_frame=request.keep_frame)
@@ -95,8 +101,10 @@ def show_view(
 
 
 @router.delete("/{workspace_id}", status_code=204)
-def close_workspace(workspace_id: WorkspaceId, workspaces: CurrentWorkspaces) -> Response:
+def close_workspace(
+    workspace_id: WorkspaceId, workspaces: CurrentWorkspaces, owner: Owner
+) -> Response:
     """Close a workspace."""
-    find(workspaces, workspace_id)
+    find(workspaces, workspace_id, owner)
     workspaces.remove(workspace_id)
     return Response(status_code=204)

@@ -8,6 +8,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.api.http.problems import ProblemError
+from app.api.middleware.identities import identity_of
 from app.ui.workspace import Workspace
 from app.ui.workspace_registry import WorkspaceRegistry
 
@@ -16,6 +17,13 @@ def _registry_of(connection: HTTPConnection) -> WorkspaceRegistry:
     registry: WorkspaceRegistry = connection.app.state.workspaces
     return registry
 
+
+def _name_of(connection: HTTPConnection) -> str:
+    return identity_of(connection.scope).name
+
+
+Owner = Annotated[str, Depends(_name_of)]
+"""Type of a route's parameter that receives the sender's name, whose workspaces alone exist."""
 
 CurrentWorkspaces = Annotated[WorkspaceRegistry, Depends(_registry_of)]
 """Type of a route's parameter that receives the open workspaces."""
@@ -27,8 +35,8 @@ def no_workspace() -> ProblemError:
     return ProblemError(404, "not_found", detail)
 
 
-def find(registry: WorkspaceRegistry, workspace_id: str) -> Workspace:
-    """Return an open workspace.
+def find(registry: WorkspaceRegistry, workspace_id: str, owner: str) -> Workspace:
+    """Return an open workspace of a name.
 
     Raises
     ------
@@ -36,7 +44,7 @@ def find(registry: WorkspaceRegistry, workspace_id: str) -> Workspace:
         404 when there is none.
 
     """
-    workspace = registry.get(workspace_id)
+    workspace = registry.get(workspace_id, owner)
     if workspace is None:
         raise no_workspace()
     return workspace

@@ -399,3 +399,16 @@ def test_an_idempotency_key_belongs_to_a_name(
         first = upload(one)
         assert upload(one)["id"] == first["id"]
         assert upload(other)["id"] != first["id"]
+
+
+def test_a_scene_belongs_to_its_name(guarded: Running, tokens: TokenFile) -> None:
+    ada, bo = tokens.add("Ada", Role.READ), tokens.add("Bo", Role.READ)
+    with client_with(guarded, ada) as one, client_with(guarded, bo) as other:
+        made = one.post(f"{API}/workspaces", json={}).json()
+        place = f"{API}/workspaces/{made['id']}"
+        assert one.get(place).status_code == one.get(made["url"]).status_code == 200
+        assert_problem(other.get(place), 404, "not_found")
+        assert_problem(other.get(made["url"]), 404, "not_found")
+        assert_problem(other.patch(place, json={"dark": False}), 404, "not_found")
+        assert_problem(other.delete(place), 404, "not_found")
+        assert one.get(place).status_code == 200
