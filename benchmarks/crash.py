@@ -1,15 +1,16 @@
 """Crash rounds: kills a server and what it uses while clients write, and checks what is left.
 
 ``python -m benchmarks.crash --rounds 60`` starts a server on one folder again and again. In each
-round four clients upload clips (whole and in parts), begin resumable uploads and go on with them,
-export sessions, create, rename and delete languages, and import language files, until the server is
-killed by SIGKILL at a random moment, in most rounds after something else: a worker process, or a
-part of the backends that ``--with postgres dask s3`` gives the server, which is then started again.
-In every tenth round a backup is made meanwhile. After the next start every acknowledged change and
-every acknowledged part of an upload must be there, every other change must be there in full or not
-at all, the audit log must hold every acknowledged change, no file may be without its row, and the
-backup must hold what was acknowledged before it. At the end every job must have ended, and each one
-that is done must have all frames of its clip. The exit code is 1 if anything is lost.
+round five clients upload clips (whole and in parts), begin resumable uploads and go on with them,
+export sessions, create, rename and delete languages, import language files, invite others, send
+takes by their links and withdraw these, until the server is killed by SIGKILL at a random moment,
+in most rounds after something else: a worker process, or a part of the backends that ``--with
+postgres dask s3`` gives the server, which is then started again. In every tenth round a backup is
+made meanwhile. After the next start every acknowledged change and every acknowledged part of an
+upload must be there, every other change must be there in full or not at all, the audit log must
+hold every acknowledged change, no file may be without its row, and the backup must hold what was
+acknowledged before it. At the end every job must have ended, and each one that is done must have
+all frames of its clip. The exit code is 1 if anything is lost.
 """
 
 from __future__ import annotations
@@ -82,6 +83,10 @@ class Written:
         Ids of clips whose deletion was sent and not answered.
     parts
         Acknowledged bytes of the resumable uploads that are not complete, by address.
+    invitations
+        By id the language and the token; the token is None once the invitation is withdrawn.
+    takes
+        Invitations by the ids of the takes that were sent.
     unaudited
         Ids of acknowledged requests whose entries in the audit log were not looked for yet.
     audited
@@ -106,6 +111,8 @@ class Written:
     clips: dict[str, bool] = field(default_factory=dict)
     deleting: set[str] = field(default_factory=set)
     parts: dict[str, int] = field(default_factory=dict)
+    invitations: dict[str, tuple[str, str | None]] = field(default_factory=dict)
+    takes: dict[str, str] = field(default_factory=dict)
     unaudited: set[str] = field(default_factory=set)
     audited: int = 0
     backups: int = 0
@@ -196,10 +203,43 @@ def go_on(client: httpx.Client, written: Written, draw: random.Random, clip: byt
     written.acknowledged += 1
 
 
+def invite(client: httpx.Client, written: Written, draw: random.Random, clip: bytes) -> None:
+    """Invite others to a language, send a take by a link, or withdraw one."""
+    still_open = [(key, *each) for key, each in written.invitations.items() if each[1]]
+    chance = draw.random()
+    if still_open and chance < 0.7:
+        key, _, token = draw.choice(still_open)
+        link = {"Authorization": f"Bearer {token}"}
+        shown = client.get(f"{API}/invited", headers=link).raise_for_status().json()["gestures"]
+        asked = {"label": draw.choice(shown)["label"], "diver": f"{GUEST}{draw.randrange(10**9)}"}
+        answer = client.post(
+            f"{API}/invited/takes", params=asked, files={"file": ("take.mkv", clip)}, headers=link
+        )
+        written.takes[answer.raise_for_status().json()["id"]] = key
+    elif still_open and chance < 0.8:
+        key, language, _ = draw.choice(still_open)
+        del written.invitations[key]  # Until it is answered, it may be open or not.
+        client.delete(f"{API}/languages/{language}/invitations/{key}").raise_for_status()
+        written.invitations[key] = language, None
+    else:
+        kept = [key for key, state in written.languages.items() if state]
+        if not kept:
+            time.sleep(0.1)
+            return
+        language = draw.choice(kept)
+        answer = client.post(f"{API}/languages/{language}/invitations", json={"takes": 100})
+        made = answer.raise_for_status().json()
+        written.invitations[made["id"]] = language, made["link"].rpartition("#")[2]
+    written.acknowledged += 1
+
+
 def _send(client: httpx.Client, place: str, start: int, part: bytes) -> httpx.Response:
     headers = TUS | {"Upload-Offset": str(start), "Content-Type": OFFSETS}
     return client.patch(place, content=part, headers=headers).raise_for_status()
 
+
+GUEST: Final = "guest "
+"""Beginning of the names of invited people, and so of their clips."""
 
 OFFSETS: Final = "application/offset+octet-stream"
 
@@ -261,7 +301,9 @@ def check(address: str, folder: Path, written: Written, digest: str) -> None:
         found = {each["id"]: each for each in client.get(f"{API}/languages").json()}
         for key, state in written.languages.items():
             _check_language(key, state, found.get(key), written)
-        clips = {each["id"] for each in client.get(f"{API}/clips").json()}
+        listed = client.get(f"{API}/clips").json()
+        # Clips of invited people go when their takes are returned.
+        clips = {each["id"] for each in listed if not each["name"].startswith(GUEST)}
         for key, kept in written.clips.items():
             if key in written.deleting:
                 written.clips[key] = key in clips
@@ -272,6 +314,7 @@ def check(address: str, folder: Path, written: Written, digest: str) -> None:
                 if hashlib.sha256(video).hexdigest() != digest:
                     written.lost.append(f"clip {key}: other bytes than were sent")
         _check_parts(client, written)
+        _check_invitations(client, found, written)
         _check_audit(client, written)
         written.attempts.clear()
         written.deleting.clear()
@@ -294,6 +337,22 @@ def _check_parts(client: httpx.Client, written: Written) -> None:
             del written.parts[place]
 
 
+def _check_invitations(client: httpx.Client, languages: Collection[str], written: Written) -> None:
+    """Look for all invitations with their takes; those of a deleted language went with it."""
+    for key, (language, token) in list(written.invitations.items()):
+        if language not in languages:
+            del written.invitations[key]
+            continue
+        listed = client.get(f"{API}/languages/{language}/invitations").json()
+        found = next((each for each in listed if each["id"] == key), None)
+        if found is None or (found["closed"] is None) is not (token is not None):
+            written.lost.append(f"invitation {key}: withdrawn {token is None}, found {found}")
+            continue
+        sent = {take for take, invitation in written.takes.items() if invitation == key}
+        missing = sent - {take["id"] for take in found["shown"]}
+        written.lost += [f"take {take} of invitation {key}" for take in missing]
+
+
 def _check_audit(client: httpx.Client, written: Written) -> None:
     """Look for the entries of all acknowledged changes, the newest first."""
     before: dict[str, int] = {}
@@ -313,6 +372,7 @@ def back_up(folder: Path, written: Written) -> None:
     """Back a running server up, restore the file elsewhere, and compare the two."""
     # What is begun or undone meanwhile may be in the backup or not.
     clips = {key for key, kept in written.clips.items() if kept} - written.deleting
+    invitations = {key for key, (_, token) in written.invitations.items() if token}
     file, other = folder.with_name("backup.zip"), folder.with_name("restored")
     for command in (["backup", str(file), str(folder)], ["restore", str(file), str(other)]):
         run = [sys.executable, "-m", "app", *command[:2], "--data-dir", command[2]]
@@ -326,7 +386,9 @@ def back_up(folder: Path, written: Written) -> None:
             return
     with closing(sqlite3.connect(other / "studio.db")) as database:
         rows = {key for (key,) in database.execute("SELECT id FROM clip")}
+        links = {key for (key,) in database.execute("SELECT id FROM invitation")}
     written.lost += [f"clip {key} in the backup" for key in clips - rows]
+    written.lost += [f"invitation {key} in the backup" for key in invitations - links]
     written.backups += 1
     shutil.rmtree(other)
     file.unlink()
@@ -383,6 +445,9 @@ def crash(
         def add_slowly(client: httpx.Client, state: Written, chance: random.Random) -> None:
             go_on(client, state, chance, clip)
 
+        def ask(client: httpx.Client, state: Written, chance: random.Random) -> None:
+            invite(client, state, chance, clip)
+
         for number in range(rounds):
             with serving(folder) as (address, process):
                 check(address, folder, written, digest)
@@ -391,7 +456,7 @@ def crash(
                     threading.Thread(
                         target=work, args=(address, written, each, draw.randrange(10**9), stop)
                     )
-                    for each in (edit, import_file, add, add_slowly)
+                    for each in (edit, import_file, add, add_slowly, ask)
                 ]
                 for thread in threads:
                     thread.start()
