@@ -15,7 +15,6 @@ from typing import Final, Literal
 
 import numpy as np
 from pydantic import computed_field
-from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import WRITTEN, Recognition
@@ -83,7 +82,7 @@ class Evidence:
         return math.log(max(self.unlike, 1e-9)) + failing * self.failing + of_gain
 
 
-@described_dataclass(frozen=True, kw_only=True, config=WRITTEN)
+@dataclass(frozen=True, kw_only=True)
 class Blame:
     """A demonstration at fault, with the change that repairs most known takes.
 
@@ -105,6 +104,8 @@ class Blame:
         Against the demonstration.
 
     """
+
+    __pydantic_config__ = WRITTEN
 
     label: str
     demonstration: int

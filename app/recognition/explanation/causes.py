@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Final
 
 import numpy as np
-from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
@@ -134,7 +133,7 @@ ADDED: Final[Mapping[str, str]] = {
 }
 
 
-@described_dataclass(frozen=True, kw_only=True, config=WRITTEN)
+@dataclass(frozen=True, kw_only=True)
 class Cause:
     """Why a take is not read as the gesture that was meant.
 
@@ -156,6 +155,8 @@ class Cause:
         Seconds of a demonstration's own clock between which it should be kept; None: not known.
 
     """
+
+    __pydantic_config__ = WRITTEN
 
     kind: CauseKind
     share: float

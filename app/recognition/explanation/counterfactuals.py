@@ -15,7 +15,6 @@ from typing import Annotated, Any, ClassVar, Final, Literal
 
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
-from pydantic.dataclasses import dataclass as described_dataclass
 
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.result import Distance
@@ -235,7 +234,7 @@ class LanguageEffect:
     broken: int
 
 
-@described_dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Counterfactual:
     """An intervention with which the expected gesture is recognised.
 

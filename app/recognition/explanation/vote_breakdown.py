@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-
-from pydantic.dataclasses import dataclass
+from dataclasses import dataclass
 
 from app.recognition.decision.result import Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
