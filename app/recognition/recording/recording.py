@@ -203,11 +203,15 @@ def _require_size(file: Path) -> None:
     """
     size = 0
     with zipfile.ZipFile(file) as archive:
+        if len(set(archive.namelist())) < len(archive.namelist()):
+            raise ValueError("it holds two arrays of one name")
         for info in archive.infolist():
             with archive.open(info) as packed:
                 if np.lib.format.read_magic(packed) != (1, 0):
                     raise ValueError(f"{info.filename} has an unknown header")
                 shape, _, dtype = np.lib.format.read_array_header_1_0(packed)
+            if min(shape, default=0) < 0:
+                raise ValueError(f"{info.filename} has the shape {shape}")
             size += math.prod(shape) * dtype.itemsize
             if size > MOST_BYTES:
                 raise ValueError(f"it would take more than {MOST_BYTES >> 20} MB of memory")

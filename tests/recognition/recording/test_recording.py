@@ -150,6 +150,26 @@ def test_a_small_file_whose_arrays_are_huge_is_refused_before_they_are_read(
         tracemalloc.stop()
 
 
+@pytest.mark.parametrize(
+    ("names", "reason"),
+    [
+        (["world", "people"], "has the shape"),
+        (["time", "world"], "two arrays of one name"),
+    ],
+)
+def test_the_size_of_arrays_cannot_be_hidden(tmp_path: Path, names: list[str], reason: str) -> None:
+    target = tmp_path / "clip.npz"
+    recording().save(target)
+    shapes = [(-(10**12),), (10**9,)]
+    with zipfile.ZipFile(target, "a", zipfile.ZIP_DEFLATED) as archive:
+        for name, shape in zip(names, shapes, strict=True):
+            header = {"descr": "<f8", "fortran_order": False, "shape": shape}
+            with archive.open(f"{name}.npy", "w") as packed:
+                np.lib.format.write_array_header_1_0(packed, header)
+    with pytest.raises(PoseError, match=reason):
+        Recording.load(target)
+
+
 def test_a_newer_file_is_refused_as_such(tmp_path: Path) -> None:
     target = tmp_path / "clip.npz"
     recording().save(target)
