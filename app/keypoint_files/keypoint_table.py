@@ -166,14 +166,14 @@ class KeypointTable:
 
     def __post_init__(self) -> None:
         """Refuse places that can be of no picture: computing with them would overflow."""
-        hands = [hand.xy for frame in self.hands or () for hand in frame]
-        for xy in (self.xy, *hands):
-            largest = np.abs(xy[np.isfinite(xy)]).max(initial=0.0)
-            if largest > LARGEST_COORDINATE:
-                raise KeypointFileError(
-                    f"a keypoint has the coordinate {largest:.3g}, which is in no picture; write "
-                    "keypoints that were not found as empty cells or NaN"
-                )
+        hands = [hand.xy.ravel() for frame in self.hands or () for hand in frame]
+        known = np.concatenate([self.xy.ravel(), *hands])
+        largest = np.abs(known[np.isfinite(known)]).max(initial=0.0)
+        if largest > LARGEST_COORDINATE:
+            raise KeypointFileError(
+                f"a keypoint has the coordinate {largest:.3g}, which is in no picture; write "
+                "keypoints that were not found as empty cells or NaN"
+            )
 
     @property
     def around_zero(self) -> bool:
