@@ -134,13 +134,16 @@ class Workspace:
 
     Parameters
     ----------
+    owner
+        Name of the one who alone may see and change it; empty without names.
     dark
         Dark colours rather than light ones.
 
     """
 
-    def __init__(self, *, dark: bool = True) -> None:
+    def __init__(self, *, owner: str = "", dark: bool = True) -> None:
         self.id = secrets.token_urlsafe(16)
+        self.owner = owner
         self.last_seen = clock.monotonic()
         self._theme = DARK if dark else LIGHT
         self._lock = Lock()

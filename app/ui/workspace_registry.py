@@ -33,7 +33,6 @@ class WorkspaceRegistry:
         self.limit, self.ttl = limit, ttl
         self._lock = Lock()
         self._workspaces: dict[str, Workspace] = {}
-        self._owners: dict[str, str] = {}
 
     def create(self, *, owner: str = "", dark: bool = True) -> Workspace:
         """Open a workspace of a name; when the limit is reached, the one idle longest makes room.
@@ -54,18 +53,18 @@ class WorkspaceRegistry:
             )
         if full:
             self.remove(min(idle, key=lambda workspace: workspace.last_seen).id)
-        workspace = Workspace(dark=dark)
+        workspace = Workspace(owner=owner, dark=dark)
         with self._lock:
             self._workspaces[workspace.id] = workspace
-            self._owners[workspace.id] = owner
         return workspace
 
     def get(self, name: str, owner: str = "") -> Workspace | None:
         """Return an open workspace of a name, counted as used; None if it has no such one."""
         with self._lock:
-            workspace = self._workspaces.get(name) if self._owners.get(name) == owner else None
-        if workspace is not None:
-            workspace.last_seen = clock.monotonic()
+            workspace = self._workspaces.get(name)
+        if workspace is None or workspace.owner != owner:
+            return None
+        workspace.last_seen = clock.monotonic()
         return workspace
 
     def port_of(self, name: str, owner: str = "") -> int | None:
@@ -77,7 +76,6 @@ class WorkspaceRegistry:
         """Close a workspace; False when there is none of that name."""
         with self._lock:
             workspace = self._workspaces.pop(name, None)
-            self._owners.pop(name, None)
         if workspace is None:
             return False
         workspace.close()

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 from http import HTTPStatus
-from typing import Annotated, Final
+from typing import Final
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter, Response
 from pydantic import BaseModel, ConfigDict
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.services.running_studio import CurrentStudio
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
-from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner, find
+from app.api.viser_workspaces.workspace_lookup import CurrentWorkspace, CurrentWorkspaces, Owner
 from app.recognition.errors import OsgError
 from app.ui.workspace_registry import TooManyWorkspacesError
 
 UNSHOWABLE: Final = HTTPStatus(422).name.lower()
 """Code of the problem for a range without anything to show."""
-
-WorkspaceId = Annotated[str, Path(max_length=64, pattern="^[A-Za-z0-9_-]+$")]
 
 
 class WorkspaceOptions(BaseModel):
@@ -58,23 +56,14 @@ def open_workspace(
 
 
 @router.get("/{workspace_id}")
-def find_workspace(
-    workspace_id: WorkspaceId, workspaces: CurrentWorkspaces, owner: Owner
-) -> OpenedWorkspace:
+def find_workspace(workspace: CurrentWorkspace) -> OpenedWorkspace:
     """Return whether a workspace is still open."""
-    workspace = find(workspaces, workspace_id, owner)
     return OpenedWorkspace(id=workspace.id, url=f"/viser/{workspace.id}/")
 
 
 @router.patch("/{workspace_id}", status_code=204)
-def change_workspace(
-    workspace_id: WorkspaceId,
-    options: WorkspaceOptions,
-    workspaces: CurrentWorkspaces,
-    owner: Owner,
-) -> Response:
+def change_workspace(options: WorkspaceOptions, workspace: CurrentWorkspace) -> Response:
     """Change how a workspace looks; what is left out stays."""
-    workspace = find(workspaces, workspace_id, owner)
     if "dark" in options.model_fields_set:
         workspace.set_dark(options.dark)
     if "flat" in options.model_fields_set:
@@ -83,15 +72,8 @@ def change_workspace(
 
 
 @router.put("/{workspace_id}/view", status_code=204)
-def show_view(
-    workspace_id: WorkspaceId,
-    request: ViewRequest,
-    workspaces: CurrentWorkspaces,
-    owner: Owner,
-    studio: CurrentStudio,
-) -> Response:
+def show_view(request: ViewRequest, workspace: CurrentWorkspace, studio: CurrentStudio) -> Response:
     """Show a clip, a range of it, or a recognition."""
-    workspace = find(workspaces, workspace_id, owner)
     view = view_of(studio, request)
     try:
         workspace.show(view, keep_frame=request.keep_frame)
@@ -101,10 +83,7 @@ def show_view(
 
 
 @router.delete("/{workspace_id}", status_code=204)
-def close_workspace(
-    workspace_id: WorkspaceId, workspaces: CurrentWorkspaces, owner: Owner
-) -> Response:
+def close_workspace(workspace: CurrentWorkspace, workspaces: CurrentWorkspaces) -> Response:
     """Close a workspace."""
-    find(workspaces, workspace_id, owner)
-    workspaces.remove(workspace_id)
+    workspaces.remove(workspace.id)
     return Response(status_code=204)

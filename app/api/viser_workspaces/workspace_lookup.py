@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import Depends
+from fastapi import Depends, Path
 from starlette.requests import HTTPConnection
 
 from app.api.http.problems import ProblemError
@@ -35,16 +35,15 @@ def no_workspace() -> ProblemError:
     return ProblemError(404, "not_found", detail)
 
 
-def find(registry: WorkspaceRegistry, workspace_id: str, owner: str) -> Workspace:
-    """Return an open workspace of a name.
-
-    Raises
-    ------
-    ProblemError
-        404 when there is none.
-
-    """
-    workspace = registry.get(workspace_id, owner)
-    if workspace is None:
+def _find(
+    workspace_id: Annotated[str, Path(max_length=64, pattern="^[A-Za-z0-9_-]+$")],
+    workspaces: CurrentWorkspaces,
+    owner: Owner,
+) -> Workspace:
+    if (workspace := workspaces.get(workspace_id, owner)) is None:
         raise no_workspace()
     return workspace
+
+
+CurrentWorkspace = Annotated[Workspace, Depends(_find)]
+"""Type of a route's parameter that receives the sender's workspace of the address; 404 if none."""
