@@ -28,7 +28,6 @@ from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
-from app.api.middleware.identities import identity_of
 from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
@@ -92,9 +91,9 @@ async def upload_clip(
     An upload that repeats an earlier one's `Idempotency-Key` and file answers with that one's clip;
     another file with the same key is refused as `idempotency_key_reused`.
     """
-    if idempotency_key and (name := identity_of(request.scope).name):
+    if idempotency_key and quota.owner:
         # A key belongs to a name: nobody learns of another one's clips by it.
-        idempotency_key = digest(f"{name}\n{idempotency_key}")
+        idempotency_key = digest(f"{quota.owner}\n{idempotency_key}")
     if idempotency_key and (
         earlier := await run_in_threadpool(studio.clips.by_idempotency_key, idempotency_key)
     ):
