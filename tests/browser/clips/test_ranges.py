@@ -157,6 +157,7 @@ def test_ranges_are_labelled_while_the_clip_plays_and_saved_together(
         page.locator("#clip-name").click()
         for _ in range(2):
             page.keyboard.press("Shift+.")
+        expect(page.locator("#clock")).to_contain_text(f"frame {end + 20} of")
     bars = page.locator("#labelled-ranges button")
     expect(bars).to_have_text(["wave", "nod"])
     page.reload()
