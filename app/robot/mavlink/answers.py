@@ -241,6 +241,8 @@ class PatternPlayer:
         self._turn(False)
         # The order may be lost: until it is given up, what is reported shows who has set it.
         self._yields = self.output.vehicle.give_up_seconds
+        # Its answers are told from the order's by the time of the last message.
+        self._sent = now
         return [self._set(self._before)]
 
     def forget(self) -> None:

@@ -88,13 +88,14 @@ class Dive:
         while self.value == BEFORE[self.shown]:
             self.wait(STEP)
 
-    def order(self) -> None:
-        """Give an order for the same output, whose messages are lost."""
-        command = {
+    def order(self) -> int:
+        """Give an order for the same output, whose messages are lost; return its command."""
+        command: int = {
             "lights": mavlink.MAV_CMD_DO_SET_SERVO,
             "tilt": mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
         }[self.shown]
         self.obey(*self.desk.hand_over(CommandStep(command, (13.0, 1400.0), 1, 1), self.now))
+        return command
 
 
 @pytest.mark.parametrize("seconds", OUTAGES)
@@ -159,6 +160,18 @@ def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -
         assert diver.wait_for("done") == "done after all: hold"
         assert diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD
         assert diver.vehicle.asked == asked + 1
+
+
+@pytest.mark.parametrize("shown", ["lights", "tilt"])
+def test_an_order_in_a_pulse_is_not_proven_by_the_answers_to_the_pulse(shown: Shown) -> None:
+    dive = Dive(shown)
+    dive.begin_pulse()
+    command = dive.order()
+    answer = mavlink.MAVLink_command_ack_message(command, mavlink.MAV_RESULT_ACCEPTED)
+    answer.pack(mavlink.MAVLink(None, 1, 1))
+    # Of the pulse, of what restores the value before it, of the order.
+    heard = [dive.desk.hear(answer, dive.now) for _ in range(3)]
+    assert heard == [True, True, False]
 
 
 def test_nothing_is_set_while_nothing_is_reported() -> None:
