@@ -156,6 +156,9 @@ def test_a_library_moves_to_postgresql_and_back(
     with running(Settings()) as server, httpx.Client(base_url=server.address, timeout=60) as client:
         (clip,) = client.get("/api/v1/clips").json()
         assert len(client.get(f"/api/v1/clips/{clip['id']}/takes").json()) == 1
+        invitations = f"{LANGUAGES}/{client.get(LANGUAGES).json()[0]['id']}/invitations"
+        invited = client.post(invitations, json={"people": 1, "days": 7})
+        assert invited.status_code == 201, invited.text
         # Numbers go on after those of the entries that were copied.
         assert client.post(LANGUAGES, json={"name": "on PostgreSQL"}).status_code == 201
         numbers = [entry["id"] for entry in client.get("/api/v1/audit").json()]
@@ -172,4 +175,7 @@ def test_a_library_moves_to_postgresql_and_back(
         assert [each["name"] for each in client.get(LANGUAGES).json()] == ["pool", "on PostgreSQL"]
         assert client.get("/api/v1/clips").json() == [clip]
         assert len(client.get("/api/v1/recognitions").json()) == 1
+        # A move withdraws invitations, as every restore does.
+        (invitation,) = client.get(invitations).json()
+        assert invitation["closed"] == "withdrawn"
         assert [entry["id"] for entry in client.get("/api/v1/audit").json()] == numbers
