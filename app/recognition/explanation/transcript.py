@@ -1,0 +1,462 @@
+"""Transcripts: the strokes of a movement in words, such as "down right, up right, left".
+
+The path of each moving hand is split where the hand stops or turns sharply, as the trimming splits
+it, and where its curve changes its sense. A piece is a straight line in one of eight directions,
+an arc or a loop with its sense, or, if it is not clearly one of these, "a curve". Directions are
+those of the picture.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Final, Literal
+
+import numpy as np
+from pydantic import Field, computed_field
+
+from app.recognition.decision.result import WRITTEN
+from app.recognition.features.motion import STEPS, parse_body_part
+from app.recognition.features.traversals import AS_SHOWN, Traversal
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.poses.landmarks import TORSO
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
+from app.recognition.recording.trimming import GRID_STEP, Motion, measure_motion, split_pieces
+from app.recognition.text.wording import join_words
+
+DIRECTIONS: Final = (
+    "right",
+    "down right",
+    "down",
+    "down left",
+    "left",
+    "up left",
+    "up",
+    "up right",
+)
+"""Directions in steps of an eighth of a turn, from the x axis, x to the right, y down."""
+
+MOST_MOMENTS: Final = 2400
+"""Most moments at which a path is followed: 40 s."""
+
+STEP: Final = 1 / 48
+"""Step along a path at which it is followed, as a share of the diagonal of its extent."""
+
+SHORTEST: Final = 6
+"""Least steps of a piece, an eighth of the extent: less is a wiggle."""
+
+CORNER: Final = math.radians(60)
+"""Least turn within `BEND` steps that is a corner."""
+
+BEND: Final = 5
+
+REVERSAL: Final = math.radians(50)
+"""Least turn back by which a curve changes its sense."""
+
+STRAIGHT: Final = math.radians(55)
+"""Largest turn of a straight line."""
+
+DIRECT: Final = 0.9
+"""Least ratio of distance to path of a straight line."""
+
+LOOP: Final = math.radians(290)
+"""Least turn of a loop."""
+
+CLOSED: Final = 0.3
+"""Largest ratio of distance to path of a loop that does not turn so far."""
+
+PAUSE_SECONDS: Final = 0.5
+"""Shortest pause that is told."""
+
+OTHER_HAND: Final = 0.4
+"""Least extent of a hand's path, as a share of the larger one, that counts as moving too."""
+
+LEAST_MOVING: Final = 0.15
+"""Least extent of a movement in torso lengths: 8 cm; a held hand drifts less."""
+
+PieceKind = Literal["line", "arc", "loop", "curve", "pause"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Piece:
+    """One stroke of a hand.
+
+    Attributes
+    ----------
+    kind
+        What it is.
+    hand
+        The landmark that draws it.
+    direction
+        Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+    turn
+        Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
+    start, end
+        Seconds.
+
+    """
+
+    __pydantic_config__ = WRITTEN
+
+    kind: PieceKind
+    hand: str
+    direction: float | None
+    turn: float
+    start: float
+    end: float
+
+    @computed_field  # type: ignore[prop-decorator]
+    @property
+    def words(self) -> str:
+        """The piece in words."""
+        sense = "clockwise" if self.turn > 0 else "anticlockwise"
+        match self.kind:
+            case "line":
+                return self._way
+            case "arc":
+                return f"{sense} arc {self._way}"
+            case "loop":
+                turns = max(1, round(abs(self.turn) / 360))
+                return f"{sense} loop" if turns == 1 else f"{turns} {sense} loops"
+            case "curve":
+                return "a curve"
+            case _:
+                return "a pause"
+
+    @property
+    def _way(self) -> str:
+        assert self.direction is not None
+        return DIRECTIONS[round(self.direction / 45) % 8]
+
+    def differs(self, other: Piece) -> bool:
+        """Return whether two pieces are clearly not the same stroke."""
+        if "curve" in (self.kind, other.kind):
+            return "pause" in (self.kind, other.kind)
+        if self.kind != other.kind and not {self.kind, other.kind} <= {"line", "arc"}:
+            return {self.kind, other.kind} != {"arc", "loop"} or self.turn * other.turn < 0
+        if self.kind == "loop":
+            return self.turn * other.turn < 0 or round(self.turn / 360) != round(other.turn / 360)
+        if self.direction is None or other.direction is None:
+            return False
+        octants = round(self.direction / 45) - round(other.direction / 45)
+        bent = self.kind == other.kind == "arc" and self.turn * other.turn < 0
+        return bent or 2 <= octants % 8 <= 6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Transcript:
+    """A take and the gesture that was expected, stroke by stroke.
+
+    Attributes
+    ----------
+    shown, expected
+        The pieces of both, in seconds of the take's and of the demonstration's clock.
+    differs
+        Index of the first piece that differs, in both; None where none does.
+
+    """
+
+    __pydantic_config__ = WRITTEN
+
+    shown: Annotated[tuple[Piece, ...], Field(description="Of the take, hand after hand.")]
+    expected: Annotated[tuple[Piece, ...], Field(description="Of the gesture.")]
+    differs: int | None
+
+
+def transcribe(
+    trajectory: Trajectory, salient: Sequence[str] = (), start: float = 0.0
+) -> tuple[Piece, ...]:
+    """Return the strokes of a movement.
+
+    Parameters
+    ----------
+    trajectory
+        The movement.
+    salient
+        The landmarks among which the drawing hands are sought; all when not given.
+    start
+        Second of the clock at which it begins.
+
+    Returns
+    -------
+    The pieces in their order, one hand after the other; empty where nothing moves. Scale, place and
+    clock change nothing but the times.
+
+    """
+    pieces: list[Piece] = []
+    for name in find_drawing_landmarks(trajectory, salient):
+        pieces += _follow(trajectory, name, start)
+    return tuple(pieces)
+
+
+def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
+    """Return the strokes of a gesture's first demonstration; empty for held hand shapes."""
+    if gesture.is_held or gesture.trajectory is None or len(gesture.trajectory) < 2:
+        return ()
+    return transcribe(gesture.trajectory, gesture.salient)
+
+
+def describe_strokes(pieces: Sequence[Piece]) -> str:
+    """Return strokes in words; of two hands, one after the other."""
+    hands = list(dict.fromkeys(each.hand for each in pieces))
+    words = [", ".join(each.words for each in pieces if each.hand == hand) for hand in hands]
+    if len(hands) < 2:
+        return "".join(words)
+    if len(set(words)) == 1:
+        return f"both hands {words[0]}"
+    sides = [parse_body_part(hand).partition("_")[0] for hand in hands]
+    return "; ".join(f"{side} hand {each}" for side, each in zip(sides, words, strict=True))
+
+
+def compare_transcripts(
+    shown: Sequence[Piece], expected: Sequence[Piece], traversal: Traversal = AS_SHOWN
+) -> Transcript:
+    """Compare the strokes of a take with those of a gesture.
+
+    Parameters
+    ----------
+    shown, expected
+        Strokes of the take and of the gesture.
+    traversal
+        The one in which the gesture is nearest to the take: a closed one may begin at any stroke.
+
+    """
+    turned = [tuple(expected)]
+    if traversal.order[0] not in (0, STEPS - 1) and len({each.hand for each in expected}) == 1:
+        turned = [(*expected[at:], *expected[:at]) for at in range(len(expected))]
+    best = max(turned or [()], key=lambda each: _count_alike(shown, each))
+    alike = _count_alike(shown, best)
+    whole = alike == len(shown) == len(best)
+    return Transcript(shown=tuple(shown), expected=best, differs=None if whole else alike)
+
+
+def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
+    """Return how many pieces agree before the first one that differs."""
+    for number, (one, other) in enumerate(zip(shown, expected, strict=False)):
+        if one.differs(other):
+            return number
+    return min(len(shown), len(expected))
+
+
+def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the landmarks that draw: of each moving arm its wrist, or what moves most."""
+    names = [name for name in salient or trajectory.landmarks if name in trajectory.landmarks]
+    wrists = [name for name in trajectory.landmarks if parse_body_part(name).endswith("wrist")]
+    arms = {parse_body_part(name).partition("_")[0] for name in names}
+    chosen = [name for name in wrists if parse_body_part(name).partition("_")[0] in arms] or [
+        name for name in names if name != TORSO
+    ]
+    extents = {name: _measure_extent(_path_of(trajectory, name)) for name in chosen}
+    most = max(extents.values(), default=0.0)
+    if most <= LEAST_MOVING:
+        return ()
+    if not wrists:
+        return (max(extents, key=extents.__getitem__),)
+    return tuple(name for name in chosen if extents[name] >= OTHER_HAND * most)
+
+
+def _path_of(trajectory: Trajectory, name: str) -> FloatArray:
+    return trajectory.xy[:, trajectory.landmarks.index(name)]
+
+
+def _measure_extent(path: FloatArray) -> float:
+    seen = path[np.isfinite(path).all(axis=1)]
+    return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
+
+
+def _follow(trajectory: Trajectory, name: str, start: float) -> Iterator[Piece]:
+    """Yield the pieces of one landmark's path."""
+    count = min(MOST_MOMENTS, math.ceil(float(trajectory.time[-1]) / GRID_STEP) + 1)
+    even = trajectory.select([name]).resample_in_time(max(count, 16))
+    # In extents, so that a small movement is split as a large one.
+    path = even.xy[:, 0] / max(_measure_extent(even.xy[:, 0]), 1e-12)
+    motion = measure_motion([path], even.time)
+    if motion is None:
+        return
+    parts = _list_runs(motion)
+    long = [part for part in parts if len(part.xy) > SHORTEST] or parts[:1]
+    last: Piece | None = None
+    for part in long:
+        here = part.name(name, start)
+        if last is not None and here.start - last.end >= PAUSE_SECONDS:
+            pause = Piece(
+                kind="pause", hand=name, direction=None, turn=0.0, start=last.end, end=here.start
+            )
+            yield last
+            yield pause
+            last = None
+        if last is not None and last.kind == here.kind == "line" and last.words == here.words:
+            here = Piece(**{**vars(here), "start": last.start})
+        elif last is not None:
+            yield last
+        last = here
+    if last is not None:
+        yield last
+
+
+def _list_runs(motion: Motion) -> list[_Run]:
+    """Return the pieces of a path between its corners and changes of sense; loops stay whole."""
+    found: list[_Run] = []
+    for piece in split_pieces(motion):
+        moments = slice(piece.first, piece.last + 1)
+        run = _Run.of(motion.xy[moments], motion.time[moments])
+        if run is None:
+            continue
+        if found and run.continues(found[-1]):
+            found[-1] = found[-1].join(run)
+        else:
+            found.append(run)
+    parts: list[_Run] = []
+    for part in (part for run in found for part in run.split()):
+        if parts and part.closes(parts[-1]):
+            parts[-1] = parts[-1].join(part)
+        else:
+            parts.append(part)
+    return parts
+
+
+@dataclass(frozen=True, eq=False)
+class _Run:
+    """A path at equal steps ``(N, 2)`` and the seconds ``(N,)`` at which each was reached."""
+
+    xy: FloatArray
+    time: FloatArray
+
+    @classmethod
+    def of(cls, xy: FloatArray, time: FloatArray) -> _Run | None:
+        """Follow a path at steps of `STEP`; None where it is shorter than one."""
+        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=1))])
+        if way[-1] < STEP:
+            return None
+        even = np.linspace(0, way[-1], round(way[-1] / STEP) + 1)
+        at = [np.interp(even, way, column) for column in (*xy.T, time)]
+        return cls(np.stack(at[:2], axis=1), at[2])
+
+    @property
+    def headings(self) -> FloatArray:
+        """``(N - 1,)`` radians of each step, without jumps by a full turn."""
+        steps = np.diff(self.xy, axis=0)
+        return np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+
+    def continues(self, before: _Run) -> bool:
+        """Return whether this run goes on where, when and as another one ended: no corner."""
+        last, first = before.headings[-BEND:], self.headings[:BEND]
+        turn = (float(first.mean() - last.mean()) + math.pi) % (2 * math.pi) - math.pi
+        return abs(turn) < CORNER and self.time[0] - before.time[-1] < PAUSE_SECONDS
+
+    def closes(self, before: _Run) -> bool:
+        """Return whether this run and the one before it are the two halves of a loop."""
+        senses = [run.turn for run in (before, self) if STRAIGHT <= abs(run.turn) < LOOP]
+        whole = before.join(self)
+        return (
+            len(senses) == 2
+            and senses[0] * senses[1] > 0
+            and whole.direct < CLOSED
+            and self.time[0] - before.time[-1] < PAUSE_SECONDS
+        )
+
+    @property
+    def turn(self) -> float:
+        """Radians that it turns, positive: clockwise."""
+        headings = self.headings
+        return float(headings[-2:].mean() - headings[:2].mean()) if len(headings) > 3 else 0.0
+
+    @property
+    def direct(self) -> float:
+        """Distance from its start to its end over its length."""
+        way = float(np.linalg.norm(np.diff(self.xy, axis=0), axis=1).sum())
+        return float(np.linalg.norm(self.xy[-1] - self.xy[0])) / max(way, 1e-12)
+
+    def join(self, after: _Run) -> _Run:
+        """Return both as one."""
+        return _Run(np.concatenate([self.xy, after.xy]), np.concatenate([self.time, after.time]))
+
+    def between(self, first: int, last: int) -> _Run:
+        """Keep the steps from first to last."""
+        return _Run(self.xy[first : last + 1], self.time[first : last + 1])
+
+    def split(self) -> list[_Run]:
+        """Split at corners, and where the curve turns the other way."""
+        cuts = [0, *self._find_corners(), len(self.xy) - 1]
+        parts = [self.between(a, b) for a, b in itertools.pairwise(cuts)]
+        return [bent for part in parts for bent in part._split_bends()]
+
+    def _find_corners(self) -> list[int]:
+        """Return the points at which the path turns by `CORNER` within `BEND` steps."""
+        headings = self.headings
+        if len(headings) <= 2 * BEND:
+            return []
+        # The direction after a point, over as many steps, minus that before it.
+        window = np.convolve(headings, np.ones(BEND) / BEND, mode="valid")
+        turns = np.abs(window[BEND:] - window[:-BEND])
+        corners = []
+        while turns.max(initial=0.0) >= CORNER:
+            at = int(turns.argmax())
+            corners.append(at + BEND)
+            turns[max(0, at - 2 * BEND + 1) : at + 2 * BEND] = 0
+        return sorted(corners)
+
+    def _split_bends(self) -> list[_Run]:
+        """Split where the sense of the curve changes by more than `REVERSAL`."""
+        headings = self.headings
+        cuts, low, high = [0], 0, 0
+        sense = 0
+        for at, heading in enumerate(headings.tolist()):
+            low = at if heading < headings[low] else low
+            high = at if heading > headings[high] else high
+            if sense >= 0 and headings[high] - heading > REVERSAL:
+                if sense > 0:
+                    cuts.append(high)
+                sense, low = -1, at
+                high = at
+            elif sense <= 0 and heading - headings[low] > REVERSAL:
+                if sense < 0:
+                    cuts.append(low)
+                sense, high = 1, at
+                low = at
+        cuts.append(len(self.xy) - 1)
+        return [self.between(a, b) for a, b in itertools.pairwise(cuts) if b > a]
+
+    def name(self, hand: str, start: float) -> Piece:
+        """Return the run as a piece."""
+        turn, chord = self.turn, self.xy[-1] - self.xy[0]
+        is_bent = abs(turn) >= STRAIGHT and _is_monotone(self.headings)
+        kind: PieceKind = "curve"
+        if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
+            kind = "loop"
+        elif self.direct >= DIRECT and abs(turn) < STRAIGHT:
+            kind = "line"
+        elif is_bent:
+            kind = "arc"
+        return Piece(
+            kind=kind,
+            hand=hand,
+            direction=None if kind == "loop" else math.degrees(math.atan2(chord[1], chord[0])),
+            turn=0.0 if kind == "line" else math.degrees(turn),
+            start=start + float(self.time[0]),
+            end=start + float(self.time[-1]),
+        )
+
+
+def _is_monotone(headings: FloatArray) -> bool:
+    """Return whether a path turns mostly one way."""
+    turns = np.diff(headings)
+    return bool(abs(turns.sum()) >= 0.6 * np.abs(turns).sum())
+
+
+def describe_transcript(transcript: Transcript, label: str) -> str:
+    """Return what was shown and what was expected, in one sentence."""
+    if not transcript.shown:
+        return f"No movement of a hand was seen. {label!r} is: {_say(transcript.expected)}."
+    if not transcript.expected:
+        return f"You showed: {_say(transcript.shown)}. {label!r} is a held hand shape."
+    if transcript.differs is None:
+        return f"You showed the strokes of {label!r}: {_say(transcript.shown)}."
+    return f"You showed: {_say(transcript.shown)}. {label!r}: {_say(transcript.expected)}."
+
+
+def _say(pieces: Sequence[Piece]) -> str:
+    return describe_strokes(pieces) or join_words(["no stroke"])
