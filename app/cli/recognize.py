@@ -33,6 +33,7 @@ from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.recording.salute import explain_missing_salutes
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
 from app.recognition.triggers.trigger import SALUTE
@@ -149,11 +150,13 @@ def explain_absence(
             f"{path}: no gesture of {recognizer.language.name!r} found in {seconds}; "
             f"pause before and after a gesture, or give the range: {path}@START-END"
         )
+    elif recognizer.language.trigger == SALUTE:
+        why = explain_missing_salutes(recording.poses, recording.salute, recording.hands)
+        reason = next(why, f"no salute found in {seconds}")
+        people.print(f"{path}: no take: {reason}; or give the range: {path}@START-END")
     else:
+        words = recognizer.language.trigger.words
         people.print(
-            f"{path}: no salute found in {seconds}, so no take; hold the "
-            f"salute for at least 0.3 s, or give the range: {path}@START-END"
-            if recognizer.language.trigger == SALUTE
-            else f"{path}: no take {recognizer.language.trigger.words} found in {seconds}; hold "
+            f"{path}: no take {words} found in {seconds}; hold "
             f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
         )

@@ -30,9 +30,8 @@ from app.recognition.explanation.blame import (
     WEIGHT_OF_GAIN,
     Blame,
     find_blame,
-    read_all,
 )
-from app.recognition.explanation.context import KnownTake
+from app.recognition.explanation.context import KnownTake, read_all
 from benchmarks.accuracy.known_faults import (
     Fault,
     at_rate_of,

@@ -8,7 +8,7 @@ itself, either name is right.
 
 Spoilt demonstrations are the subject of `benchmarks.accuracy.blame`.
 
-    python -m benchmarks.accuracy.known_faults ../shared/data [--draws 6] [--as-near 1.2]
+    python -m benchmarks.accuracy.known_faults ../shared/data [--draws 6] [--explained 0.5]
 """
 
 from __future__ import annotations
@@ -23,14 +23,13 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, PoseSequence, Recognizer
-from app.recognition.explanation.causes import AS_NEAR, find_causes
+from app.recognition.explanation.causes import EXPLAINED, find_causes
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.undoing import Comparison
 from app.recognition.features.motion import find_hands, parse_body_part
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.landmarks import WRISTS, other_side
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import Trajectory
 from benchmarks.accuracy.people import all_sets
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
@@ -245,14 +244,14 @@ def read(recognizer: Recognizer, poses: PoseSequence) -> str | None:
 
 
 def name_first(
-    recognizer: Recognizer, poses: PoseSequence, label: str, as_near: float = AS_NEAR
+    recognizer: Recognizer, poses: PoseSequence, label: str, explained: float = EXPLAINED
 ) -> str | None:
     """Return the kind of the first cause of a take; "right" where it is read right all the same."""
     context = RecognitionContext(recognizer=recognizer, poses=poses, whole=poses)
     try:
         if context.result.label == label:
             return "right"
-        causes = find_causes(context, label, as_near)
+        causes = find_causes(context, label, explained=explained)
     except PoseError:
         return None
     return causes[0].kind.value if causes else "none"
@@ -282,14 +281,14 @@ def list_equal_faults(
     vote: Any = recognizer.vote
     comparison = Comparison(vote, query, gesture, None)
     undone: dict[str, float] = {}
-    for each in comparison.undo_all(Trajectory.from_poses(poses)):
+    for each in comparison.undo_all():
         undone[each.kind] = min(each.novelty, undone.get(each.kind, np.inf))
     least = undone.get(fault, 0.0)
     return {fault} | {kind for kind, novelty in undone.items() if novelty <= max(0.1, least)}
 
 
 def count_causes(
-    recorded: RecordedSet, drawn: Drawn, random: np.random.Generator, as_near: float
+    recorded: RecordedSet, drawn: Drawn, random: np.random.Generator, explained: float
 ) -> Iterator[tuple[str, str, str]]:
     """Yield fault, person and answer of every spoilt take that is no longer read right."""
     labels = drawn.recognizer.language.labels
@@ -304,7 +303,7 @@ def count_causes(
             if fault == "keypoints_jumped" and np.median(np.diff(poses.time)) > SLOWEST_FRAMES:
                 continue
             spoilt = spoil(poses, random)
-            first = name_first(drawn.recognizer, spoilt, label, as_near)
+            first = name_first(drawn.recognizer, spoilt, label, explained)
             if first == "right" or first is None:
                 yield fault, "", first or "unread"
                 continue
@@ -316,7 +315,7 @@ def count_causes(
     for index in random.permutation(drawn.right)[: 2 * PER_LANGUAGE].tolist():
         others = [label for label in labels if label != recorded.labels[index]]
         meant = others[int(random.integers(len(others)))]
-        first = name_first(drawn.recognizer, recorded.recordings[index], meant, as_near)
+        first = name_first(drawn.recognizer, recorded.recordings[index], meant, explained)
         answer = NOTHING if first == "none" else first or "unread"
         yield NOTHING, str(recorded.people[index]), answer
 
@@ -349,7 +348,7 @@ def name_turned(recorded: RecordedSet, folder: Any, drawn: Drawn) -> Iterator[tu
 def main() -> None:
     """Print a line per fault: the share named first, people, takes, and what was named."""
     parser = set_arguments(__doc__, draws=6, queries=120)
-    parser.add_argument("--as-near", type=float, default=AS_NEAR, help="another value of AS_NEAR")
+    parser.add_argument("--explained", type=float, default=EXPLAINED, help="instead of `EXPLAINED`")
     given = parser.parse_args()
     folder = given.data / "trajectories"
     totals: dict[str, Counter[str]] = defaultdict(Counter)
@@ -358,7 +357,7 @@ def main() -> None:
         found: dict[str, Counter[str]] = defaultdict(Counter)
         random = np.random.default_rng(given.seed)
         for drawn in draw_languages(recorded, given.draws, given.queries, given.seed):
-            for fault, person, answer in count_causes(recorded, drawn, random, given.as_near):
+            for fault, person, answer in count_causes(recorded, drawn, random, given.explained):
                 found[fault][answer] += 1
                 people[fault] |= {f"{recorded.name} {person}"} if person else set()
             if recorded.name in ARM_CLASSES:

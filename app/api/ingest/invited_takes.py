@@ -25,12 +25,10 @@ from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language, OsgError
-from app.recognition.explanation.demonstration_faults import (
-    FEW_HANDS,
-    FaultKind,
-)
+from app.recognition.explanation.demonstration_faults import FaultKind
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.recording.clip_range import Demonstration
+from app.recognition.recording.salute import FEW_HANDS
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
 from app.store import (

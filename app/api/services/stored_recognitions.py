@@ -20,7 +20,6 @@ from app.recognition.explanation.context import KnownTake, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     Counterfactual,
     DemonstrationCut,
-    LocatedCut,
 )
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
@@ -176,6 +175,22 @@ def load_known(
         except (OsgError, ProblemError, NotFound):
             continue
         count += 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class LocatedCut(DemonstrationCut):
+    """A cut of a demonstration whose clip is known.
+
+    Attributes
+    ----------
+    clip_id, clip_start, clip_end
+        The clip, and the seconds of its own clock between which the demonstration is kept.
+
+    """
+
+    clip_id: str
+    clip_start: float
+    clip_end: float
 
 
 def locate_cuts(

@@ -17,12 +17,16 @@ import numpy as np
 from pydantic import computed_field
 
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.result import WRITTEN, Recognition
+from app.recognition.decision.result import WRITTEN
 from app.recognition.errors import OsgError
-from app.recognition.explanation.causes import compare_with, full_recognizer
-from app.recognition.explanation.context import KnownTake
+from app.recognition.explanation.context import KnownTake, count_effect, read_all
 from app.recognition.explanation.demonstration_faults import SENTENCES, FaultKind
-from app.recognition.explanation.undoing import Comparison, find_better_range
+from app.recognition.explanation.undoing import (
+    Comparison,
+    compare_with,
+    find_better_range,
+    full_recognizer,
+)
 from app.recognition.gestures.demonstration import MIN_FRAMES
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
@@ -129,7 +133,8 @@ class Blame:
             case "leave_out":
                 return f"{of} is unlike its other ones. Leave it out."
             case _:
-                return f"{of} {SENTENCES[FaultKind.unlike_takes]}. Show it again."
+                effect = f"a take in its place repairs {self.repaired}, breaks {self.broken}"
+                return f"Show the demonstration of {self.label!r} again: {effect}."
 
 
 def find_blame(
@@ -245,22 +250,6 @@ class _Tested:
             yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
 
 
-def read_all(recognizer: Recognizer, takes: Sequence[KnownTake]) -> list[str | None]:
-    """Return the label that each take is read as; None where it is not read as one gesture."""
-    found: list[str | None] = []
-    for take in takes:
-        result = _recognize(recognizer, take.query)
-        found.append(None if result is None else result.label)
-    return found
-
-
-def _recognize(recognizer: Recognizer, query: Trajectory) -> Recognition | None:
-    try:
-        return recognizer.recognize_trajectory(query)
-    except OsgError:
-        return None
-
-
 def _list_changes(
     recognizer: Recognizer,
     gesture: Gesture,
@@ -338,10 +327,6 @@ def _judge(
         after = read_all(Recognizer(language, "full", tuning=recognizer.tuning), known)
     except OsgError:
         return 0, len(known)
-    repaired = broken = 0
-    for index, take in enumerate(known):
-        if index != left_out:
-            was, is_now = before[index] == take.label, after[index] == take.label
-            repaired += is_now and not was
-            broken += was and not is_now
-    return repaired, broken
+    if left_out is not None:
+        after[left_out] = before[left_out]
+    return count_effect(known, before, after)

@@ -1,70 +1,69 @@
 """Causes: why a take is not read as the gesture that was meant, in one sentence with a remedy.
 
-Each kind is tested directly: the change that would undo it is applied, and the take is compared
-again (`undoing`). The one that brings take and gesture nearest with the smallest change is the
-cause, if that is near enough; without such evidence no cause is named.
+No cause is guessed. First stands what the keypoints themselves show, then that two gestures of the
+language are alike, then a fault of the demonstration, and last a change of the take that is proven:
+undoing it (`undoing`) removes most of what is too far, no other change half as much, and the
+drawings show it. Without such evidence no cause is named, and the transcript tells what was shown.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
 import numpy as np
+import numpy.typing as npt
 
-from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.rejection import is_rejected
-from app.recognition.decision.result import WRITTEN, Recognition
+from app.recognition.decision.result import WRITTEN
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import PoseError
+from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
-from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.explanation.hand_differences import (
     find_held_differences,
     find_moving_hand_differences,
 )
-from app.recognition.explanation.undoing import Comparison, Undone, find_better_range
+from app.recognition.explanation.undoing import (
+    Comparison,
+    Undone,
+    compare_with,
+    full_recognizer,
+)
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.poses.trajectory import Trajectory
+from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
+from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
+from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recognizer import Recognizer
 
-EXPLAINED: Final = 0.2
-"""Least share of the distance beyond `USUAL` that a change must remove to be named as cause; chosen
-by `benchmarks.accuracy.known_faults` on people left out."""
+EXPLAINED: Final = 0.6
+"""Least share of the distance beyond `USUAL` that a change must remove to be named as cause."""
+
+NEXT: Final = 0.5
+"""Largest share of the next kind of change, relative to that of the one that is named; both are
+chosen by `benchmarks.accuracy.misreadings`, people left out."""
+
+PAIR: Final = 0.1
+"""Share that a take that is turned over and lacks an end must remove more than either alone."""
 
 USUAL: Final = 0.45
 """Novelty of a right take by another person: what no change is expected to remove."""
 
-COST_OF_SIZE: Final = 0.2
-"""Share of the distance that a change must remove in addition for each whole that it cuts away, so
-that of two changes that explain as much the smaller one is named."""
+LEAST_JUMPED: Final = 0.06
+"""Least share of a take's frames in which keypoints leap away, or another body is read."""
 
-SEEN: Final = frozenset({"keypoints_jumped", "other_person"})
-"""Kinds that the keypoints themselves show, whether or not the take is read without the moments."""
-
-LEAST_SEEN: Final = 0.06
-"""Least share of a take's moments at which they are seen."""
-
-CLOSE: Final = 0.15
-"""Novelty by which another gesture may be nearer than the gesture meant after a change: a swipe to
-the left that is shown backwards is one to the right."""
-
-AS_NEAR: Final = 1.1
-"""Largest novelty after a change that turns nothing, over that of the gesture that the take is
-answered as, which explains it well; chosen by `benchmarks.accuracy.known_faults`."""
-
-TURNED: Final = frozenset({"mirrored", "reversed", "upside_down", "other_arm", "turned_away"})
-"""Kinds that change all of the take, of which there are few to choose from."""
-
-MOST_LEFT: Final = 1.2
-"""Largest novelty after a change: slightly beyond the limit, since a take may have two faults."""
+LEAST_MIXED: Final = 0.2
+"""Least share of a take's frames in which left and right are mixed, or an arm is not seen."""
 
 ALIKE: Final = 0.75
 """Novelty of one gesture's demonstration for another gesture below which the two are nearly the
 same in this language."""
+
+CONFUSED: Final = 2
+"""Least known takes of one of two gestures that are read as the other if the two are alike."""
 
 
 class CauseKind(str, Enum):
@@ -89,48 +88,36 @@ class CauseKind(str, Enum):
     not_seen = "not_seen"
 
 
-CAUTION: Final[Mapping[str, float]] = {
-    "reversed": 0.0,
-    "mirrored": 0.04,
-    "upside_down": 0.06,
-    "other_arm": 0.0,
-    "turned_away": 0.0,
-    "too_small": 0.15,
-    "keypoints_jumped": -0.1,
-    "other_person": -0.2,
-    "begun_late": 0.05,
-    "ended_early": 0.05,
-    "part_added": 0.05,
-    "part_missing": 0.1,
-    "demonstration": 0.35,
-}
-"""Share of the distance that a kind must remove in addition: more where there are more changes to
-choose from, less where the keypoints themselves show the fault."""
-
 SENTENCES: Final[Mapping[str, str]] = {
-    "mirrored": "The take is the mirror image of {label}. Show it the other way round.",
-    "reversed": "The take goes through {label} backwards. Begin at its other end.",
+    "mirrored": "The take is the mirror image of {label}{also}. Show it the other way round.",
+    "reversed": "The take goes through {label} backwards{also}. Begin at its other end.",
     "begun_late": "The beginning of {label} is missing. Start earlier, or set the range.",
     "ended_early": "The end of {label} is missing. Finish it, or set the range.",
     "part_missing": "A part of {label} is missing in the middle. Show all of it.",
-    "upside_down": "The take shows {label} upside down. Show it upright.",
-    "other_arm": "The take shows {label} with the other arm. Use the demonstrated one.",
-    "turned_away": "The diver is turned away from the camera. Face it and repeat.",
-    "too_small": "The movement is too small for {label}. Show it larger.",
-    "keypoints_jumped": "The keypoints of the arm jumped. Film nearer, or in better light.",
+    "upside_down": "The take shows {label} upside down{also}. Show all of it upright.",
+    "other_arm": "The take shows {label} with the other arm{also}. Use the demonstrated one.",
+    "turned_away": "The diver is turned {degrees:.0f} degrees away. Face the camera, and repeat.",
+    "too_small": "The movement is too small for {label}{also}. Show it larger.",
+    "keypoints_jumped": "Keypoints jumped in {frames}. Film nearer, or in better light.",
+    "mixed": "Left and right were mixed in {frames}. Film it in better light.",
     "no_hand": "No hand is seen, but its shape counts. Show the hand nearer.",
-    "other_person": "Another person's body was read for a while. Film one diver alone.",
+    "other_person": "Another person's body was read in {frames}. Film one diver alone.",
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",
-    "demonstration": "{words}",
-    "not_seen": "A keypoint that {label} needs is not seen moving. Film the whole arm.",
-}
-"""The cause and what the diver can do, at most fifteen words with labels of one word."""
-
-ADDED: Final[Mapping[str, str]] = {
+    "not_seen": "The arm is not seen in {frames}. Film all of it.",
+    "not_comparable": "A keypoint that {label} needs is not seen moving. Film the whole arm.",
     "start": "A movement before {label} was added. Begin later, or set the range.",
     "middle": "A movement in the middle of {label} was added. Leave it out.",
     "end": "A movement after {label} was added. Stop earlier, or set the range.",
 }
+"""The cause and what the diver can do, at most fifteen words with labels of one word; of added
+parts by their place."""
+
+ALSO: Final[Mapping[str, str]] = {
+    "": "",
+    "begun_late": " and lacks its beginning",
+    "ended_early": " and is unfinished",
+}
+"""What a take that is turned over lacks too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,13 +133,14 @@ class Cause:
         1 for what is seen directly, such as an unseen hand.
     sentence
         The cause and what the diver can do, at most fifteen words.
+    also
+        What a take that is turned over lacks too; None: nothing.
     start, end
         Seconds in the take's clock of what differs; None: throughout. For what is missing, `start`
         equals `end`.
     label, demonstration
-        Gesture and number of the demonstration at fault; None where the take is.
-    keep
-        Seconds of a demonstration's own clock between which it should be kept; None: not known.
+        Gesture and number of the demonstration at fault, or the gesture that is nearly alike; None
+        where the take is at fault.
 
     """
 
@@ -161,17 +149,23 @@ class Cause:
     kind: CauseKind
     share: float
     sentence: str
+    also: CauseKind | None = None
     start: float | None = None
     end: float | None = None
     label: str | None = None
     demonstration: int | None = None
-    keep: tuple[float, float] | None = None
 
 
 def find_causes(
-    context: RecognitionContext, expected: str, as_near: float = AS_NEAR
+    context: RecognitionContext,
+    expected: str,
+    readings: Sequence[str | None] = (),
+    blame: Sequence[Blame] = (),
+    *,
+    explained: float = EXPLAINED,
+    following: float = NEXT,
 ) -> tuple[Cause, ...]:
-    """Find why a take is not read as the gesture that was meant, the first cause first.
+    """Find why a take is not read as the gesture that was meant, the surest cause first.
 
     Parameters
     ----------
@@ -179,132 +173,83 @@ def find_causes(
         The take and the recogniser.
     expected
         A label of its language.
-    as_near
-        See `AS_NEAR`; smaller: fewer causes of takes that are answered as another gesture.
+    readings
+        What each of `RecognitionContext.known` is read as; empty: not known.
+    blame
+        Demonstrations of the gesture that are at fault for the known takes.
+    explained, following
+        See `EXPLAINED` and `NEXT`.
 
     Returns
     -------
     The causes that there is evidence for, at most one of a kind; empty for a take that is read
-    right, and where nothing that was undone explains the distance.
+    right, and where nothing is seen or proven.
 
     """
     if context.result.label == expected:
         return ()
     recognizer = full_recognizer(context.recognizer)
     at = recognizer.language.labels.index(expected)
-    trace = context.trace
-    if unseen := _find_unseen(context.result):
-        return (_name(unseen, 1.0, expected),)
-    table = recognizer.compare(trace.query)
+    table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    if shaped := _compare_hands(context, recognizer, table, gesture):
-        return (shaped,)
-    found = []
-    comparison = compare_with(recognizer, trace.query, table, at)
-    if comparison is not None:
-        start = float(context.poses.time[0])
-        rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
-        raw = Trajectory.from_poses(context.poses)
-        answered = as_near if context.result.label is not None else None
-        found = weigh_changes(comparison, raw, expected, start, rival, answered)
-    number = table.nearest_demonstration(at)
-    found = [
-        replace(each, demonstration=number) if each.kind is CauseKind.demonstration else each
-        for each in found
-    ]
-    of_gesture = context.faults.get(expected, ())
-    faults = of_gesture[number] if number < len(of_gesture) else ()
-    if faults:
-        keep = None if comparison is None else find_better_range([comparison])
-        blamed = _blame(faults[0], expected, number, keep)
-        first = not found or found[0].kind.value in {*CUTS, "too_small"}
-        found = [each for each in found if each.kind is not CauseKind.demonstration]
-        found.insert(0 if first else 1, blamed)
-    if not found and not np.isfinite(table.scores[at]):
-        found.append(_name("not_seen", 1.0, expected))
-    if near := _find_near_gesture(recognizer, table, context.result, at):
+    found = list(_list_seen(context, recognizer, table, gesture))
+    if near := _find_near_gesture(context, recognizer, table, at, readings):
         found.append(near)
+    if bad := _find_bad_demonstration(context, table, at, blame):
+        found.append(bad)
+    comparison = compare_with(recognizer, context.trace.query, table, at)
+    if comparison is not None and (proven := prove_change(comparison, explained, following)):
+        rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
+        if proven[1].novelty <= rival:
+            found.append(_name_change(comparison, *proven, expected, float(context.poses.time[0])))
+    if not found and not np.isfinite(table.scores[at]):
+        sentence = SENTENCES["not_comparable"].format(label=repr(expected))
+        found.append(Cause(kind=CauseKind.not_seen, share=1.0, sentence=sentence))
     return tuple(found)
 
 
-CUTS: Final = frozenset(
-    {"begun_late", "ended_early", "part_missing", "part_added", "demonstration"}
-)
-"""Kinds that cut something away; a demonstration at fault looks like them in a good take."""
+def _find_bad_demonstration(
+    context: RecognitionContext, table: ScoreTable, at: int, blame: Sequence[Blame]
+) -> Cause | None:
+    """Return the fault of a demonstration: by the known takes, or seen in its clip."""
+    label, number = context.language.labels[at], table.nearest_demonstration(at)
+    faults = context.faults.get(label, ())
+    if blame:
+        number, sentence = blame[0].demonstration, blame[0].sentence
+    elif number < len(faults) and faults[number]:
+        sentence = faults[number][0].describe(label)
+    else:
+        return None
+    kind = CauseKind.demonstration
+    return Cause(kind=kind, share=1.0, sentence=sentence, label=label, demonstration=number)
 
 
-def full_recognizer(recognizer: Recognizer) -> Recognizer:
-    """Return the recogniser of profile ``full`` for a language; causes are sought by its vote."""
-    if isinstance(recognizer.vote, FusedVote):
-        return recognizer
-    return Recognizer(recognizer.language, "full")
+def prove_change(
+    comparison: Comparison, explained: float = EXPLAINED, following: float = NEXT
+) -> tuple[float, Undone] | None:
+    """Return the one change that explains a take's distance, and the share of it that it removes.
 
-
-def compare_with(
-    recognizer: Recognizer, query: Trajectory, table: ScoreTable, at: int
-) -> Comparison | None:
-    """Return the comparison of a take with a gesture's nearest demonstration; None without one."""
-    shown = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    vote = recognizer.vote
+    None where none removes `explained` of it, where another kind removes more than `following` of
+    that share, or where the drawings do not show it.
+    """
+    best: dict[tuple[str, str], tuple[float, Undone]] = {}
+    for undone in comparison.undo_all():
+        share = measure_share(comparison.base, undone.novelty)
+        key = undone.kind, undone.also
+        if key not in best or share > best[key][0]:
+            best[key] = share, undone
+    alone = {kind: found[0] for (kind, also), found in best.items() if not also}
+    first, (share, undone) = max(
+        best.items(), key=lambda each: each[1][0] - PAIR * bool(each[0][1])
+    )
+    others = [each for kind, each in alone.items() if kind not in first]
     if (
-        not isinstance(vote, FusedVote)
-        or shown.trajectory is None
-        or shown.is_held
-        or len(shown.trajectory) < 2
-        or len(query) < 2
-        or not shown.salient
+        share < explained
+        or max(others, default=0.0) > following * share
+        or not comparison.is_drawn(undone)
     ):
         return None
-    return Comparison(vote, query, shown, table.traversals[at], mirrored=bool(table.mirrored[at]))
-
-
-def weigh_changes(
-    comparison: Comparison,
-    raw: Trajectory,
-    label: str,
-    start: float = 0.0,
-    rival: float = math.inf,
-    as_near: float | None = None,
-) -> list[Cause]:
-    """Return the kinds of changes that explain the distance of a take, the best first.
-
-    Parameters
-    ----------
-    comparison
-        The take and the demonstration.
-    raw
-        The take at the moments of its frames, before repair, which hides jumps.
-    label
-        The gesture's.
-    start
-        Second of the take's clock at which it begins.
-    rival
-        Novelty of the take for another gesture, which explains it better than a change by which it
-        is farther.
-    as_near
-        See `AS_NEAR`; None for a take that is not answered as another gesture.
-
-    """
-    base = comparison.base
-    best: dict[str, tuple[float, float, Undone]] = {}
-    for undone in comparison.undo_all(raw):
-        share = measure_share(base, undone.novelty)
-        cost = COST_OF_SIZE * undone.size if undone.kind in CUTS else 0.0
-        worth = share - cost - CAUTION[undone.kind]
-        if undone.kind not in best or worth > best[undone.kind][0]:
-            best[undone.kind] = (worth, share, undone)
-    ordered = sorted(best.values(), key=lambda each: -each[0])
-    named = []
-    for worth, share, undone in ordered:
-        most = rival + CLOSE
-        if as_near is not None and undone.kind not in TURNED:
-            most = as_near * rival
-        near = undone.novelty <= min(MOST_LEFT, most)
-        seen = undone.kind in SEEN and undone.size >= LEAST_SEEN and (near or as_near is None)
-        if (worth >= EXPLAINED and near) or seen:
-            keep = comparison.locate_cut(undone.cut) if any(undone.cut) else None
-            named.append(replace(_name(undone.kind, share, label, undone, start), keep=keep))
-    return named
+    return share, undone
 
 
 def measure_share(before: float, after: float) -> float:
@@ -315,46 +260,74 @@ def measure_share(before: float, after: float) -> float:
     return min(1.0, max(0.0, 1.0 - max(0.0, after - USUAL) / beyond)) if beyond > 0 else 0.0
 
 
-def _name(
-    kind: str, share: float, label: str, undone: Undone | None = None, start: float = 0.0
+def _name_change(
+    comparison: Comparison, share: float, undone: Undone, label: str, begins: float
 ) -> Cause:
-    """Return a cause with its sentence."""
-    template = ADDED[undone.where] if kind == "part_added" and undone else SENTENCES[kind]
-    words = f"The demonstration of {label!r} has more at both ends than the take. Set its range."
-    sentence = template.format(label=repr(label), words=words)
-    if undone is None:
-        return Cause(kind=CauseKind(kind), share=share, sentence=sentence)
+    """Return a proven change as a cause."""
+    assert undone.part is not None or undone.kind != "part_added"
+    key = undone.part.where if undone.part and undone.kind == "part_added" else undone.kind
+    start, end = comparison.locate(undone)
     return Cause(
-        kind=CauseKind(kind),
+        kind=CauseKind(undone.kind),
         share=share,
-        sentence=sentence,
-        start=None if undone.start is None else start + undone.start,
-        end=None if undone.end is None else start + undone.end,
-        label=label if kind == "demonstration" else None,
+        sentence=SENTENCES[key].format(label=repr(label), also=ALSO[undone.also]),
+        also=CauseKind(undone.also) if undone.also else None,
+        start=None if start is None else begins + start,
+        end=None if end is None else begins + end,
     )
 
 
-def _blame(
-    fault: DemonstrationFault, label: str, demonstration: int, keep: tuple[float, float] | None
-) -> Cause:
-    """Return a fault of a demonstration as a cause; `keep` is a better range if one is known."""
-    return Cause(
-        kind=CauseKind.demonstration,
-        share=1.0,
-        sentence=fault.describe(label),
-        label=label,
-        demonstration=demonstration,
-        keep=keep if fault.remedy == "set_range" else None,
-    )
+def _list_seen(
+    context: RecognitionContext, recognizer: Recognizer, table: ScoreTable, gesture: Gesture
+) -> Iterator[Cause]:
+    """Yield what the keypoints and the hand themselves show, what most frames show first."""
+    fault = context.result.fault_kind
+    if fault == "unseen_hand":
+        yield Cause(kind=CauseKind.no_hand, share=1.0, sentence=SENTENCES["no_hand"])
+        return
+    found = sorted(_list_bad_frames(context, gesture), key=lambda each: -each[1].mean())
+    for key, bad in found:
+        times = context.poses.time[bad]
+        frames = f"{np.count_nonzero(bad)} of {len(bad)} frames"
+        yield Cause(
+            kind=CauseKind.keypoints_jumped if key == "mixed" else CauseKind(key),
+            share=1.0,
+            sentence=SENTENCES[key].format(frames=frames),
+            start=float(times[0]),
+            end=float(times[-1]),
+        )
+    if context.result.fault is not None and not found:
+        words = context.result.fault
+        kind = CauseKind.keypoints_jumped if fault == "leaps" else CauseKind.not_seen
+        sentence = f"{words[0].upper()}{words[1:]}. Film nearer, or in better light."
+        yield Cause(kind=kind, share=1.0, sentence=sentence)
+    here = context.trace.query.facing
+    there = None if gesture.trajectory is None else gesture.trajectory.facing
+    if here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
+        sentence = SENTENCES["turned_away"].format(degrees=abs(here - there))
+        yield Cause(kind=CauseKind.turned_away, share=1.0, sentence=sentence)
+    if shaped := _compare_hands(context, recognizer, table, gesture):
+        yield shaped
 
 
-def _find_unseen(result: Recognition) -> str | None:
-    """Return the kind of what is not seen: the hand whose shape counts, or a keypoint."""
-    if result.fault_kind == "unseen_hand":
-        return "no_hand"
-    if result.fault_kind is not None:
-        return "keypoints_jumped" if result.fault_kind == "leaps" else "not_seen"
-    return None
+def _list_bad_frames(
+    context: RecognitionContext, gesture: Gesture
+) -> Iterator[tuple[str, npt.NDArray[np.bool_]]]:
+    """Yield what is wrong with the keypoints, and the frames ``(T,)`` where it is, if enough."""
+    poses = context.poses
+    names = [name for name in gesture.salient if name in poses.landmarks]
+    if not names or not poses.seen.any():
+        return
+    raw, repair = Trajectory.from_poses(poses), repair_poses(poses)
+    unseen = np.asarray(~poses.select(names).seen.all(axis=1))
+    masks: dict[str, tuple[npt.NDArray[np.bool_], float]] = {
+        "keypoints_jumped": (find_unsteady(raw, names), LEAST_JUMPED),
+        "mixed": (repair.exchanged | repair.blended, LEAST_MIXED),
+        "other_person": (find_other_body(raw), LEAST_JUMPED),
+        # An arm that is never seen is not shown: the take may be with the other one.
+        "not_seen": (unseen & (not unseen.all()), LEAST_MIXED),
+    }
+    yield from ((key, bad) for key, (bad, least) in masks.items() if bad.mean() >= least)
 
 
 def _compare_hands(
@@ -388,24 +361,42 @@ def _is_by_hand(table: ScoreTable, at: int) -> bool:
 
 
 def _find_near_gesture(
-    recognizer: Recognizer, table: ScoreTable, result: Recognition, at: int
+    context: RecognitionContext,
+    recognizer: Recognizer,
+    table: ScoreTable,
+    at: int,
+    readings: Sequence[str | None],
 ) -> Cause | None:
-    """Return the other gesture that the take is nearer to, where the two are nearly alike."""
-    labels = recognizer.language.labels
-    other = labels.index(result.nearest)
-    if other == at:
-        between = [label for label in result.between if label != labels[at]]
-        if not between:
-            return None
-        other = labels.index(between[0])
-    shown = recognizer.language.gestures[at].trajectory
-    if shown is None or recognizer.language.gestures[other].trajectory is None:
+    """Return the gesture that the take is read as, or asked back with, if the two are alike.
+
+    They are if one's demonstration is as near as a take to the other, or if known takes of one are
+    read as the other.
+    """
+    labels, result = recognizer.language.labels, context.result
+    others = [label for label in (result.nearest, *result.between) if label != labels[at]]
+    if not others or is_rejected(float(table.novelty[at])):
         return None
-    try:
-        novelty = float(recognizer.compare(shown).novelty[other])
-    except PoseError:
+    pair = {labels[at], others[0]}
+    confused = sum(
+        take.label != read and {take.label, read} == pair
+        for take, read in zip(context.known, readings, strict=False)
+    )
+    if confused < CONFUSED and not _are_alike(recognizer, at, labels.index(others[0])):
         return None
-    if not novelty < ALIKE or is_rejected(float(table.novelty[at])):
-        return None
-    sentence = SENTENCES["near_gesture"].format(label=repr(labels[at]), other=repr(labels[other]))
-    return Cause(kind=CauseKind.near_gesture, share=1.0, sentence=sentence, label=labels[other])
+    names = {"label": repr(labels[at]), "other": repr(others[0])}
+    sentence = SENTENCES["near_gesture"].format(**names)
+    return Cause(kind=CauseKind.near_gesture, share=1.0, sentence=sentence, label=others[0])
+
+
+def _are_alike(recognizer: Recognizer, one: int, other: int) -> bool:
+    """Return whether the demonstration of one of two gestures is nearly one of the other."""
+    for shown, compared in ((one, other), (other, one)):
+        trajectory = recognizer.language.gestures[shown].trajectory
+        if trajectory is None or recognizer.language.gestures[compared].trajectory is None:
+            return False
+        try:
+            if recognizer.compare(trajectory).novelty[compared] < ALIKE:
+                return True
+        except PoseError:
+            return False
+    return False

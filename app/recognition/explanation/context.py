@@ -8,6 +8,7 @@ from functools import cached_property
 
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable, Trace
+from app.recognition.errors import OsgError
 from app.recognition.explanation.demonstration_faults import DemonstrationFault
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.tuning import Tuning
@@ -33,6 +34,26 @@ class KnownTake:
 
     label: str
     query: Trajectory
+
+
+def read_all(recognizer: Recognizer, takes: Sequence[KnownTake]) -> list[str | None]:
+    """Return the label that each take is read as; None where it is not read as one gesture."""
+    found: list[str | None] = []
+    for take in takes:
+        try:
+            found.append(recognizer.recognize_trajectory(take.query).label)
+        except OsgError:
+            found.append(None)
+    return found
+
+
+def count_effect(
+    takes: Sequence[KnownTake], before: Sequence[str | None], after: Sequence[str | None]
+) -> tuple[int, int]:
+    """Return how many takes a change repairs and breaks: right with it only, and without only."""
+    rows = list(zip(takes, before, after, strict=True))
+    repaired = sum(was != take.label == now for take, was, now in rows)
+    return repaired, sum(was == take.label != now for take, was, now in rows)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -94,6 +115,11 @@ class RecognitionContext:
 
         """
         return self.recognizer.examine(self.poses)
+
+    @cached_property
+    def readings(self) -> list[str | None]:
+        """What each of the known takes is read as."""
+        return read_all(self.recognizer, self.known)
 
     @property
     def trajectory(self) -> Trajectory:

@@ -19,8 +19,12 @@ from pydantic import InstanceOf, PlainSerializer
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
-from app.recognition.explanation.blame import read_all
-from app.recognition.explanation.context import KnownTake, RecognitionContext
+from app.recognition.explanation.context import (
+    KnownTake,
+    RecognitionContext,
+    count_effect,
+    read_all,
+)
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
@@ -119,34 +123,29 @@ class DemonstrationCut(Intervention):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LocatedCut(DemonstrationCut):
-    """A cut of a demonstration whose clip is known.
+class Trim(Intervention):
+    """Another stretch of the clip; its size is the share of the stroke added or removed.
 
     Attributes
     ----------
-    clip_id, clip_start, clip_end
-        The clip, and the seconds of its own clock between which the demonstration is kept.
+    longer
+        Whether it holds more than the stroke.
 
     """
-
-    clip_id: str
-    clip_start: float
-    clip_end: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Trim(Intervention):
-    """Another stretch of the clip; its size is the share of the stroke added or removed."""
 
     kind = "trim"
     reach = "take"
     start: float
     end: float
+    longer: bool = False
 
     @property
     def words(self) -> str:
         """See `Intervention`."""
-        return f"with the take trimmed to {self.start:.2f}-{self.end:.2f} s"
+        span = f"{self.start:.2f}-{self.end:.2f} s"
+        return (
+            f"with more of the clip, {span}" if self.longer else f"with the take trimmed to {span}"
+        )
 
     def apply(self, context: RecognitionContext) -> RecognitionContext:
         """See `Intervention`."""
@@ -261,11 +260,14 @@ class Counterfactual:
 
     @property
     def rank(self) -> tuple[bool, int, int, float, float]:
-        """The sort key: what repairs most known takes first, this take as demonstration last."""
+        """The sort key: what repairs most known takes first, what does harm last.
+
+        This take as a demonstration comes last too.
+        """
         kind, gained = self.change.kind, 0
         if self.effect is not None:
             gained = self.effect.repaired - self.effect.broken
-        last = kind == FurtherDemonstration.kind
+        last = kind == FurtherDemonstration.kind or gained < 0
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
@@ -325,7 +327,8 @@ def find_counterfactuals(
         ),
         *context.known,
     ]
-    before = read_all(context.recognizer, known)
+    before = [*read_all(context.recognizer, known[: len(known) - len(context.known)])]
+    before += context.readings
     best: dict[str, Counterfactual] = {}
     tried = 0
     for series in list_interventions(context, expected, cuts):
@@ -359,15 +362,14 @@ def _verify(
     effect = None
     if change.reach != "take":
         shown = len(known) - len(context.known)
-        pairs = list(zip(known, before, read_all(after.recognizer, known), strict=True))
+        now_read = read_all(after.recognizer, known)
+        pairs = zip(known[:shown], before[:shown], now_read[:shown], strict=True)
         # The demonstration that is cut is no take of its gesture any more.
         own = change.label if isinstance(change, DemonstrationCut) else None
-        lost = {take.label for take, was, now in pairs[:shown] if was == take.label != now} - {own}
+        lost = {take.label for take, was, now in pairs if was == take.label != now} - {own}
+        repaired, broken = count_effect(known[shown:], before[shown:], now_read[shown:])
         effect = LanguageEffect(
-            lost=tuple(sorted(lost)),
-            takes=len(context.known),
-            repaired=sum(was != take.label == now for take, was, now in pairs[shown:]),
-            broken=sum(was == take.label != now for take, was, now in pairs[shown:]),
+            lost=tuple(sorted(lost)), takes=len(context.known), repaired=repaired, broken=broken
         )
     at = after.result.gestures.index(expected)
     return Counterfactual(
@@ -436,7 +438,12 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
         inside = {(max(a, float(whole[0])), min(b, float(whole[-1]))) for a, b in series}
         inside -= {(start, end)}
         yield [
-            Trim(size=min(1.0, (abs(a - start) + abs(b - end)) / duration), start=a, end=b)
+            Trim(
+                size=min(1.0, (abs(a - start) + abs(b - end)) / duration),
+                start=a,
+                end=b,
+                longer=a < start or b > end,
+            )
             for a, b in inside
             if duration > 0 and min(b, end) - max(a, start) >= LEAST_KEPT * duration - 1e-9
         ]

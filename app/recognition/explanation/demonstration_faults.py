@@ -25,7 +25,7 @@ from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import find_salient_landmarks
 from app.recognition.recording.clip_range import find_demonstration
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.salute import ENTER_SCORE, HOLD_SECONDS
+from app.recognition.recording.salute import FEW_HANDS, HOLD_SECONDS, find_held
 from app.recognition.recording.segmentation import Bracket, find_brackets, takes_in
 from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -79,9 +79,6 @@ MOST_REPAIRED = 0.25
 LEAST_FOLLOWED = 0.8
 """Least share of a stroke's frames in which each salient keypoint is seen."""
 
-FEW_HANDS = 0.25
-"""Share of frames with a hand below which salutes and hand shapes are not seen reliably."""
-
 
 class FaultKind(str, Enum):
     """What is wrong with a demonstration, the gravest first."""
@@ -108,7 +105,7 @@ SENTENCES: Final = {
     FaultKind.keypoints_jumped: "has keypoints that jump",
     FaultKind.keypoints_missing: "has a keypoint that is often not seen",
     FaultKind.no_hand: "shows no hand, but hands count",
-    FaultKind.unlike_takes: "is unlike the takes that should be it",
+    FaultKind.unlike_takes: "is unlike its takes",
 }
 
 REMEDIES: Final[dict[Remedy, str]] = {
@@ -198,11 +195,8 @@ def find_triggers(
 ) -> tuple[tuple[float, float], ...]:
     """Return start and end, in seconds, of every trigger held long enough."""
     scores = np.maximum(*trigger.score(recording.poses, recording.salute))
-    held, hold = scores >= ENTER_SCORE, POSE_SECONDS if trigger.start else HOLD_SECONDS
-    steps = np.flatnonzero(np.diff(np.concatenate([[False], held, [False]])))
-    time = recording.poses.time
-    ranges = [(float(time[a]), float(time[b - 1])) for a, b in steps.reshape(-1, 2)]
-    return tuple((start, end) for start, end in ranges if end - start >= hold)
+    hold = POSE_SECONDS if trigger.start else HOLD_SECONDS
+    return find_held(recording.poses.time, scores, hold)
 
 
 def describe_count(trigger: Trigger, count: int) -> str:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, InstanceOf, computed_field
+from pydantic import BaseModel, ConfigDict, Field, computed_field
 
 from app.recognition.decision.result import WRITTEN, Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
@@ -23,7 +23,7 @@ from app.recognition.explanation.alignment import (
     find_nearest_example,
 )
 from app.recognition.explanation.blame import Blame, find_blame
-from app.recognition.explanation.causes import Cause, find_causes
+from app.recognition.explanation.causes import Cause, CauseKind, find_causes
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     NONE_NEEDED,
@@ -31,15 +31,19 @@ from app.recognition.explanation.counterfactuals import (
     KeptRange,
     find_counterfactuals,
 )
-from app.recognition.explanation.divergence import Divergence, measure_divergence
+from app.recognition.explanation.transcript import (
+    Transcript,
+    compare_transcripts,
+    describe_transcript,
+    transcribe,
+    transcribe_gesture,
+)
+from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.motion import build_movement
+from app.recognition.features.traversals import AS_SHOWN
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.gestures.profile import PROFILES
-from app.recognition.text.wording import humanize, join_words
-
-CLEAR = 0.5
-"""Least share of a path's cost in the stretch where it differs most to be told as the reason."""
 
 
 class Explanation(BaseModel):
@@ -82,8 +86,8 @@ class Explanation(BaseModel):
         Why, the cause first; empty for a right recognition and without evidence.
     blame
         Demonstrations of the expected gesture that are at fault for the known takes.
-    divergence
-        Where the query's path differs most from the expected gesture's; None without paths.
+    transcript
+        The strokes of the take and of the expected gesture.
     counterfactuals
         Interventions that would have corrected the recognition, see `Counterfactuals.found`.
     tried
@@ -113,7 +117,7 @@ class Explanation(BaseModel):
     alignments: tuple[AlignmentInJson, ...]
     causes: tuple[Cause, ...]
     blame: tuple[Blame, ...]
-    divergence: Annotated[InstanceOf[Divergence] | None, Field(exclude=True)]
+    transcript: Transcript
     counterfactuals: tuple[Counterfactual, ...]
     tried: int
 
@@ -149,25 +153,12 @@ class Explanation(BaseModel):
     @computed_field  # type: ignore[prop-decorator]
     @property
     def sentence(self) -> str:
-        """The cause and what the diver can do, at most fifteen words with one-word labels."""
+        """The cause and what the diver can do; without a cause what was shown and expected."""
         if self.right:
             return f"Read as {self.expected!r}, as expected."
-        if self.blame:
-            return self.blame[0].sentence
         if self.causes:
             return self.causes[0].sentence
-        if self.between:
-            named = join_words([repr(each) for each in self.between])
-            return f"The take lies between {named}. Show it again, more clearly."
-        if self.label is not None:
-            return f"The take looks like {self.label!r}. Compare the drawings."
-        parted = self.divergence
-        if parted is None or parted.share < CLEAR or parted.shown == parted.expected:
-            return "No single cause explains it. Compare the drawings, or show it again."
-        return (
-            f"At {parted.start:.1f} s the {humanize(parted.landmark)} {parted.shown}, not "
-            f"{parted.expected.removeprefix('goes ')}."
-        )
+        return describe_transcript(self.transcript, self.expected)
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -194,7 +185,9 @@ class Explanation(BaseModel):
                 f"Of {first.takes} known takes this repairs {first.repaired} and breaks "
                 f"{first.broken}."
             )
-        yield from (f"Also likely: {each.sentence}" for each in self.causes[1:3])
+        if self.causes and self.transcript.shown:
+            yield describe_transcript(self.transcript, self.expected)
+        yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
         if self.facing is not None:
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
@@ -236,14 +229,13 @@ def explain(
     at = result.gestures.index(expected)
     other = _find_other(result, expected)
     pairings = _Pairings(context)
+    gesture = table.find_nearest_demonstration(context.language.gestures, at)
     wanted = with_counterfactuals and result.label != expected
-    causes = find_causes(context, expected)
     blame = find_blame(context.recognizer, context.known, [expected]) if wanted else ()
-    found = (
-        find_counterfactuals(context, expected, _list_cuts(causes, blame))
-        if wanted
-        else NONE_NEEDED
-    )
+    causes = find_causes(context, expected, context.readings if wanted else (), blame)
+    found = NONE_NEEDED
+    if wanted:
+        found = find_counterfactuals(context, expected, _list_cuts(context, at, causes, blame))
     return Explanation(
         profile=result.profile,
         expected=expected,
@@ -270,25 +262,30 @@ def explain(
         ),
         causes=causes,
         blame=blame,
-        divergence=None if result.label == expected else pairings.divergence(at),
+        transcript=compare_transcripts(
+            transcribe(context.trajectory, gesture.salient, float(context.poses.time[0])),
+            transcribe_gesture(gesture),
+            table.traversals[at] or AS_SHOWN,
+        ),
         counterfactuals=found.found,
         tried=found.tried,
     )
 
 
-def _list_cuts(causes: Sequence[Cause], blame: Sequence[Blame]) -> list[KeptRange]:
-    """Return the better ranges of demonstrations that are at fault."""
-    by_takes = [
+def _list_cuts(
+    context: RecognitionContext, at: int, causes: Sequence[Cause], blame: Sequence[Blame]
+) -> list[KeptRange]:
+    """Return the better ranges of demonstrations that are at fault, by known takes and by this."""
+    cuts = [
         (each.demonstration, each.start, each.end)
         for each in blame
         if each.start is not None and each.end is not None
     ]
-    seen = [
-        (each.demonstration, *each.keep)
-        for each in causes
-        if each.demonstration is not None and each.keep is not None
-    ]
-    return by_takes + seen
+    faulty = [each for each in causes if each.kind is CauseKind.demonstration]
+    comparison = compare_with(context.recognizer, context.trajectory, context.score_table, at)
+    if faulty and comparison is not None and (span := find_better_range([comparison])):
+        cuts.append((context.score_table.nearest_demonstration(at), *span))
+    return cuts
 
 
 def _find_other(result: Recognition, expected: str) -> int | None:
@@ -325,17 +322,6 @@ class _Pairings:
             aligned = align(query, example, self._landmarks, start=self._start, by=kind)
             if aligned is not None:
                 yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
-
-    def divergence(self, index: int) -> Divergence | None:
-        """Return where the query's path differs most from a gesture's."""
-        example = self._example(index)
-        if example is None or len(self._query) < 2:
-            return None
-        query = build_movement(self._query, self._landmarks)
-        aligned = align(query, example, self._landmarks, start=self._start)
-        if aligned is None:
-            return None
-        return measure_divergence(aligned, query.paths, example.movement.paths)
 
     def _gesture(self, index: int) -> Gesture:
         return self._table.find_nearest_demonstration(self._gestures, index)

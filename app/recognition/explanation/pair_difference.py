@@ -6,12 +6,16 @@ from dataclasses import dataclass
 from typing import Final
 
 from app.recognition.explanation.alignment import Alignment, Example, align
-from app.recognition.explanation.causes import CauseKind, compare_with, weigh_changes
-from app.recognition.explanation.divergence import measure_divergence
+from app.recognition.explanation.causes import CauseKind, prove_change
+from app.recognition.explanation.transcript import (
+    compare_transcripts,
+    transcribe,
+    transcribe_gesture,
+)
+from app.recognition.explanation.undoing import compare_with
 from app.recognition.features.motion import build_movement
 from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer
-from app.recognition.text.wording import humanize
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,19 +70,20 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     alignment = None if example is None else align(movement, example, landmarks)
     if example is None or alignment is None:
         return None
-    parted = measure_divergence(alignment, movement.paths, example.movement.paths)
-    named = weigh_changes(comparison, query, against.label)
-    if named:
-        words = CLAUSES[named[0].kind].format(other=repr(against.label))
-        if named[0].start is not None:
-            words += f" at {named[0].start:.1f} s"
-    else:
-        words = (
-            f"it is almost the same movement as {against.label!r} and differs most from "
-            f"{parted.start:.1f} to {parted.end:.1f} s, when the {humanize(parted.landmark)} "
-            f"{parted.shown}"
+    expected = transcribe_gesture(against)
+    strokes = compare_transcripts(transcribe(query, shown.salient), expected, traversal)
+    words, span = f"it has the strokes of {against.label!r}", (0.0, float(query.time[-1]))
+    if strokes.differs is not None:
+        ours, theirs = (
+            row[strokes.differs] if strokes.differs < len(row) else None
+            for row in (strokes.shown, strokes.expected)
         )
-    return PairDifference(words, (parted.start, parted.end), alignment)
+        ways = [each.words if each else "ended" for each in (ours, theirs)]
+        words = f"it goes {ways[0]} where {against.label!r} goes {ways[1]}"
+        span = (ours.start, ours.end) if ours else (strokes.shown[-1].end, strokes.shown[-1].end)
+    if proven := prove_change(comparison):
+        words = CLAUSES[CauseKind(proven[1].kind)].format(other=repr(against.label))
+    return PairDifference(words, span, alignment)
 
 
 CLAUSES: Final = {
@@ -86,14 +91,10 @@ CLAUSES: Final = {
     CauseKind.reversed: "it goes through {other} backwards",
     CauseKind.upside_down: "it is {other} upside down",
     CauseKind.other_arm: "it is {other} with the other arm",
-    CauseKind.turned_away: "it is {other} by a diver who is turned away",
     CauseKind.too_small: "it is a smaller {other}",
     CauseKind.begun_late: "it lacks the beginning of {other}",
     CauseKind.ended_early: "it lacks the end of {other}",
     CauseKind.part_missing: "it lacks a part in the middle of {other}",
     CauseKind.part_added: "it has a part that {other} has not",
-    CauseKind.demonstration: "it lacks both ends of {other}",
-    CauseKind.keypoints_jumped: "its keypoints jump, otherwise it is {other}",
-    CauseKind.other_person: "another body is in it, otherwise it is {other}",
 }
 """What undoing one change shows of two demonstrations, as a clause."""

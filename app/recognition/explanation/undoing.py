@@ -1,16 +1,17 @@
-"""Undoing: changes of a take or a demonstration, and how much nearer each brings the two.
+"""Undoing: changes of a take, and how much nearer each brings it to a demonstration.
 
-A cause is tested by its inverse: the take is mirrored back, reversed, turned upright, cut, freed
-of the moments at which keypoints jumped, or the demonstration is cut, and both are compared again
-with the weights and the limit of the language.
+A cause is tested by its inverse: the take is mirrored back, reversed, turned upright, or a part of
+it or of the demonstration is left out, and both are compared again with the weights and the limit
+of the language. A take that is turned over may also lack an end.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+from typing import Final, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,7 @@ import numpy.typing as npt
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.fusion import fuse
 from app.recognition.decision.references import SMALLER, Described, References, describe_movement
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.features.motion import (
     SHARES,
     SIZE,
@@ -27,56 +29,91 @@ from app.recognition.features.motion import (
     find_hands,
 )
 from app.recognition.features.traversals import AS_SHOWN, Traversal, list_traversals
-from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
+from app.recognition.recognizer import Recognizer
 from app.recognition.voters.registry import MOTION_VOTERS, VOTER_NAMES
 
-CUTS = tuple(range(3, STEPS // 2 + 1, 2))
-"""Steps of 32 that may be missing or added: from a tenth to a half, beyond which the rest is no
-longer most of the gesture."""
+MOST_CUT: Final = 0.2
+"""Largest share of a demonstration that is cut off both ends together: more is half a gesture."""
 
-END_CUTS = tuple(range(1, 10, 2))
+END_CUTS: Final = (0, 1, 3, 5)
 """Steps of 32 that are cut off either end of a demonstration that holds the ways from and to the
 salutes."""
 
-FEWEST_STEPS = 8
-"""Least steps of 32 that a cut leaves."""
+OUTSIDE: Final = 0.3
+"""Least distance of a part from the other drawing, in sizes of the gesture, that is seen as its own
+part."""
 
-TURNED_AWAY = 40.0
-"""Least degrees between two measured facings that count as turned away; pose models err by 10."""
+Where = Literal["start", "middle", "end"]
+
+
+@dataclass(frozen=True)
+class Part:
+    """Consecutive steps of a movement: `first`, and how many there are."""
+
+    where: Where
+    first: int
+    steps: int
+
+    @cached_property
+    def rest(self) -> npt.NDArray[np.intp]:
+        """All other steps; a middle part leaves the step at which it begins."""
+        begins = self.first + (self.where == "middle")
+        return np.concatenate([np.arange(begins), np.arange(self.first + self.steps, STEPS)])
+
+
+LENGTHS: Final = range(3, STEPS // 2 + 1, 2)
+"""Steps of a part that may be missing or added: from a tenth to a half, beyond which the rest is no
+longer most of the gesture."""
+
+ENDS: Final = (
+    *(Part("start", 0, steps) for steps in LENGTHS),
+    *(Part("end", STEPS - steps, steps) for steps in LENGTHS),
+)
+
+PARTS: Final = (
+    *ENDS,
+    *(
+        Part("middle", first, steps)
+        for steps in LENGTHS
+        for first in range(STEPS // 8, STEPS - STEPS // 8 - steps, 3)
+    ),
+)
+
+LACKS: Final[dict[Where, str]] = {
+    "start": "begun_late",
+    "middle": "part_missing",
+    "end": "ended_early",
+}
+"""Kinds of what a take lacks, by the part of the demonstration."""
 
 
 @dataclass(frozen=True, eq=False)
 class Undone:
-    """A take and a demonstration after one change.
+    """A take and a demonstration after one change, or after a turn and a cut.
 
     Attributes
     ----------
     kind
         The kind of cause that the change would undo, see `causes.CauseKind`.
-    size
-        In [0, 1]: how much the change takes away; 0 for one that keeps all of both.
     novelty
         Distance of the two after it, over the language's limit; above 1 is rejected.
-    start, end
-        Seconds after the beginning of the take of what differs; None: all of it.
-    where
-        Which part is missing or added: ``start``, ``middle`` or ``end``; empty for other kinds.
-    cut
-        Shares of the demonstration cut off its start and its end.
+    part
+        What is left out: of the take for ``part_added``, else of the demonstration.
+    query
+        The take, turned over if it was.
+    also
+        What a take that is turned over lacks too: a value of `LACKS`; empty: nothing.
 
     """
 
     kind: str
-    size: float
     novelty: float
-    start: float | None = None
-    end: float | None = None
-    where: str = ""
-    cut: tuple[float, float] = (0.0, 0.0)
+    query: Movement
+    part: Part | None = None
+    also: str = ""
 
 
 class Comparison:
@@ -128,11 +165,8 @@ class Comparison:
         """The demonstration, first in the nearest traversal, then from each starting point."""
         whole = build_movement(self._trajectory, self._landmarks)
         starts = list_traversals(whole, hands=find_hands(self._salient), both_ways=False)
-        return tuple(each.of(whole, self._landmarks) for each in (self._forwards(starts), *starts))
-
-    def _forwards(self, starts: Sequence[Traversal]) -> Traversal:
-        """Return the nearest traversal, or the demonstrated one where that goes backwards."""
-        return starts[0] if self.traversal.backward else self.traversal
+        nearest = starts[0] if self.traversal.backward else self.traversal
+        return tuple(each.of(whole, self._landmarks) for each in (nearest, *starts))
 
     @cached_property
     def _references(self) -> References:
@@ -149,19 +183,13 @@ class Comparison:
         """Novelty of the two as they are; a gesture that is nearest backwards has its penalty."""
         return self.measure(self.query, self.shown)
 
-    @property
-    def as_shown(self) -> Movement:
-        """The demonstration as it was shown."""
-        return self.shown[1]
+    def measure_cut(self, before: int, after: int) -> float:
+        """Return the novelty with steps of the demonstration cut off its start and its end."""
+        return self.measure(self.query, [keep_steps(self.shown[1], before, after)])
 
-    def measure_cut(self, cut: tuple[float, float]) -> float:
-        """Return the novelty with shares of the demonstration cut off its start and its end."""
-        return self.measure(self.query, [_cut_ends(self.as_shown, cut)])
-
-    def locate_cut(self, cut: tuple[float, float]) -> tuple[float, float]:
+    def locate_cut(self, before: int, after: int) -> tuple[float, float]:
         """Return the seconds of the demonstration's clock between which a cut keeps it."""
-        before, after = _count_steps(cut)
-        reached = self.as_shown.reached
+        reached = self.shown[1].reached
         return float(reached[before]), float(reached[STEPS - 1 - after])
 
     def measure(self, query: Movement, shown: Sequence[Movement]) -> float:
@@ -178,112 +206,96 @@ class Comparison:
         smallness = references.measure_smallness(described[SIZE])
         return np.asarray(scores * smallness / self._vote.limit, dtype=np.float64)
 
-    def undo_all(self, raw: Trajectory) -> Iterator[Undone]:
-        """Yield every change with the novelty after it.
+    def undo_all(self) -> Iterator[Undone]:
+        """Yield every change with the novelty after it."""
+        for kind, turned in self._turn_over():
+            yield Undone(kind, self.measure(turned, self.shown), turned)
+            yield from self._leave_out(turned, ENDS, kind)
+        yield from self._leave_out(self.query, PARTS)
+        for part in PARTS:
+            novelty = self.measure(_keep(self.query, part.rest), self.shown)
+            yield Undone("part_added", novelty, self.query, part)
 
-        Parameters
-        ----------
-        raw
-            The take before it was repaired and condensed, at the moments of its frames.
+    def _leave_out(
+        self, query: Movement, parts: Sequence[Part], turned: str = ""
+    ) -> Iterator[Undone]:
+        """Leave out parts of the demonstration that the take may lack."""
+        cut = [_keep(self.shown[0], part.rest) for part in parts]
+        for part, novelty in zip(parts, self._measure_all(query, cut).tolist(), strict=True):
+            lacks = LACKS[part.where]
+            yield Undone(turned or lacks, novelty, query, part, lacks if turned else "")
 
-        """
-        yield from self._turn_over()
-        yield from self._exchange_arms()
-        yield from self._face_camera()
-        yield from self._enlarge()
-        yield from self._cut_demonstration()
-        yield from self._cut_take()
-        yield from self._drop_moments(raw)
-
-    def _turn_over(self) -> Iterator[Undone]:
-        """Reverse the take, mirror it in its place, or turn it upright."""
-        for kind, way in (
-            ("mirrored", (-1, 1)),
-            ("upside_down", (1, -1)),
-            ("upside_down", (-1, -1)),
-        ):
-            yield Undone(kind, 0.0, self.measure(flip(self.query, way), self.shown))
-        backwards = self.query.reorder(AS_SHOWN.order[::-1])
-        yield Undone("reversed", 0.0, self.measure(backwards, self.shown))
-
-    def _exchange_arms(self) -> Iterator[Undone]:
-        """Show the take with the other arm, as its mirror image or not."""
+    def _turn_over(self) -> Iterator[tuple[str, Movement]]:
+        """Yield the take mirrored in its place, upright, reversed, with the other arm, larger."""
+        yield "mirrored", flip(self.query, (-1, 1))
+        yield "upside_down", flip(self.query, (1, -1))
+        yield "upside_down", flip(self.query, (-1, -1))
+        yield "reversed", self.query.reorder(AS_SHOWN.order[::-1])
         other = build_movement(self._query.mirror(), self._landmarks)
-        for movement in (other, flip(other, (-1, 1))):
-            yield Undone("other_arm", 0.0, self.measure(movement, self.shown))
-
-    def _face_camera(self) -> Iterator[Undone]:
-        """Turn the take to the facing of the demonstration, where both are measured."""
-        here, there = self._query.facing, self._trajectory.facing
-        if here is None or there is None or abs(here - there) < TURNED_AWAY:
-            return
-        turned = build_movement(self._query.turn(there - here), self._landmarks)
-        yield Undone("turned_away", 0.0, self.measure(turned, self.shown))
-
-    def _enlarge(self) -> Iterator[Undone]:
-        """Show the take as large as the demonstration."""
-        smaller = self.shown[0].size - self.query.size
-        if np.nanmax(np.nan_to_num(smaller)) > SMALLER:
-            larger = float(2.0 ** np.nanmax(smaller))
+        yield "other_arm", other
+        yield "other_arm", flip(other, (-1, 1))
+        smaller = float(np.nanmax(np.nan_to_num(self.shown[0].size - self.query.size)))
+        if smaller > SMALLER:
             mean = self.query.places.mean(axis=0)
-            places = mean + larger * (self.query.places - mean)
-            movement = replace(self.query, places=places)
-            yield Undone("too_small", 0.0, self.measure(movement, self.shown))
+            places = mean + 2.0**smaller * (self.query.places - mean)
+            yield "too_small", replace(self.query, places=places)
 
-    def _cut_demonstration(self) -> Iterator[Undone]:
-        """Leave out a part of the demonstration: an end of it, both ends, or its middle."""
-        shown, end = self.shown[0], self.query.duration
-        moments = {"start": 0.0, "end": end}
-        for where in ("start", "end"):
-            for steps in CUTS:
-                cut = _cut_end(shown, steps, where)
-                kind = "begun_late" if where == "start" else "ended_early"
-                novelty = self.measure(self.query, [cut])
-                at = moments[where]
-                yield Undone(kind, steps / STEPS, novelty, at, at, where, _shares(steps, where))
-        for first, steps in _list_middles():
-            novelty = self.measure(self.query, [_cut_middle(shown, first, steps)])
-            at = float(self.query.reached[first])
-            yield Undone("part_missing", steps / STEPS, novelty, at, at, "middle")
-        for before in END_CUTS:
-            for after in END_CUTS:
-                shares = (before / STEPS, after / STEPS)
-                novelty = self.measure_cut(shares)
-                yield Undone("demonstration", sum(shares), novelty, cut=shares)
+    def is_drawn(self, undone: Undone) -> bool:
+        """Return whether the drawings show a change: the part lies outside of the other one.
 
-    def _cut_take(self) -> Iterator[Undone]:
-        """Leave out a part of the take: an end of it, or its middle."""
+        A part that is called added lies off the expected stroke, one that is called missing off
+        the take.
+        """
+        if undone.part is None:
+            return True
+        added = undone.kind == "part_added"
+        whole, other = (undone.query, self.shown[0]) if added else (self.shown[0], undone.query)
+        here, there = whole.paths, other.paths - other.paths.mean(axis=0)
+        kept = here[undone.part.rest]
+        scale = np.sqrt((there**2).sum() / STEPS)
+        size = np.sqrt(((kept - kept.mean(axis=0)) ** 2).sum() / len(kept))
+        if scale <= 0 or size <= 0:
+            return False
+        part = np.delete(here, undone.part.rest, axis=0) - kept.mean(axis=0)
+        apart = part[:, None] / size - there[None] / scale
+        nearest = np.sqrt((apart**2).sum(axis=(2, 3))).min(axis=1)
+        return bool(nearest.max() >= OUTSIDE)
+
+    def locate(self, undone: Undone) -> tuple[float, float] | tuple[None, None]:
+        """Return the seconds of the take between which a change is seen; None: all of it."""
+        if undone.part is None or undone.also:
+            return None, None
         reached = self.query.reached
-        for where in ("start", "end"):
-            for steps in CUTS:
-                novelty = self.measure(_cut_end(self.query, steps, where), self.shown)
-                span = (0, steps) if where == "start" else (STEPS - 1 - steps, STEPS - 1)
-                start, end = (float(reached[step]) for step in span)
-                yield Undone("part_added", steps / STEPS, novelty, start, end, where)
-        for first, steps in _list_middles():
-            novelty = self.measure(_cut_middle(self.query, first, steps), self.shown)
-            start, end = float(reached[first]), float(reached[first + steps])
-            yield Undone("part_added", steps / STEPS, novelty, start, end, "middle")
+        first, last = undone.part.first, undone.part.first + undone.part.steps - 1
+        if undone.kind == "part_added":
+            return float(reached[first]), float(reached[last])
+        at = {"start": 0, "end": STEPS - 1}.get(undone.part.where, first)
+        return float(reached[at]), float(reached[at])
 
-    def _drop_moments(self, raw: Trajectory) -> Iterator[Undone]:
-        """Leave out the moments at which keypoints jumped, or another body was seen."""
-        finders: dict[str, Callable[[Trajectory], npt.NDArray[np.bool_]]] = {
-            "keypoints_jumped": lambda each: find_unsteady(each, self._salient),
-            "other_person": find_other_body,
-        }
-        for kind, find in finders.items():
-            bad = find(raw)
-            if not bad.any() or np.count_nonzero(~bad) < FEWEST_STEPS:
-                continue
-            kept = replace(
-                raw,
-                xy=raw.xy[~bad],
-                time=raw.time[~bad],
-                depth=None if raw.depth is None else raw.depth[~bad],
-            )
-            novelty = self.measure(build_movement(condense(kept), self._landmarks), self.shown)
-            times = raw.time[bad]
-            yield Undone(kind, float(bad.mean()), novelty, float(times[0]), float(times[-1]))
+
+def full_recognizer(recognizer: Recognizer) -> Recognizer:
+    """Return the recogniser of profile ``full`` for a language; causes are sought by its vote."""
+    if isinstance(recognizer.vote, FusedVote):
+        return recognizer
+    return Recognizer(recognizer.language, "full")
+
+
+def compare_with(
+    recognizer: Recognizer, query: Trajectory, table: ScoreTable, at: int
+) -> Comparison | None:
+    """Return the comparison of a take with a gesture's nearest demonstration; None without one."""
+    shown = table.find_nearest_demonstration(recognizer.language.gestures, at)
+    vote = recognizer.vote
+    if (
+        not isinstance(vote, FusedVote)
+        or shown.trajectory is None
+        or shown.is_held
+        or len(shown.trajectory) < 2
+        or len(query) < 2
+        or not shown.salient
+    ):
+        return None
+    return Comparison(vote, query, shown, table.traversals[at], mirrored=bool(table.mirrored[at]))
 
 
 def find_better_range(comparisons: Sequence[Comparison]) -> tuple[float, float] | None:
@@ -296,15 +308,16 @@ def find_better_range(comparisons: Sequence[Comparison]) -> tuple[float, float] 
 
     Returns
     -------
-    By the median take; of cuts that help as much the smaller one. None where none helps.
+    By the median take; of cuts that help as much the smaller one, and at most `MOST_CUT`. None
+    where none helps.
 
     """
     best, chosen = float(np.median([each.base for each in comparisons])), None
-    for before, after in product((0, *END_CUTS), repeat=2):
-        cut = (before / STEPS, after / STEPS)
-        typical = float(np.median([each.measure_cut(cut) for each in comparisons]))
-        if (worth := typical + sum(cut) / 4) < best:
-            best, chosen = worth, comparisons[0].locate_cut(cut)
+    for before, after in product(END_CUTS, repeat=2):
+        cut = (before + after) / STEPS
+        typical = float(np.median([each.measure_cut(before, after) for each in comparisons]))
+        if cut <= MOST_CUT and typical + cut / 4 < best:
+            best, chosen = typical + cut / 4, comparisons[0].locate_cut(before, after)
     return chosen
 
 
@@ -320,38 +333,9 @@ def flip(movement: Movement, way: tuple[int, int]) -> Movement:
     )
 
 
-def _count_steps(cut: tuple[float, float]) -> tuple[int, int]:
-    """Return the steps that shares of a movement are."""
-    return round(cut[0] * STEPS), round(cut[1] * STEPS)
-
-
-def _cut_ends(movement: Movement, cut: tuple[float, float]) -> Movement:
-    before, after = _count_steps(cut)
+def keep_steps(movement: Movement, before: int, after: int) -> Movement:
+    """Cut steps off the start and the end of a movement."""
     return _keep(movement, np.arange(before, STEPS - after)) if before or after else movement
-
-
-def _shares(steps: int, where: str) -> tuple[float, float]:
-    share = steps / STEPS
-    return (share, 0.0) if where == "start" else (0.0, share)
-
-
-def _list_middles() -> Iterator[tuple[int, int]]:
-    """Yield first step and number of steps of the parts in the middle that may be left out."""
-    for steps in CUTS:
-        for first in range(STEPS // 8, STEPS - STEPS // 8 - steps, 3):
-            yield first, steps
-
-
-def _cut_end(movement: Movement, steps: int, where: str) -> Movement:
-    """Leave out steps at the start or the end."""
-    kept = np.arange(steps, STEPS) if where == "start" else np.arange(STEPS - steps)
-    return _keep(movement, kept)
-
-
-def _cut_middle(movement: Movement, first: int, steps: int) -> Movement:
-    """Leave out steps in the middle, and join what is before and after them."""
-    kept = np.r_[np.arange(first + 1), np.arange(first + steps, STEPS)]
-    return _keep(movement, kept)
 
 
 def _keep(movement: Movement, kept: npt.NDArray[np.intp]) -> Movement:

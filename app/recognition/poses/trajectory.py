@@ -31,6 +31,11 @@ frame instead of their own size, so that jitter does not look like a gesture.
 """
 
 
+TURNED_AWAY = 40.0
+"""Least degrees from the camera, or between two facings, that count as turned away; pose models err
+by 10."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Trajectory:
     """Paths of K landmarks over T moments, relative to the diver's own torso.

@@ -24,6 +24,13 @@ FASTEST = 12.0
 LEAST_LEAP = 0.4
 """Torso lengths of the shortest leap; two positions of a noisy landmark are nearer."""
 
+SURE_LEAP = 1.0
+"""Torso lengths of a leap that needs no rest around it."""
+
+ALONE = 3.0
+"""How many times longer than the steps before and after it a shorter leap is: a quick hand
+gathers speed, a keypoint does not."""
+
 LONGEST_AWAY = 1.0
 """Most seconds between a leap away and the leap back."""
 
@@ -67,7 +74,9 @@ def find_leaps(trajectory: Trajectory, landmarks: Sequence[str], fastest: float 
         seen = np.flatnonzero(np.isfinite(path).all(axis=1))
         lasts = np.diff(trajectory.time[seen])
         far = np.linalg.norm(np.diff(path[seen], axis=0), axis=1)
-        sudden = (far > LEAST_LEAP) & (far > fastest * lasts) & (lasts <= MAX_GAP_SECONDS)
+        framed = np.concatenate([[0.0], far, [0.0]])
+        alone = (far > ALONE * np.maximum(framed[:-2], framed[2:])) | (far > SURE_LEAP)
+        sudden = alone & (far > LEAST_LEAP) & (far > fastest * lasts) & (lasts <= MAX_GAP_SECONDS)
         leaps[seen[1:][sudden]] = True
     return leaps
 

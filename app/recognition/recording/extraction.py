@@ -16,12 +16,12 @@ from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
-from app.recognition.poses.sequence import FloatArray, PoseSequence, join_sequences
+from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.recording.hand_sides import place_hands
 from app.recognition.recording.people import People, keep_person, see_people
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.salute import ENTER_SCORE
+from app.recognition.recording.salute import explain_missing_salutes
 from app.recognition.recording.video import (
     FrameSource,
     Turn,
@@ -30,10 +30,6 @@ from app.recognition.recording.video import (
     read_frames,
 )
 from app.recognition.recording.video_limits import VideoLimits
-
-FEW_HANDS: Final = 0.25
-"""Share of frames with a hand below which fingers cannot be told: a salute is held for half a
-second, and a hand found in every fourth frame is not seen to hold anything."""
 
 TURNED_SHARE: Final = 0.8
 """Share of the frames with a body in which it must lie in one direction, to be called turned."""
@@ -284,7 +280,9 @@ class _Collector:
                 *_warn_of_turn(poses),
             ),
             people=choice.count,
-            salute_warnings=self._warn_of_salutes(hands, choice.salute),
+            salute_warnings=tuple(
+                explain_missing_salutes(poses, choice.salute, hands) if self._hands_sought else ()
+            ),
         )
 
     def _build_moment(self, time: float, found: FrameLandmarks) -> PoseSequence:
@@ -307,28 +305,6 @@ class _Collector:
             yield f"{who} in {missing} of {len(self._moments)} frames"
         if names := find_missing_landmarks(self._landmarks):
             yield f"this pose model gives no {', '.join(names)}"
-
-    def _warn_of_salutes(
-        self, hands: tuple[tuple[Hand, ...], ...], salute: FloatArray
-    ) -> tuple[str, ...]:
-        """Return why no salute is seen, with a remedy; nothing where one is, or none is sought."""
-        frames, with_hand = len(hands), sum(map(bool, hands))
-        if not self._hands_sought or (with_hand and salute.max() > ENTER_SCORE):
-            return ()
-        if not with_hand:
-            return (
-                f"no hand in any of {frames} frames, so no salute can be seen; choose the "
-                "gesture's range by hand, choose a trigger of the arms, or film from nearer",
-            )
-        if with_hand < FEW_HANDS * frames:
-            return (
-                f"hands seen in {with_hand / frames:.0%} of {frames} frames: choose a trigger of "
-                "the arms, or film from nearer",
-            )
-        return (
-            f"no salute in any of {frames} frames; choose the gesture's range by hand, or "
-            "salute with the palm or back of the hand towards the camera",
-        )
 
 
 def _warn_of_turn(poses: PoseSequence) -> Iterator[str]:

@@ -214,13 +214,14 @@ export interface components {
          *         1 for what is seen directly, such as an unseen hand.
          *     sentence
          *         The cause and what the diver can do, at most fifteen words.
+         *     also
+         *         What a take that is turned over lacks too; None: nothing.
          *     start, end
          *         Seconds in the take's clock of what differs; None: throughout. For what is missing, `start`
          *         equals `end`.
          *     label, demonstration
-         *         Gesture and number of the demonstration at fault; None where the take is.
-         *     keep
-         *         Seconds of a demonstration's own clock between which it should be kept; None: not known.
+         *         Gesture and number of the demonstration at fault, or the gesture that is nearly alike; None
+         *         where the take is at fault.
          */
         Cause: {
             kind: components["schemas"]["CauseKind"];
@@ -228,6 +229,7 @@ export interface components {
             share: number;
             /** Sentence */
             sentence: string;
+            also: components["schemas"]["CauseKind"] | null;
             /** Start */
             start: number | null;
             /** End */
@@ -236,11 +238,6 @@ export interface components {
             label: string | null;
             /** Demonstration */
             demonstration: number | null;
-            /** Keep */
-            keep: [
-                number,
-                number
-            ] | null;
         };
         /**
          * CauseKind
@@ -516,35 +513,6 @@ export interface components {
             values: number[];
         };
         /**
-         * Divergence
-         * @description The stretch at which a query differs most from a gesture.
-         *
-         *     Attributes
-         *     ----------
-         *     landmark
-         *         The joint with the largest cost there.
-         *     start, end
-         *         Seconds in the query's clock.
-         *     share
-         *         Share of the whole cost between the two.
-         *     shown, expected
-         *         Movement of the joint there in the query and in the gesture: a verb and a direction.
-         */
-        Divergence: {
-            /** Landmark */
-            landmark: string;
-            /** Start */
-            start: number;
-            /** End */
-            end: number;
-            /** Share */
-            share: number;
-            /** Shown */
-            shown: string;
-            /** Expected */
-            expected: string;
-        };
-        /**
          * Evidence
          * @description Evidence against a demonstration, by the known takes of its gesture.
          *
@@ -612,6 +580,7 @@ export interface components {
             causes: components["schemas"]["Cause"][];
             /** Blame */
             blame: components["schemas"]["Blame"][];
+            transcript: components["schemas"]["Transcript"];
             /** Counterfactuals */
             counterfactuals: components["schemas"]["Counterfactual"][];
             /** Tried */
@@ -651,7 +620,7 @@ export interface components {
             readonly verdicts: components["schemas"]["VoterBreakdown"][];
             /**
              * Sentence
-             * @description The cause and what the diver can do, at most fifteen words with one-word labels.
+             * @description The cause and what the diver can do; without a cause what was shown and expected.
              */
             readonly sentence: string;
             /**
@@ -1872,6 +1841,45 @@ export interface components {
             may_end: boolean;
         };
         /**
+         * Piece
+         * @description One stroke of a hand.
+         *
+         *     Attributes
+         *     ----------
+         *     kind
+         *         What it is.
+         *     hand
+         *         The landmark that draws it.
+         *     direction
+         *         Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+         *     turn
+         *         Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
+         *     start, end
+         *         Seconds.
+         */
+        Piece: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "line" | "arc" | "loop" | "curve" | "pause";
+            /** Hand */
+            hand: string;
+            /** Direction */
+            direction: number | null;
+            /** Turn */
+            turn: number;
+            /** Start */
+            start: number;
+            /** End */
+            end: number;
+            /**
+             * Words
+             * @description The piece in words.
+             */
+            readonly words: string;
+        };
+        /**
          * PosesView
          * @description Landmarks in every frame of a clip.
          */
@@ -2805,6 +2813,31 @@ export interface components {
             width: number;
             /** Height */
             height: number;
+        };
+        /**
+         * Transcript
+         * @description A take and the gesture that was expected, stroke by stroke.
+         *
+         *     Attributes
+         *     ----------
+         *     shown, expected
+         *         The pieces of both, in seconds of the take's and of the demonstration's clock.
+         *     differs
+         *         Index of the first piece that differs, in both; None where none does.
+         */
+        Transcript: {
+            /**
+             * Shown
+             * @description Of the take, hand after hand.
+             */
+            shown: components["schemas"]["Piece"][];
+            /**
+             * Expected
+             * @description Of the gesture.
+             */
+            expected: components["schemas"]["Piece"][];
+            /** Differs */
+            differs: number | null;
         };
         /**
          * TriggerDraft

@@ -123,6 +123,9 @@ export type Explanation = Omit<Schemas["ExplanationView"], "counterfactuals"> & 
   counterfactuals: Counterfactual[];
 };
 
+/** One stroke of a hand, in words and seconds. */
+export type Piece = Schemas["Piece"];
+
 /** The two gestures between which a take lies, nearest first; null: it lies between no two. */
 export type Pair = string[] | null;
 

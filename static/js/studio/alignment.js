@@ -7,7 +7,7 @@ import { state, update } from "../core/state.js";
 import { chooseJoint, partsOf, roleOf, sum } from "./alignment-parts.js";
 import { seek } from "./playback.js";
 
-/** @import { Alignment, Explanation, Place, State } from "../core/types.d.ts" */
+/** @import { Alignment, Explanation, Piece, Place, State } from "../core/types.d.ts" */
 
 /** @typedef {{ left: number, top: number, width: number, height: number }} Box */
 
@@ -152,6 +152,29 @@ function seekByPress(drawing, { query, time }, part) {
   };
 }
 
+/**
+ * The first stroke that differs, on the path of the take and on that of the expected gesture.
+ *
+ * @param {Alignment} alignment
+ * @param {number} part
+ * @param {Explanation} why
+ */
+function differing({ label, query, time, gesture, gesture_time: theirs }, part, why) {
+  const { shown, expected, differs } = why.transcript;
+  if (differs === null || label !== why.expected) return [];
+  /** @type {[Place[][], number[], Piece | undefined][]} */
+  const both = [
+    [query, time, shown[differs]],
+    [gesture, theirs, expected[differs]],
+  ];
+  return both.map(([steps, times, piece]) => {
+    const within = steps.filter(
+      (_, step) => piece && times[step] >= piece.start && times[step] <= piece.end,
+    );
+    return svg("path", { class: "differs", d: line(within, part) });
+  });
+}
+
 /** @param {Alignment} alignment */
 const asCompared = ({ mirrored, backward }) =>
   [mirrored ? "as its mirror image" : "", backward ? "from its end" : ""]
@@ -186,6 +209,7 @@ function figure(alignment, part, box, why) {
     ...drawnLinks(alignment, part, shares),
     svg("path", { class: `theirs ${kind}`, d: line(gesture, part) }),
     svg("path", { class: "mine", d: line(query, part) }),
+    ...differing(alignment, part, why),
     svg("path", { class: `begin ${kind}`, d: dot(gesture[0][part]) }),
     svg("path", { class: "begin", d: dot(query[0][part]) }),
     link,

@@ -16,7 +16,7 @@ import { trialBar, tryOut } from "./intervention-trial.js";
 import { seek } from "./playback.js";
 import { recogniseWith } from "./studio-view.js";
 
-/** @import { Counterfactual, Explanation, Recognition, SideEffect, State } from "../core/types.d.ts" */
+/** @import { Counterfactual, Explanation, Piece, Recognition, SideEffect, State } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
@@ -40,7 +40,7 @@ export async function loadWhy({ result }) {
  *
  * @param {Explanation} why
  */
-function costs({ alignments, expected }) {
+function costs({ alignments, expected, transcript }) {
   const alignment = alignments.find((each) => each.label === expected && each.voter === "path");
   if (!alignment) return null;
   const steps = alignment.time.map(() => alignment.parts.map(() => 0));
@@ -50,7 +50,15 @@ function costs({ alignments, expected }) {
     }),
   );
   const lanes = partsOf(alignment).filter(({ cost }) => cost > 0);
-  return { time: alignment.time, steps, lanes: lanes.slice(0, MOST_PARTS), label: expected };
+  const { shown, differs } = transcript;
+  const marked = differs === null ? null : (shown[differs] ?? null);
+  return {
+    time: alignment.time,
+    steps,
+    lanes: lanes.slice(0, MOST_PARTS),
+    label: expected,
+    marked,
+  };
 }
 
 /**
@@ -61,7 +69,7 @@ function costs({ alignments, expected }) {
  * @param {number} most
  * @param {number} last
  */
-function lane({ time, steps }, { part, name }, most, last) {
+function lane({ time, steps, marked }, { part, name }, most, last) {
   /** @param {number} seconds */
   const share = (seconds) => ((1000 * seconds) / last).toFixed(1);
   const bars = steps.map((step, index) => {
@@ -87,6 +95,16 @@ function lane({ time, steps }, { part, name }, most, last) {
         role: "img",
         "aria-label": `Difference of the ${readable(name)} along the clip`,
       },
+      ...(marked
+        ? [
+            svg("rect", {
+              class: "differs",
+              x: share(marked.start),
+              width: Number(share(marked.end)) - Number(share(marked.start)),
+              height: LANE,
+            }),
+          ]
+        : []),
       ...bars,
     ),
     h("span", {}, readable(name)),
@@ -116,18 +134,19 @@ export function drawCosts({ why, result, timeline }) {
 }
 
 /**
- * The effect of an intervention on other takes whose gesture is known; nothing without such takes.
+ * The effect of an intervention on other takes whose gesture is known.
  *
  * @param {SideEffect | null} effect
  */
 const effectOf = (effect) =>
-  effect?.takes
-    ? h(
-        "small",
-        { className: "dim num" },
-        `of ${effect.takes} other takes repairs ${effect.repaired}, breaks ${effect.broken}`,
-      )
-    : null;
+  effect &&
+  h(
+    "small",
+    { className: "dim num" },
+    effect.takes
+      ? `of ${effect.takes} other takes repairs ${effect.repaired}, breaks ${effect.broken}`
+      : "untested: no other takes are known",
+  );
 
 /**
  * The result of an intervention; for a take added as a demonstration it is right by construction.
@@ -225,13 +244,28 @@ const note = (text) => h("p", { className: "dim" }, text);
  * @param {Explanation} why
  */
 function momentOf({ causes: [cause] }) {
-  if (!cause || cause.start === null) return null;
-  const { start } = cause;
-  const to = () => {
-    if (state.timeline) seek(nearestFrame(state.timeline.time, start));
-  };
-  return h("button", { type: "button", className: "link", onclick: to }, `Go to ${moment(start)}`);
+  return cause && cause.start !== null ? goTo(cause.start, `Go to ${moment(cause.start)}`) : null;
 }
+
+/**
+ * A button that goes to a moment.
+ *
+ * @param {number} seconds
+ * @param {string} words
+ * @param {string} [marked]
+ */
+const goTo = (seconds, words, marked = "") =>
+  h(
+    "button",
+    {
+      type: "button",
+      className: `link ${marked}`,
+      onclick: () => {
+        if (state.timeline) seek(nearestFrame(state.timeline.time, seconds));
+      },
+    },
+    words,
+  );
 
 /**
  * The button that shows the demonstrations of a gesture of which one is at fault.
@@ -285,6 +319,41 @@ function remediesOf(why) {
   );
 }
 
+/**
+ * The strokes of the take or of the gesture in words; the first one that differs is marked. Those
+ * of the take go to their moment.
+ *
+ * @param {string} title
+ * @param {Piece[]} pieces
+ * @param {Explanation} why
+ */
+const strokes = (title, pieces, { transcript: { shown, differs } }) =>
+  h(
+    "p",
+    {},
+    h("b", {}, `${title}: `),
+    pieces.map((piece, index) => {
+      const marked = index === differs ? "differs" : "";
+      const word =
+        pieces === shown
+          ? goTo(piece.start, piece.words, marked)
+          : h("span", { className: marked }, piece.words);
+      return [index ? ", " : "", word];
+    }),
+    pieces.length === differs ? h("span", { className: "differs" }, " (ends)") : null,
+  );
+
+/** @param {Explanation} why */
+const transcriptOf = (why) =>
+  why.transcript.shown.length && why.transcript.expected.length
+    ? h(
+        "div",
+        { className: "transcript", role: "group", "aria-label": "Strokes in words" },
+        strokes("You showed", why.transcript.shown, why),
+        strokes(why.expected, why.transcript.expected, why),
+      )
+    : null;
+
 /** @param {Explanation} why */
 const notesOf = ({ notes }) =>
   notes.length
@@ -298,6 +367,7 @@ const notesOf = ({ notes }) =>
 /** @param {Explanation} why */
 const reasons = (why) => [
   h("p", { className: "why-sentence" }, `${why.sentence} `, demonstrationsOf(why) ?? momentOf(why)),
+  transcriptOf(why),
   notesOf(why),
   remediesOf(why),
   detailsOf(why),

@@ -33,12 +33,13 @@ def corners(*points: tuple[float, float]) -> Shape:
 
 HOOK = ((-1.2, -0.4), (-0.4, -0.4), (-0.4, 0.4), (-0.9, 0.4), (-0.9, 0.0))
 hook = corners(*HOOK)
+stairs = corners((-1.2, -0.6), (-1.2, -0.2), (-0.8, -0.2), (-0.8, 0.2), (-0.4, 0.2), (-0.4, 0.6))
 
 
 def language_of(shape: Shape = hook) -> Language:
     gestures = [
         Gesture.from_demonstration(label, recording(of))
-        for label, of in (("hook", shape), ("circle", circle), ("line", line))
+        for label, of in (("hook", shape), ("stairs", stairs), ("line", line))
     ]
     gestures[0] = replace(gestures[0], switches=Switches(direction="on"))
     return Language("shapes", gestures)
@@ -95,9 +96,6 @@ def change_body(poses: PoseSequence) -> PoseSequence:
     ("query", "kind"),
     [
         (recording(in_place((-1, 1))), "mirrored"),
-        (recording(in_place((-1, -1))), "upside_down"),
-        (recording(lambda share: hook(1 - share)), "reversed"),
-        (recording(corners(*HOOK[2:]), frames=30), "begun_late"),
         (recording(corners(*HOOK[:3]), frames=30), "ended_early"),
         (
             recording(corners((-0.2, 1.2), (-0.9, 1.0), (-0.2, 0.6), *HOOK), frames=105),
@@ -109,6 +107,32 @@ def change_body(poses: PoseSequence) -> PoseSequence:
 )
 def test_the_one_fault_of_a_take_is_named_first(query: PoseSequence, kind: str) -> None:
     assert causes_of(query)[0] == CauseKind(kind)
+
+
+@pytest.mark.parametrize(
+    ("query", "kind"),
+    [
+        (recording(in_place((-1, -1))), "upside_down"),
+        (recording(lambda share: hook(1 - share)), "reversed"),
+        (recording(corners(*HOOK[2:]), frames=30), "begun_late"),
+        (recording(corners(*HOOK[:3]), frames=30), "ended_early"),
+    ],
+)
+def test_a_fault_that_others_explain_nearly_as_well_is_not_claimed_as_another(
+    query: PoseSequence, kind: str
+) -> None:
+    assert {each.value for each in causes_of(query)} <= {kind}
+
+
+def test_a_take_that_is_mirrored_and_unfinished_is_named_as_both() -> None:
+    points = [(-0.8 - (x + 0.8), y) for x, y in HOOK[:3]]
+    query = recording(corners(*points), frames=30)
+    context = RecognitionContext(
+        recognizer=Recognizer(language_of(), "full"), poses=query, whole=query
+    )
+    (cause,) = find_causes(context, "hook", explained=0.3, following=10.0)
+    assert (cause.kind, cause.also) == ("mirrored", "ended_early")
+    assert "the mirror image of 'hook' and is unfinished" in cause.sentence
 
 
 def test_the_other_arm_is_named() -> None:
@@ -146,7 +170,7 @@ def test_a_known_fault_of_the_demonstration_comes_before_a_missing_part() -> Non
     )
     ways = ((-0.3, -0.9), *HOOK, (-0.3, -0.9))
     bad = language_of(corners(*ways))
-    assert causes_of(recording(hook), bad, (fault,))[0] == CauseKind.demonstration
+    assert causes_of(recording(corners(*HOOK[1:])), bad, (fault,))[0] == CauseKind.demonstration
     # What the keypoints of the take show is no fault of the demonstration.
     assert causes_of(change_body(recording(hook)), faults=(fault,))[0] == CauseKind.other_person
 
@@ -164,7 +188,9 @@ def test_moments_are_those_of_the_takes_clock() -> None:
 
 @pytest.mark.parametrize("kind", sorted(SENTENCES))
 def test_a_sentence_has_at_most_fifteen_words(kind: str) -> None:
-    words = SENTENCES[kind].format(label="'hook'", other="'line'", words="")
+    words = SENTENCES[kind].format(
+        label="'hook'", other="'line'", also="", frames="12 of 60 frames", degrees=60
+    )
     assert len(words.split()) <= 15
     assert re.search(r"\.$", words) or not words
 
@@ -175,12 +201,8 @@ def test_a_fault_of_a_demonstration_has_at_most_fifteen_words(kind: FaultKind) -
     assert len(fault.describe("hook").split()) <= 15
 
 
-def test_jumps_are_no_cause_of_a_take_that_is_answered_as_another_gesture() -> None:
-    query = recording(circle, jitter=0.01)
+def test_what_the_keypoints_show_stands_before_what_a_change_proves() -> None:
+    query = recording(in_place((-1, 1)))
     xy, wrist = query.xy.copy(), query.landmarks.index("right_wrist")
-    # A tenth of its moments: enough to be seen, and still a circle.
-    xy[44:51, wrist] += (120.0, 0.0)
-    jumping = replace(query, xy=xy)
-    recognizer = Recognizer(language_of(), "full")
-    assert recognizer.recognize(jumping).label == "circle"
-    assert causes_of(jumping) == []
+    xy[26:36, wrist] += (250.0, 0.0)
+    assert causes_of(replace(query, xy=xy))[0] == CauseKind.keypoints_jumped

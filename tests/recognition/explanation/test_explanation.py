@@ -192,11 +192,10 @@ def between(*, asked: bool) -> RecognitionContext:
 @pytest.mark.parametrize("expected", ["wedge", "circle", "square"])
 def test_a_take_between_gestures_is_told_so(expected: str) -> None:
     asked = explain(between(asked=True), expected, with_counterfactuals=False)
-    assert asked.sentence.startswith("The take lies between 'wedge' and 'circle'")
+    assert asked.sentence.startswith("You showed")
     assert (asked.right, asked.to_dict()["pair"]) == (False, ["wedge", "circle"])
     rejected = explain(between(asked=False), expected, with_counterfactuals=False)
-    told = "The take lies between 'wedge', 'circle' and 'line'"
-    assert rejected.sentence.startswith(told)
+    assert rejected.sentence.startswith("You showed")
     assert rejected.to_dict()["pair"] is None
 
 
@@ -211,7 +210,8 @@ def test_a_recording_too_poor_to_judge_is_told_so() -> None:
     assert explanation.label is None
     assert explanation.fault is not None
     assert explanation.fault in explanation.details[0]
-    assert [cause.kind for cause in explanation.causes] == ["not_seen"]
+    assert explanation.causes[0].kind == "not_seen"
+    assert "in 40 of 60 frames" in explanation.sentence
 
 
 @pytest.mark.parametrize("profile", PROFILES)
