@@ -74,7 +74,13 @@ export function showGestures(root, invited, memory) {
   const description = h("p", { className: "dim description" });
   const step = h("p", { className: "step", role: "status" });
   const reason = h("p", { className: "reason", role: "alert", hidden: true });
-  const asked = h("div", { className: "shown" }, figure, h("div", {}, label, description, reason));
+  const view = h("p", { className: "dim view-of-drawings" }, "Drawn as in a mirror.");
+  const asked = h(
+    "div",
+    { className: "shown" },
+    figure,
+    h("div", {}, label, view, description, reason),
+  );
   const card = h("section", { className: "card" });
   const preview = h("video", {
     className: "preview",

@@ -42,7 +42,14 @@ export function takeCamera({ ended, again }) {
   const count = h("p", { className: "count", "aria-hidden": "true", hidden: true });
   const left = h("progress", { "aria-label": "Recording", max: 1, value: 0, hidden: true });
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const element = h("div", { className: "picture", hidden: true }, video, count, left, trouble);
+  const element = h(
+    "div",
+    { className: "picture mirrored", hidden: true },
+    video,
+    count,
+    left,
+    trouble,
+  );
 
   function stop() {
     release(video);

@@ -41,7 +41,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   });
   const idle = h("div", { className: "camera-idle" }, saluteHand(), "The camera is off");
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const picture = h("div", { className: "camera-picture" }, video, idle, trouble);
+  const picture = h("div", { className: "camera-picture mirrored" }, video, idle, trouble);
   const words = h("p", { className: "practice-step", role: "status" });
   const toggle = h("button", { type: "button", ...WRITES });
   const judge = h(

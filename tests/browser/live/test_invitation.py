@@ -10,13 +10,15 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect
+from playwright.sync_api import Browser, BrowserContext, Page, Route, ViewportSize, expect
 
 from app.recognition import Language
 from app.settings import Settings
 from tests.api.running import Running, client_of
 from tests.browser.accessibility import faults
+from tests.browser.camera import OTHER_VIEWS
 from tests.browser.conftest import WATCH_POLICY, OpenPage, new_context
+from tests.short_clips import thinned
 
 PHONE = ViewportSize(width=390, height=844)
 
@@ -37,8 +39,9 @@ const draw = () => {
 };
 const clips = {};
 navigator.mediaDevices.getUserMedia = async () => {
+  const way = OTHER_VIEWS ? "back" : "test";
   for (const label of LABELS) {
-    const clip = await (await fetch(`/recorded/${label}.mp4`)).blob();
+    const clip = await (await fetch(`/recorded/${label}-${way}.mp4`)).blob();
     clips[label] = URL.createObjectURL(clip);
   }
   draw();
@@ -52,7 +55,8 @@ new MutationObserver((changes) => {
     }
 }).observe(document, { subtree: true, attributes: true, attributeFilter: ["class"] });
 """
-"""A camera before which a person shows the gesture that is asked for, as on a recorded clip."""
+"""A camera before which a person shows the gesture that is asked for, as on a recorded clip, and
+goes the way of the drawing's arrow on the screen."""
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +68,11 @@ def client(server: Running) -> httpx.Client:
 def language(client: httpx.Client, settings: Settings) -> str:
     """Return the id of a language of two gestures, shown by one person."""
     sample = Language.from_json((settings.samples_dir / "osg-table-2.json").read_text("utf-8"))
-    gestures = [replace(sample.gesture(label), diver="Ana") for label in GESTURES]
+    gestures = [sample.gesture(label) for label in GESTURES]
+    gestures = [
+        replace(each, diver="Ana", switches=replace(each.switches, direction="on"))
+        for each in gestures
+    ]
     content = replace(sample, name="deck", gestures=gestures, grammar=None).to_json()
     return str(client.post("/api/v1/languages/import", content=content).json()["id"])
 
@@ -110,7 +118,15 @@ def test_three_people_finish_a_language(
     language: str,
     clips: Path,
     picture: Callable[[Page, str], Path],
+    tmp_path: Path,
 ) -> None:
+    def recorded(route: Route) -> None:
+        label, way = Path(route.request.url).stem.split("-")
+        clip = clips / f"{label}-test-1.mp4"
+        if way == "back":
+            clip = thinned(clip, tmp_path / f"{label}.mp4", every=1, backward=True)
+        route.fulfill(path=clip, content_type="video/mp4")
+
     page = open_page({"view": "health", "language": language}, scene=False)
     expected = page.get_by_role("region", name="What to expect")
     expect(expected).to_contain_text("Ask two more people")
@@ -127,13 +143,10 @@ def test_three_people_finish_a_language(
     expect(invitation).to_contain_text("0 of 12 takes sent")
 
     # Bo shows every gesture hands-free before the camera of the phone.
-    bo = phone(link, CAMERA.replace("LABELS", json.dumps(GESTURES)))
-    bo.route(
-        "**/recorded/*",
-        lambda route: route.fulfill(
-            path=clips / f"{Path(route.request.url).stem}-test-1.mp4", content_type="video/mp4"
-        ),
-    )
+    views = OTHER_VIEWS % (".figure", ".picture video")
+    camera = CAMERA.replace("LABELS", json.dumps(GESTURES)).replace("OTHER_VIEWS", views)
+    bo = phone(link, camera)
+    bo.route("**/recorded/*", recorded)
     expect(bo.get_by_role("heading", name="Show the gestures of deck")).to_be_visible()
     assert faults(bo) == []
     begin(bo, "Bo")
