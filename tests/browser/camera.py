@@ -29,12 +29,18 @@ OTHER_VIEWS = f"({MIRRORS}) !== ({MIRRORS})"
 the picture of the other then moves the other way."""
 
 
-def write_feed(clip: Path, feed: Path, rate: int, *, backward: bool = False) -> Path:
-    """Write every second frame of a 640 x 480 clip as a camera's feed, at `rate` Hz."""
+def write_feed(
+    clip: Path, feed: Path, rate: int, *, still: int = 0, backward: bool = False
+) -> Path:
+    """Write every second frame of a 640 x 480 clip as a camera's feed, at `rate` Hz.
+
+    The first picture is shown for `still` seconds before.
+    """
     with av.open(str(clip)) as source, feed.open("wb") as camera:
         camera.write(f"YUV4MPEG2 W640 H480 F{rate}:1 Ip A1:1 C420mpeg2\n".encode())
         frames = [frame.to_ndarray(format="yuv420p") for frame in source.decode(video=0)][::2]
-        for frame in reversed(frames) if backward else frames:
+        frames = frames[::-1] if backward else frames
+        for frame in [frames[0]] * still * rate + frames:
             camera.write(b"FRAME\n" + frame.tobytes())
     return feed
 

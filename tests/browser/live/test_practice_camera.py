@@ -21,7 +21,10 @@ from tests.browser.conftest import OpenPage, started
 FEED_RATE = 12
 """Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
 
-ONE_ROUND = 8.0
+STILL = 12
+"""Seconds in which the diver waits before the clip."""
+
+ONE_ROUND = 8.0 + STILL
 """Seconds in which the camera shows the whole clip."""
 
 ROUNDS = 3
@@ -42,7 +45,7 @@ def feed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def browser(browser: Browser, clips: Path, feed: Path) -> Iterator[Browser]:
     """Start a second Chromium, whose camera sees a diver who draws a line between two salutes."""
-    write_feed(clips / "line-test-2.mp4", feed, FEED_RATE)
+    write_feed(clips / "line-test-2.mp4", feed, FEED_RATE, still=STILL)
     with started(browser.browser_type, *camera_showing(feed)) as another:
         yield another
 
@@ -73,7 +76,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     expect(stop).to_be_visible()
     if page.evaluate(OTHER_VIEWS % (".practice-picture", ".practice-camera video")):
         stop.click()
-        write_feed(clips / "line-test-2.mp4", feed, FEED_RATE, backward=True)
+        write_feed(clips / "line-test-2.mp4", feed, FEED_RATE, still=STILL, backward=True)
         start.click()
     expect(page.locator(".practice-camera .bones")).to_have_attribute("d", re.compile("^M.+L"))
     assert faults(page) == []
@@ -95,3 +98,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     expect(page.get_by_text("The camera is off")).to_be_visible()
     names = [each.clip.name for each in server.studio.clips.all()]
     assert any(re.match(r"Ana line \d{4}-\d\d-\d\d", name) for name in names), names
+    # The clip of a take begins shortly before it, and not when the diver begins to wait.
+    (shown,) = httpx.get(f"{server.address}/api/v1/languages/{language}/practice").json()
+    right = [each["clip_id"] for each in shown["shown"] if each["right"]]
+    assert min(server.studio.clips.get(each).clip.duration or 0 for each in right) < STILL
