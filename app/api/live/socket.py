@@ -13,10 +13,9 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from typing import Annotated, Final, Literal
 
-from fastapi import APIRouter, Depends, WebSocket
+from fastapi import APIRouter, WebSocket
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
@@ -27,7 +26,7 @@ from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.gestures.profile import ProfileName
-from app.store import NotFound
+from app.store import Invitation, NotFound
 
 MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013
 """Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
@@ -86,65 +85,37 @@ class _End(Exception):
         self.reason = reason.encode()[:MOST_REASON_BYTES].decode(errors="ignore")
 
 
-def _places_of(connection: HTTPConnection) -> asyncio.Semaphore:
-    places: asyncio.Semaphore = connection.app.state.live_places
-    return places
-
-
-def _invited_places_of(connection: HTTPConnection) -> asyncio.Semaphore:
-    places: asyncio.Semaphore = connection.app.state.invited_places
-    return places
-
-
 router = APIRouter(tags=["live"])
 
 
 @router.websocket("/live")
-async def watch_camera(
-    browser: WebSocket,
-    studio: CurrentStudio,
-    places: Annotated[asyncio.Semaphore, Depends(_places_of)],
-) -> None:
-    """Take a camera's frames, and send what is found in them."""
-    if not same_origin(browser):
-        await browser.close(POLICY_VIOLATION, "foreign_origin")
-        return
-    # Only an accepted websocket can be closed with a reason.
-    await browser.accept()
-    async with _ending(browser):
-        if places.locked():
-            raise _End(TRY_AGAIN_LATER, f"{MOST_VIEWS} live views are open already; close one")
-        async with places, _view(browser, studio) as view:
-            await view.run()
-
-
 @router.websocket("/invited/live")
-async def watch_invited(
-    browser: WebSocket,
-    studio: CurrentStudio,
-    places: Annotated[asyncio.Semaphore, Depends(_invited_places_of)],
-) -> None:
-    """Take an invited person's frames, and send when a take begins and ends; not what it is."""
+async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
+    """Take a camera's frames, and send what is found in them.
+
+    For an invited person this is when a take begins and ends, and not what is read in it.
+    """
     if not same_origin(browser):
         await browser.close(POLICY_VIOLATION, "foreign_origin")
         return
-    await browser.accept(INVITED_PROTOCOL)
-    async with _ending(browser):
+    invitation: Invitation | None = getattr(browser.state, "invitation", None)
+    places: asyncio.Semaphore = browser.app.state.live_places
+    language_id, seconds = None, None
+    full = f"{MOST_VIEWS} live views are open already; close one"
+    if invitation is not None:
+        places = browser.app.state.invited_places
+        language_id, seconds = invitation.language_id, INVITED_SECONDS
+        full = "another person's take is looked at"
+    # Only an accepted websocket can be closed with a reason.
+    await browser.accept(None if invitation is None else INVITED_PROTOCOL)
+    try:
         if places.locked():
-            raise _End(TRY_AGAIN_LATER, "another take is looked at; this one ends by its time")
-        language_id = browser.state.invitation.language_id
+            raise _End(TRY_AGAIN_LATER, full)
         async with places, _view(browser, studio, language_id) as view:
             try:
-                await asyncio.wait_for(view.run(), INVITED_SECONDS)
+                await asyncio.wait_for(view.run(), seconds)
             except TimeoutError as error:
-                reason = f"a take is looked at for {INVITED_SECONDS:g} s"
-                raise _End(NO_FRAMES, reason) from error
-
-
-@asynccontextmanager
-async def _ending(browser: WebSocket) -> AsyncIterator[None]:
-    try:
-        yield
+                raise _End(NO_FRAMES, "one take is looked at, and not for longer") from error
     except _End as end:
         with contextlib.suppress(RuntimeError, WebSocketDisconnect):
             await browser.close(end.code, end.reason)
@@ -152,7 +123,7 @@ async def _ending(browser: WebSocket) -> AsyncIterator[None]:
 
 @asynccontextmanager
 async def _view(
-    browser: WebSocket, studio: Studio, language_id: str | None = None
+    browser: WebSocket, studio: Studio, language_id: str | None
 ) -> AsyncIterator[_View]:
     try:
         estimator = await run_in_threadpool(create_estimator)

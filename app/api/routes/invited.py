@@ -61,7 +61,7 @@ FORM = {
 }
 
 
-@router.get("", responses=problem_responses(404))
+@router.get("", responses=problem_responses(404, 429))
 @computed_briefly
 def get_invited_language(studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedView:
     """Show the gestures of the language that one is invited to."""
@@ -127,13 +127,13 @@ async def send_take(
     return InvitedTakeView.of(take)
 
 
-@router.get("/takes/{take_id}", responses=problem_responses(404))
+@router.get("/takes/{take_id}", responses=problem_responses(404, 429))
 def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedTakeView:
     """Tell whether a take was added, why it was returned, or what is asked about it."""
     return InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
 
 
-@router.put("/takes/{take_id}/answer", responses=problem_responses(404))
+@router.put("/takes/{take_id}/answer", responses=problem_responses(404, 429))
 @edited
 def answer_about_take(
     take_id: str,

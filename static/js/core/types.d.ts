@@ -396,6 +396,10 @@ export interface GestureRow {
   number: number;
   label: string;
   chosen: boolean;
+  /** The gesture of the language of which it would be a further demonstration, or "". */
+  further: string;
+  /** Whether the language reads it as that gesture already. */
+  right: boolean;
 }
 
 /** A view of the page, loaded when it is first shown. */
