@@ -57,8 +57,9 @@ LOOK_SECONDS: Final = 1.0
 LOST: Final = timedelta(minutes=5)
 """Time after which a take whose clip is not there will have none: storing it takes seconds."""
 
-DOUBT: Final = 0.5
-"""Confidence below which a take is read with doubt: it is more probably none of the gestures."""
+DOUBT: Final = 0.25
+"""Confidence below which a take is read with doubt; at 0.5 ten to thirty percent more of the right
+takes would be asked about, see `benchmarks.accuracy.invited`."""
 
 MOST_MENDED: Final = 2
 """Ranges that are tried for a take whose first range is not the best one: its stroke, and that

@@ -260,6 +260,16 @@ def test_a_name_that_would_be_shown_otherwise_is_refused(guest: httpx.Client, di
     assert_problem(answer, 422, "request_invalid")
 
 
+def test_who_added_takes_to_the_test_set_and_to_practice_is_shown(
+    client: httpx.Client, studio: Studio, pool: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of("circle"))
+    take = {"clip_id": clip, "expected": "circle"}
+    tested = client.post(f"{LANGUAGES}/{pool}/test-set", json={"takes": [take]}).json()
+    shown = client.post(f"{LANGUAGES}/{pool}/practice", json=take | {"diver": "Bo"}).json()
+    assert tested["takes"][0]["added_by"] == shown["take"]["added_by"] == "Ada"
+
+
 def test_all_open_invitations_are_listed_and_there_are_not_more_than_can_be_looked_through(
     client: httpx.Client, pool: str
 ) -> None:
