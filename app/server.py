@@ -130,6 +130,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.state.connections = ConnectionGuard(limits.idle_seconds, limits.max_connections)
     app.state.workspaces = registry
     app.state.live_places = asyncio.Semaphore(live.MOST_VIEWS)
+    app.state.invited_places = asyncio.Semaphore(live.MOST_INVITED)
     app.router.routes.extend(_build_routes())
     _serve_page(app)
     problems.install(app)

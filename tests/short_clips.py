@@ -23,19 +23,21 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
     return copy
 
 
-def thinned(clip: Path, copy: Path, times: int = 1) -> Path:
+def thinned(
+    clip: Path, copy: Path, times: int = 1, *, every: int = 3, backward: bool = False
+) -> Path:
     """Write every third frame of a clip at a third of its rate, and return the copy's path.
 
-    With `times`, the clip follows itself.
+    With `times`, the clip follows itself; `backward` begins at its end.
     """
     with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
         stream = source.streams.video[0]
         assert stream.average_rate is not None
-        rate = Fraction(stream.average_rate) / 3
+        rate = Fraction(stream.average_rate) / every
         written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
         written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
-        kept = [frame for number, frame in enumerate(source.decode(stream)) if number % 3 == 0]
-        for number, frame in enumerate(times * kept):
+        kept = list(source.decode(stream))[::every]
+        for number, frame in enumerate(times * (kept[::-1] if backward else kept)):
             frame.pts, frame.time_base = number, 1 / rate
             target.mux(written.encode(frame))
         target.mux(written.encode())

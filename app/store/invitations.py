@@ -190,7 +190,7 @@ class InvitationStore:
     def waiting(self) -> list[InvitedTake]:
         """Return the takes that nobody has judged or is judging, the oldest first."""
         with self._database.reading() as session:
-            query = select(InvitedTake).where(InvitedTake.status == "waiting", _unclaimed())
+            query = select(InvitedTake).where(_unjudged(), _unclaimed())
             return list(session.exec(query.order_by(col(InvitedTake.created))))
 
     def claim(self, take_id: str) -> bool:
@@ -198,20 +198,24 @@ class InvitationStore:
         with self._database.writing(counted=False) as session:
             claimed = session.exec(
                 update(InvitedTake)
-                .where(
-                    col(InvitedTake.id) == take_id,
-                    col(InvitedTake.status) == "waiting",
-                    _unclaimed(),
-                )
+                .where(col(InvitedTake.id) == take_id, _unjudged(), _unclaimed())
                 .values(claimed=now())
             )
             return claimed.rowcount == 1
 
-    def settle(self, take_id: str, reason: str | None) -> None:
-        """Keep that a take was added, or for which reason it was returned."""
+    def settle(self, take_id: str, status: str, reason: str | None = None) -> None:
+        """Keep the status of a take, and its reason."""
         with self._database.writing() as session:
             if (take := session.get(InvitedTake, take_id)) is not None:
-                take.status, take.reason = "added" if reason is None else "returned", reason
+                take.status, take.reason = status, reason
+                session.add(take)
+
+    def ask(self, take_id: str, read_as: str | None, question: str) -> None:
+        """Keep that the person who shows is asked about a take, in which `read_as` was read."""
+        with self._database.writing() as session:
+            if (take := session.get(InvitedTake, take_id)) is not None:
+                take.status, take.reason, take.read_as = "asked", question, read_as
+                take.asked = now()
                 session.add(take)
 
 
@@ -238,6 +242,10 @@ def closed(code: str) -> InvitationClosed:
 
 def _open() -> ColumnElement[bool]:
     return and_(col(Invitation.withdrawn).is_(None), col(Invitation.expires) > now())
+
+
+def _unjudged() -> ColumnElement[bool]:
+    return and_(col(InvitedTake.status) == "waiting", col(InvitedTake.reason).is_(None))
 
 
 def _unclaimed() -> ColumnElement[bool]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from enum import StrEnum
-from typing import Literal
+from typing import Final, Literal
 from uuid import uuid4
 
 from sqlalchemy import (
@@ -251,6 +251,8 @@ class LabelledTake(SQLModel, table=True):
     end: float
     expected: str = Field(max_length=200)
     """The label that it should be recognised as."""
+    added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
+    """Name of the token that added it; empty: not known, or none is needed."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
@@ -294,6 +296,8 @@ class PracticeTake(SQLModel, table=True):
     """The two gestures between which the take lies, as a JSON array; ``None``: no two."""
     revision: int
     recognition_id: str = Field(max_length=32)
+    added_by: str = Field(default="", max_length=80, sa_column_kwargs={"server_default": ""})
+    """Name of the token that added it; empty: not known, or none is needed."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
@@ -329,12 +333,19 @@ class Invitation(SQLModel, table=True):
         return "expired" if self.expires <= now() else None
 
 
+ANSWER_TIME: Final = timedelta(minutes=10)
+"""Time in which a diver who is asked about a take may answer, before it waits for its owner."""
+
+
 class InvitedTake(SQLModel, table=True):
     """A take that somebody sent by an invitation."""
 
     __tablename__ = "invited_take"
     __table_args__ = (
-        CheckConstraint("status IN ('waiting', 'added', 'returned')", name="invited_take_status"),
+        CheckConstraint(
+            "status IN ('waiting', 'asked', 'added', 'removed', 'returned')",
+            name="invited_take_status",
+        ),
     )
 
     id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
@@ -349,12 +360,28 @@ class InvitedTake(SQLModel, table=True):
     size: int = Field(sa_type=ByteCount)
     """Bytes."""
     status: str = Field(default="waiting", max_length=16, index=True)
-    """``waiting``, ``added`` as a demonstration, or ``returned``."""
+    """``waiting`` for being judged, and for the owner if it has a reason; ``asked`` of the person
+    who shows; ``added`` as a demonstration, ``removed``, or ``returned``."""
     reason: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
-    """Why it was returned and what to do, for the person who shows."""
+    """Why it was returned and what to do, or why it is doubted, for the person who shows."""
+    read_as: str | None = Field(default=None, max_length=200)
+    """The label that the language read in a doubted take; None: none."""
+    asked: datetime | None = Field(default=None, sa_type=UtcDateTime)
+    """When the person who shows was asked about it."""
     claimed: datetime | None = Field(default=None, sa_type=UtcDateTime)
     """When a server last began to judge it."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
+
+    @property
+    def held(self) -> bool:
+        """Whether it is neither added nor returned, because it is doubted."""
+        return self.status in ("asked", "waiting") and self.reason is not None
+
+    @property
+    def standing(self) -> str:
+        """Its status; a question that stayed without an answer waits for the owner."""
+        late = self.asked is not None and self.asked + ANSWER_TIME <= now()
+        return "waiting" if late and self.status == "asked" else self.status
 
 
 class DemonstrationSource(SQLModel, table=True):

@@ -21,13 +21,27 @@ def camera_showing(feed: Path) -> tuple[str, ...]:
     )
 
 
-def write_feed(clip: Path, feed: Path, rate: int) -> Path:
-    """Write every second frame of a 640 x 480 clip as a camera's feed, at `rate` Hz."""
+MIRRORS = 'getComputedStyle(document.querySelector("%s")).transform.startsWith("matrix(-1")'
+"""JavaScript: whether an element is shown mirrored, by its selector."""
+
+OTHER_VIEWS = f"({MIRRORS}) !== ({MIRRORS})"
+"""JavaScript: whether only one of two elements is mirrored. A diver who follows the arrow of one in
+the picture of the other then moves the other way."""
+
+
+def write_feed(
+    clip: Path, feed: Path, rate: int, *, still: int = 0, backward: bool = False
+) -> Path:
+    """Write every second frame of a 640 x 480 clip as a camera's feed, at `rate` Hz.
+
+    The first picture is shown for `still` seconds before.
+    """
     with av.open(str(clip)) as source, feed.open("wb") as camera:
         camera.write(f"YUV4MPEG2 W640 H480 F{rate}:1 Ip A1:1 C420mpeg2\n".encode())
-        for index, frame in enumerate(source.decode(video=0)):
-            if index % 2 == 0:
-                camera.write(b"FRAME\n" + frame.to_ndarray(format="yuv420p").tobytes())
+        frames = [frame.to_ndarray(format="yuv420p") for frame in source.decode(video=0)][::2]
+        frames = frames[::-1] if backward else frames
+        for frame in [frames[0]] * still * rate + frames:
+            camera.write(b"FRAME\n" + frame.tobytes())
     return feed
 
 

@@ -153,7 +153,7 @@ def test_a_take_is_judged_by_one_server_until_its_claim_is_old(
         session.execute(update(InvitedTake).values(claimed=now() - 2 * CLAIM))
     assert [each.id for each in another.waiting()] == [take.id]
     assert another.claim(take.id)
-    another.settle(take.id, None)
+    another.settle(take.id, "added")
     assert invitations.waiting() == []
     assert not invitations.claim(take.id)
 
@@ -164,8 +164,8 @@ def test_what_came_in_is_listed_with_its_outcome(
     first, _ = invite(invitations, language_id)
     second, _ = invite(invitations, language_id)
     added, returned = send(invitations, first), send(invitations, first)
-    invitations.settle(added.id, None)
-    invitations.settle(returned.id, "Nobody is seen.")
+    invitations.settle(added.id, "added")
+    invitations.settle(returned.id, "returned", "Nobody is seen.")
     newest, oldest = invitations.of(language_id)
     assert (newest.invitation.id, list(newest.takes)) == (second.id, [])
     assert [(each.status, each.reason) for each in oldest.takes] == [
@@ -175,6 +175,23 @@ def test_what_came_in_is_listed_with_its_outcome(
     assert invitations.take(first.id, added.id).status == "added"
     with pytest.raises(NotFound):
         invitations.take(second.id, added.id)
+
+
+def test_a_question_without_an_answer_waits_for_the_owner_after_ten_minutes(
+    database: Database, invitations: InvitationStore, language_id: str
+) -> None:
+    made, _ = invite(invitations, language_id)
+    take = send(invitations, made)
+    invitations.ask(take.id, "line", "Is it 'circle'?")
+    asked = invitations.take(made.id, take.id)
+    assert (asked.standing, asked.held, asked.read_as) == ("asked", True, "line")
+    assert invitations.waiting() == []
+    with database.writing() as session:
+        session.execute(update(InvitedTake).values(asked=now() - timedelta(minutes=10)))
+    late = invitations.take(made.id, take.id)
+    assert (late.standing, late.held, late.reason) == ("waiting", True, "Is it 'circle'?")
+    assert invitations.waiting() == []
+    assert not invitations.claim(take.id)
 
 
 def test_invitations_go_with_their_language(

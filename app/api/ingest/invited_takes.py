@@ -1,6 +1,7 @@
 """Invited takes: what other people send by an invitation is added to its language, or returned.
 
 A take is judged on the server once its poses are extracted, whether its sender still waits or not.
+One that is not read as its gesture, or with doubt, is held: its sender is asked, then its owner.
 """
 
 from __future__ import annotations
@@ -20,11 +21,16 @@ from app.api.jobs.job import compute_in_place
 from app.api.middleware.identities import Identities
 from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
-from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
+from app.api.services.gesture_edits import (
+    add_demonstration_to,
+    demonstration_at,
+    gesture_in,
+    remove_demonstration_from,
+)
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
-from app.recognition import Gesture, Language, OsgError
+from app.recognition import Gesture, Language, OsgError, Recognition, Recognizer
 from app.recognition.explanation.demonstration_faults import FaultKind
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.recording.clip_range import Demonstration
@@ -48,6 +54,10 @@ LOOK_SECONDS: Final = 1.0
 
 LOST: Final = timedelta(minutes=5)
 """Time after which a take whose clip is not there will have none: storing it takes seconds."""
+
+DOUBT: Final = 0.25
+"""Confidence below which a take is read with doubt; at 0.5 ten to thirty percent more of the right
+takes would be asked about, see `benchmarks.accuracy.invited`."""
 
 MOST_MENDED: Final = 2
 """Ranges that are tried for a take whose first range is not the best one: its stroke, and that
@@ -76,6 +86,24 @@ class Returned(Exception):
     """Raised when a take is not added; the message is for the person who shows."""
 
 
+class Doubted(Exception):
+    """Raised when a take is not surely its gesture; the message asks the person who shows.
+
+    It tells the label that was read at most, and nothing else of the language.
+    """
+
+    def __init__(self, label: str, read: Recognition | None) -> None:
+        self.read_as = None if read is None else read.label
+        seen = f"This does not look like {label!r}."
+        if self.read_as is not None:
+            clearly = ", but not clearly" if self.read_as == label else ""
+            seen = f"This looks like {self.read_as!r}{clearly}."
+        elif read is not None and read.pair is not None and label in read.pair:
+            (other,) = {*read.pair} - {label}
+            seen = f"This may also be {other!r}."
+        super().__init__(f"{seen} Is it {label!r}?")
+
+
 async def settle_takes(studio: Studio, identities: Identities) -> None:
     """Judge the takes that came in, as long as the server runs."""
     seen: int | None = None
@@ -86,7 +114,9 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
             if takes or changes != seen:
                 takes = await run_in_threadpool(studio.invitations.waiting)
                 for take in takes:
-                    await compute_in_place(studio.edits, partial(_settle, studio, identities, take))
+                    await compute_in_place(
+                        studio.edits, partial(_look_at, studio, identities, take)
+                    )
                 seen = changes
         except StoreError as error:
             logger.warning("invited takes wait for the store: %s", error)
@@ -96,7 +126,7 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
         await asyncio.sleep(LOOK_SECONDS)
 
 
-def _settle(studio: Studio, identities: Identities, take: InvitedTake) -> None:
+def _look_at(studio: Studio, identities: Identities, take: InvitedTake) -> None:
     """Judge a take if its job has ended, and keep the outcome."""
     found = None
     try:
@@ -107,19 +137,72 @@ def _settle(studio: Studio, identities: Identities, take: InvitedTake) -> None:
         ready = take.created < now() - LOST
     if not ready or not studio.invitations.claim(take.id):
         return
-    reason = None
     try:
-        _add(studio, identities, take, found)
+        _judge(studio, identities, take, found)
     except Returned as returned:
-        reason = str(returned)
-    studio.invitations.settle(take.id, reason)
-    if reason is not None:
+        _settle(studio, take, "returned", str(returned))
+    except Doubted as doubted:
+        studio.invitations.ask(take.id, doubted.read_as, str(doubted))
+        studio.broadcast.publish("clips", id=take.clip_id)
+
+
+def _settle(studio: Studio, take: InvitedTake, status: str, reason: str | None = None) -> None:
+    """Keep what became of a take, and tell the open pages; a returned one's clip goes."""
+    studio.invitations.settle(take.id, status, reason)
+    if status == "returned":
         with suppress(NotFound):
             studio.clips.delete(take.clip_id)
     studio.broadcast.publish("clips", id=take.clip_id)
 
 
-def _add(
+def answer_question(studio: Studio, take: InvitedTake, quota: Quota, *, confirmed: bool) -> None:
+    """Keep what the person who shows says about a take; nothing happens to one that is not held.
+
+    A take that was read as its gesture is added once it is confirmed. Another one waits for the
+    owner. What is not confirmed is returned.
+    """
+    if not take.held or (confirmed and take.status == "waiting"):
+        return
+    try:
+        if not confirmed:
+            raise Returned("Show it again.")
+        if take.read_as == take.label:
+            add_take(studio, take, quota)
+        else:
+            read = "no gesture" if take.read_as is None else repr(take.read_as)
+            said = f"It is read as {read}. {take.diver} says that it is {take.label!r}."
+            _settle(studio, take, "waiting", said)
+    except Returned as returned:
+        _settle(studio, take, "returned", str(returned))
+
+
+def remove_take(studio: Studio, take: InvitedTake, quota: Quota) -> None:
+    """Take a take out of its language, and hold it no longer.
+
+    Raises
+    ------
+    ProblemError
+        409 when it is the only demonstration of its gesture.
+
+    """
+    language_id = studio.invitations.get(take.invitation_id).language_id
+
+    def without(language: Language) -> Language:
+        row = find_sources(studio, language).get(take.label, [])
+        for index, source in enumerate(row):
+            if source is not None and source.clip_id == take.clip_id:
+                return remove_demonstration_from(language, take.label, index)
+        return language
+
+    language = studio.language(studio.languages.get(language_id))
+    if without(language) is not language:
+        edit = edit_document(f"Remove the demonstration of {take.label} by {take.diver}", without)
+        save_revision(studio, quota, language_id, edit, None)
+        studio.broadcast.publish("languages", id=language_id)
+    _settle(studio, take, "removed")
+
+
+def _judge(
     studio: Studio, identities: Identities, take: InvitedTake, found: ClipWithJob | None
 ) -> None:
     """Add a take to its language.
@@ -128,6 +211,8 @@ def _add(
     ------
     Returned
         Why it is not added.
+    Doubted
+        When it has to be asked about.
 
     """
     invitation = studio.invitations.get(take.invitation_id)
@@ -140,6 +225,33 @@ def _add(
         raise Returned(
             f"The clip could not be read: {found.job.error or 'cancelled'}. Record it again."
         )
+    quota = Quota(owner.name, owner.quota_bytes, owner.quota_clips)
+    add_take(studio, take, quota, sure=False)
+    studio.audit.add(
+        AuditEntry(
+            name=owner.name,
+            role=owner.role.value,
+            address="invitation",
+            method="POST",
+            path=f"/api/v1/languages/{invitation.language_id}/demonstrations",
+            status=201,
+            request_id=take.id,
+        )
+    )
+
+
+def add_take(studio: Studio, take: InvitedTake, quota: Quota, *, sure: bool = True) -> None:
+    """Add a take to its language, unless it is there already.
+
+    Raises
+    ------
+    Returned
+        Why it is not added.
+    Doubted
+        When it is not surely read as its gesture, unless somebody is `sure`.
+
+    """
+    invitation = studio.invitations.get(take.invitation_id)
     try:
         state = studio.languages.get(invitation.language_id)
         language = studio.language(state)
@@ -149,11 +261,14 @@ def _add(
     if any(
         each and each.clip_id == take.clip_id for each in find_sources(studio, language)[take.label]
     ):
-        return  # Added by a server that ended before it could say so.
-    draft = _choose_range(studio, take, gesture, language.trigger)
-    quota = Quota(owner.name, owner.quota_bytes, owner.quota_clips)
+        # Such as by a server that ended before it could say so.
+        return _settle(studio, take, "added")
+    require_unshown(gesture, take.diver)
+    draft = choose_range(studio, take, gesture, language.trigger)
     try:
         shown = demonstration_at(studio, draft, language.trigger)
+        if not sure:
+            _require_read(studio.recognizer(state), take.label, shown)
         edit = edit_document(
             f"Add a demonstration of {take.label} by {take.diver}",
             lambda newest: _with_take(newest, draft, shown),
@@ -166,17 +281,18 @@ def _add(
         raise Returned(f"It cannot be used: {detail}.") from error
     keep_source(studio, state, take.label, draft, shown, index=-1)
     studio.broadcast.publish("languages", id=invitation.language_id)
-    studio.audit.add(
-        AuditEntry(
-            name=owner.name,
-            role=owner.role.value,
-            address="invitation",
-            method="POST",
-            path=f"/api/v1/languages/{invitation.language_id}/demonstrations",
-            status=201,
-            request_id=take.id,
-        )
-    )
+    return _settle(studio, take, "added")
+
+
+def _require_read(recognizer: Recognizer, label: str, shown: Demonstration) -> None:
+    """Raise `Doubted` unless a take is surely read as its gesture."""
+    read = None
+    with suppress(OsgError):
+        read = recognizer.recognize(shown.poses)
+    # The confidence of the paper's profile is no probability.
+    doubted = read is not None and recognizer.profile != "paper" and read.confidence < DOUBT
+    if read is None or read.label != label or doubted:
+        raise Doubted(label, read)
 
 
 def _with_take(language: Language, draft: DemonstrationDraft, shown: Demonstration) -> Language:
@@ -204,7 +320,7 @@ def require_unshown(gesture: Gesture, diver: str) -> None:
         raise Returned(f"{len(divers)} people have shown {gesture.label}, which is enough.")
 
 
-def _choose_range(
+def choose_range(
     studio: Studio, take: InvitedTake, gesture: Gesture, trigger: Trigger
 ) -> DemonstrationDraft:
     """Return the take's range without faults.

@@ -13,21 +13,20 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from typing import Annotated, Final, Literal
 
-from fastapi import APIRouter, Depends, WebSocket
+from fastapi import APIRouter, WebSocket
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
-from app.api.live.frame_pipeline import Frame, FramePipeline
+from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import OsgError, Recognizer
 from app.recognition.errors import EstimatorError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.gestures.profile import ProfileName
-from app.store import NotFound
+from app.store import Invitation, NotFound
 
 MESSAGE_TOO_BIG, INTERNAL_ERROR, TRY_AGAIN_LATER = 1009, 1011, 1013
 """Websocket close codes (RFC 6455, 7.4.1, and its registry)."""
@@ -43,6 +42,15 @@ MOST_FRAME_BYTES: Final = 1024 * 1024
 
 MOST_VIEWS: Final = 2
 """Most live views at the same time: each keeps two cores busy, and a laptop has few more."""
+
+INVITED_PROTOCOL: Final = "osg-studio.take"
+"""Subprotocol of an invited person's websocket, beside which the page sends the token."""
+
+MOST_INVITED: Final = 1
+"""Most invited people whose camera is looked at at the same time."""
+
+INVITED_SECONDS: Final = 90.0
+"""Longest look at an invited person's camera, for one take: another one may wait for the place."""
 
 SILENCE_SECONDS: Final = 60.0
 """Seconds without frames after which a view is closed, to make place for another one."""
@@ -77,43 +85,51 @@ class _End(Exception):
         self.reason = reason.encode()[:MOST_REASON_BYTES].decode(errors="ignore")
 
 
-def _places_of(connection: HTTPConnection) -> asyncio.Semaphore:
-    places: asyncio.Semaphore = connection.app.state.live_places
-    return places
-
-
 router = APIRouter(tags=["live"])
 
 
 @router.websocket("/live")
-async def watch_camera(
-    browser: WebSocket,
-    studio: CurrentStudio,
-    places: Annotated[asyncio.Semaphore, Depends(_places_of)],
-) -> None:
-    """Take a camera's frames, and send what is found in them."""
+@router.websocket("/invited/live")
+async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
+    """Take a camera's frames, and send what is found in them.
+
+    For an invited person this is when a take begins and ends, and not what is read in it.
+    """
     if not same_origin(browser):
         await browser.close(POLICY_VIOLATION, "foreign_origin")
         return
+    invitation: Invitation | None = getattr(browser.state, "invitation", None)
+    places: asyncio.Semaphore = browser.app.state.live_places
+    language_id, seconds = None, None
+    full = f"{MOST_VIEWS} live views are open already; close one"
+    if invitation is not None:
+        places = browser.app.state.invited_places
+        language_id, seconds = invitation.language_id, INVITED_SECONDS
+        full = "another person's take is looked at"
     # Only an accepted websocket can be closed with a reason.
-    await browser.accept()
+    await browser.accept(None if invitation is None else INVITED_PROTOCOL)
     try:
         if places.locked():
-            raise _End(TRY_AGAIN_LATER, f"{MOST_VIEWS} live views are open already; close one")
-        async with places, _view(browser, studio) as view:
-            await view.run()
+            raise _End(TRY_AGAIN_LATER, full)
+        async with places, _view(browser, studio, language_id) as view:
+            try:
+                await asyncio.wait_for(view.run(), seconds)
+            except TimeoutError as error:
+                raise _End(NO_FRAMES, "one take is looked at, and not for longer") from error
     except _End as end:
         with contextlib.suppress(RuntimeError, WebSocketDisconnect):
             await browser.close(end.code, end.reason)
 
 
 @asynccontextmanager
-async def _view(browser: WebSocket, studio: Studio) -> AsyncIterator[_View]:
+async def _view(
+    browser: WebSocket, studio: Studio, language_id: str | None
+) -> AsyncIterator[_View]:
     try:
         estimator = await run_in_threadpool(create_estimator)
     except (ModelError, EstimatorError) as error:
         raise _End(INTERNAL_ERROR, str(error)) from error
-    view = _View(browser, studio, estimator)
+    view = _View(browser, studio, estimator, language_id)
     try:
         yield view
     finally:
@@ -121,12 +137,21 @@ async def _view(browser: WebSocket, studio: Studio) -> AsyncIterator[_View]:
 
 
 class _View:
-    """One open live view."""
+    """One open live view; that of an invited person has a language, and may not choose another."""
 
-    def __init__(self, browser: WebSocket, studio: Studio, estimator: PoseEstimator) -> None:
+    def __init__(
+        self,
+        browser: WebSocket,
+        studio: Studio,
+        estimator: PoseEstimator,
+        language_id: str | None,
+    ) -> None:
         self._browser = browser
         self._studio = studio
+        self._invited = language_id is not None
         self._wanted: Listen | None = None
+        if language_id is not None:
+            self._wanted = Listen(do="listen", language_id=language_id)
         self._pipeline = FramePipeline(estimator, studio.settings.water, self._recognizer)
         self._thread = ThreadPoolExecutor(1, "live")
         self._newest: Frame | None = None
@@ -182,6 +207,8 @@ class _View:
         self._arrived.set()
 
     async def _listen(self, text: str) -> None:
+        if self._invited:
+            raise _End(UNSUPPORTED_DATA, "only frames are taken here")
         try:
             self._wanted = Listen.model_validate_json(text)
         except ValidationError as error:
@@ -214,6 +241,8 @@ class _View:
             except OsgError as error:
                 raise _End(UNSUPPORTED_DATA, str(error)) from error
             for answer in answers:
+                if self._invited and isinstance(answer, Recognized):
+                    answer = Recognized(start=answer.start, end=answer.end, closed=answer.closed)
                 await self._browser.send_text(answer.model_dump_json())
 
     def _recognizer(self) -> Recognizer | None:

@@ -309,6 +309,9 @@ class TokenRequired:
         the same to everybody.
         """
         scheme, _, shown = Headers(scope=scope).get("authorization", "").partition(" ")
+        if scope["type"] == "websocket":
+            # Browsers send no such header with it, but the subprotocols that the page wants.
+            scheme, shown = "bearer", scope["subprotocols"][-1] if scope["subprotocols"] else ""
         invitations: InvitationStore = scope["app"].state.studio.invitations
         token = digest(shown.strip() if scheme.lower() == "bearer" else "")
         found = await run_in_threadpool(invitations.find, token)

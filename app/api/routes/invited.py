@@ -15,17 +15,18 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.invitations import (
     MOST_TAKE_BYTES,
+    InvitedAnswer,
     InvitedGestureView,
     InvitedTakeView,
     InvitedView,
 )
 from app.api.http.schemas.values import Diver, Label
 from app.api.ingest.intake import Inspected, inspect, require_place_in_queue, store
-from app.api.ingest.invited_takes import Returned, require_unshown
+from app.api.ingest.invited_takes import Returned, answer_question, require_unshown
 from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
-from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
+from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
 from app.recognition import Gesture
 from app.store import Invitation, require_open
 from app.store.invitations import closed
@@ -60,7 +61,7 @@ FORM = {
 }
 
 
-@router.get("", responses=problem_responses(404))
+@router.get("", responses=problem_responses(404, 429))
 @computed_briefly
 def get_invited_language(studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedView:
     """Show the gestures of the language that one is invited to."""
@@ -112,7 +113,7 @@ async def send_take(
         try:
             made = await _inspect_video(received, studio, upload)
         except ProblemError as error:
-            await run_in_threadpool(studio.invitations.settle, take.id, error.detail)
+            await run_in_threadpool(studio.invitations.settle, take.id, "returned", error.detail)
             raise
         made.clip.id = take.clip_id
         made.clip.name = display_name(f"{diver} {label}{PurePath(upload.name).suffix[:8]}")
@@ -123,13 +124,31 @@ async def send_take(
             raise
     finally:
         received.unlink(missing_ok=True)
-    return InvitedTakeView(**take.model_dump())
+    return InvitedTakeView.of(take)
 
 
-@router.get("/takes/{take_id}", responses=problem_responses(404))
+@router.get("/takes/{take_id}", responses=problem_responses(404, 429))
 def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedTakeView:
-    """Tell whether a take was added, or why it was returned."""
-    return InvitedTakeView(**studio.invitations.take(invitation.id, take_id).model_dump())
+    """Tell whether a take was added, why it was returned, or what is asked about it."""
+    return InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
+
+
+@router.put("/takes/{take_id}/answer", responses=problem_responses(404, 429))
+@edited
+def answer_about_take(
+    take_id: str,
+    answer: InvitedAnswer,
+    studio: CurrentStudio,
+    quota: SenderQuota,
+    invitation: CurrentInvitation,
+) -> InvitedTakeView:
+    """Say whether a take is the gesture, where the language does not read it so.
+
+    An answer that comes again changes nothing, nor does one about a take that is not asked about.
+    """
+    take = studio.invitations.take(invitation.id, take_id)
+    answer_question(studio, take, quota, confirmed=answer.confirmed)
+    return InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
 
 
 async def _receive_within(

@@ -40,8 +40,10 @@ SAME_TAKE = 0.5
 """Share of a take that a demonstration must cover to count as the same."""
 
 
-def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft]) -> None:
-    """Add takes to the test set of a language.
+def add_labelled(
+    studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft], sender: str
+) -> None:
+    """Add takes to the test set of a language in the name of a sender.
 
     Raises
     ------
@@ -58,6 +60,7 @@ def add_labelled(studio: Studio, language_id: str, drafts: Sequence[LabelledTake
             start=start,
             end=end,
             expected=draft.expected,
+            added_by=sender,
         )
         for draft in drafts
         for start, end in _ranges(studio, draft, studio.languages.get(language_id))

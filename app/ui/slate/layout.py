@@ -200,8 +200,8 @@ def _salute(left: float, top: float, size: float) -> Iterator[Part]:
 def _foot(language: Language) -> Iterator[Part]:
     width, height = A4
     text = (
-        "Figures show the diver as the robot sees them, mirrored to your own view: begin at the "
-        "dot, follow the arrows."
+        "Drawn as the robot sees the diver: show to your right what goes to the left. Begin "
+        "at the dot, follow the arrows."
     )
     room = width - 2 * MARGIN
     yield Words(text, (MARGIN, height - MARGIN + 1), fit_size(text, 3.2, room), grey=True)

@@ -11,7 +11,7 @@ export interface Seen {
   hands: Point[][];
   salute: number;
   held: boolean;
-  state: "waiting" | "recording" | "done";
+  state: "idle" | "recording" | "done";
   frames_per_second: number;
   seconds: number;
   skipped: number;

@@ -18,9 +18,10 @@ const CLOSED = {
  * Open the live session.
  *
  * @param {Handlers} handlers A function for each kind of message, and for the end.
+ * @param {{ path?: string, protocols?: string[] }} [place]
  */
-export function openLink(handlers) {
-  const socket = openSocket("/live");
+export function openLink(handlers, { path = "/live", protocols = [] } = {}) {
+  const socket = openSocket(path, protocols);
   /** @type {Map<number, number>} */
   const captured = new Map(); // Capture time by the page's clock, by frame under way.
   /** @type {((value?: unknown) => void)[]} */

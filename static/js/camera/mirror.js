@@ -1,4 +1,5 @@
-// The preview of a camera: mirrored, unless the camera faces away from the viewer.
+// The preview of a camera: mirrored, unless the camera faces away from the viewer. Drawings of
+// gestures beside it are mirrored with it, by the styles.
 
 /**
  * Whether a source is shown mirrored: true for a camera that faces the diver or whose direction is

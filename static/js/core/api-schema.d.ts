@@ -1118,7 +1118,18 @@ export interface components {
              * Shown
              * @description These takes, the oldest first
              */
-            shown: components["schemas"]["InvitedTakeView"][];
+            shown: components["schemas"]["ReceivedTakeView"][];
+        };
+        /**
+         * InvitedAnswer
+         * @description What the person who shows says about a take that is asked about.
+         */
+        InvitedAnswer: {
+            /**
+             * Confirmed
+             * @description It is the gesture; false: another take will be shown
+             */
+            confirmed: boolean;
         };
         /**
          * InvitedGestureView
@@ -1164,12 +1175,13 @@ export interface components {
             diver: string;
             /**
              * Status
+             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows
              * @enum {string}
              */
-            status: "waiting" | "added" | "returned";
+            status: "waiting" | "asked" | "added" | "removed" | "returned";
             /**
              * Reason
-             * @description Why it was returned, and what to do; else null
+             * @description Why it was returned, and what to do; or why it is doubted; else null
              */
             reason: string | null;
         };
@@ -1384,6 +1396,11 @@ export interface components {
             end: number;
             /** Expected */
             expected: string;
+            /**
+             * Added By
+             * @description Name of who added it; empty: not known
+             */
+            added_by: string;
             /**
              * Demonstration
              * @description It is a demonstration of the language, which does not count
@@ -1681,7 +1698,7 @@ export interface components {
              * Shown
              * @description These takes, the oldest first
              */
-            shown: components["schemas"]["InvitedTakeView"][];
+            shown: components["schemas"]["ReceivedTakeView"][];
             /** Link */
             link: string;
             /**
@@ -2027,6 +2044,11 @@ export interface components {
             recognition_id: string;
             /** Revision */
             revision: number;
+            /**
+             * Added By
+             * @description Name of who added it; empty: not known
+             */
+            added_by: string;
         };
         /**
          * PreviewRequest
@@ -2172,6 +2194,81 @@ export interface components {
             low: number | null;
             /** High */
             high: number | null;
+        };
+        /**
+         * ReceivedTakeChange
+         * @description What becomes of a take that is held, was added, or was removed.
+         */
+        ReceivedTakeChange: {
+            /**
+             * Status
+             * @enum {string}
+             */
+            status: "added" | "removed";
+        };
+        /**
+         * ReceivedTakeOutlook
+         * @description A take that is held, and what the language would read with it.
+         */
+        ReceivedTakeOutlook: {
+            /**
+             * Start
+             * @description Seconds in its clip
+             */
+            start: number;
+            /** End */
+            end: number;
+            /**
+             * Image
+             * @description Its drawing with start dot and arrow: a data URI of a PNG
+             */
+            image: string;
+            /**
+             * Known
+             * @description Known takes of the test set and of practice
+             */
+            known: number;
+            /**
+             * Repaired
+             * @description Of these, those that are read right only with it
+             */
+            repaired: number;
+            /**
+             * Broken
+             * @description Those that are read right only without it
+             */
+            broken: number;
+        };
+        /**
+         * ReceivedTakeView
+         * @description A take for whoever invited.
+         */
+        ReceivedTakeView: {
+            /** Id */
+            id: string;
+            /**
+             * Label
+             * @description The gesture that it shows
+             */
+            label: string;
+            /**
+             * Diver
+             * @description Who shows it
+             */
+            diver: string;
+            /**
+             * Status
+             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows
+             * @enum {string}
+             */
+            status: "waiting" | "asked" | "added" | "removed" | "returned";
+            /**
+             * Reason
+             * @description Why it was returned, and what to do; or why it is doubted; else null
+             */
+            reason: string | null;
+            /** Clip Id */
+            clip_id: string;
         };
         /**
          * RecognitionRequest

@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
+/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, ReceivedTake, ReceivedTakeOutlook, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 // Relative to the page, which a reverse proxy may serve under a path of its own.
 export const BASE = "api/v1";
@@ -101,11 +101,12 @@ export const beside = (path) => path.replace(/^\//, "");
  * Open a WebSocket of the API.
  *
  * @param {string} path
+ * @param {string[]} [protocols]
  */
-export function openSocket(path) {
+export function openSocket(path, protocols = []) {
   const address = new URL(BASE + path, document.baseURI);
   address.protocol = address.protocol.replace("http", "ws");
-  return new WebSocket(address);
+  return new WebSocket(address, protocols);
 }
 
 const id = encodeURIComponent;
@@ -143,7 +144,7 @@ export const audit = {
 /**
  * The address of a clip's pictures, another one once they are turned: browsers keep them.
  *
- * @param {Clip} clip
+ * @param {Pick<Clip, "id"> & Partial<Clip>} clip
  * @param {"video" | "poster" | "filmstrip"} which
  */
 const picture = (clip, which) =>
@@ -205,7 +206,7 @@ export const clips = {
    * @type {(clip: string, name: string) => string}
    */
   session: (clip, name) => `${BASE}/clips/${id(clip)}/session.mcap?export=${id(name)}`,
-  /** @type {(clip: Clip) => string} */
+  /** @type {(clip: Pick<Clip, "id"> & Partial<Clip>) => string} */
   video: (clip) => picture(clip, "video"),
 };
 
@@ -369,6 +370,10 @@ export const testSets = {
   cancel: (language) => request("DELETE", `/languages/${id(language)}/test-set/run`),
 };
 
+/** @type {(language: string, invitation: string, take: string) => string} */
+const takeAt = (language, invitation, take) =>
+  `/languages/${id(language)}/invitations/${id(invitation)}/takes/${id(take)}`;
+
 export const invitations = {
   /** @type {(language: string) => Promise<Invitation[]>} */
   list: (language) => request("GET", `/languages/${id(language)}/invitations`),
@@ -378,6 +383,11 @@ export const invitations = {
   /** @type {(language: string, invitation: string) => Promise<null>} */
   withdraw: (language, invitation) =>
     request("DELETE", `/languages/${id(language)}/invitations/${id(invitation)}`),
+  /** @type {(language: string, invitation: string, take: string) => Promise<ReceivedTakeOutlook>} */
+  outlook: (language, invitation, take) => request("GET", takeAt(language, invitation, take)),
+  /** @type {(language: string, invitation: string, take: string, status: "added" | "removed") => Promise<ReceivedTake>} */
+  settle: (language, invitation, take, status) =>
+    request("PUT", takeAt(language, invitation, take), { body: { status } }),
 };
 
 export const practice = {

@@ -48,6 +48,8 @@ export type NewInvitation = Schemas["NewInvitationView"];
 export type Invited = Schemas["InvitedView"];
 export type InvitedGesture = Schemas["InvitedGestureView"];
 export type InvitedTake = Schemas["InvitedTakeView"];
+export type ReceivedTake = Schemas["ReceivedTakeView"];
+export type ReceivedTakeOutlook = Schemas["ReceivedTakeOutlook"];
 export type Demonstration = Schemas["DemonstrationView"];
 export type WorkspaceView = Schemas["ViewRequest"];
 export type WrittenSession = Schemas["WrittenSessionView"];
@@ -397,6 +399,10 @@ export interface GestureRow {
   number: number;
   label: string;
   chosen: boolean;
+  /** The gesture of the language of which it would be a further demonstration, or "". */
+  further: string;
+  /** Whether the language reads it as that gesture already. */
+  right: boolean;
 }
 
 /** A view of the page, loaded when it is first shown. */

@@ -57,6 +57,17 @@ export const requestOf = (gesture, values, saved, fixed = false) => ({
 });
 
 /**
+ * The change by which a draft becomes a further demonstration of a gesture.
+ *
+ * @param {Draft} values
+ */
+export const furtherOf = ({ clip, salient }) => ({
+  demonstration: clip,
+  further: true,
+  ...(salient ? { salient } : {}),
+});
+
+/**
  * Only the changed values: somebody else may meanwhile have edited the others.
  *
  * @param {string} gesture
@@ -88,6 +99,14 @@ function changeOf(gesture, values, saved) {
 export function save(language, gesture, values, saved) {
   if (gesture === null) {
     const { clip, label, description, command, ...rest } = values;
+    const known = label.trim();
+    if (language.labels.includes(known))
+      return edit(
+        "Adding the demonstration",
+        `Further demonstration of ${known}`,
+        (base) => api.languages.changeGesture(base, known, furtherOf(values)),
+        { from: language },
+      );
     const body = {
       ...rest,
       ...clip,

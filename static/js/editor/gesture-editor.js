@@ -1,7 +1,7 @@
 // The editor of a gesture. Only "Save" changes the language; until then there is a draft.
 
 import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
+import { byId, h, WRITES } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
@@ -12,7 +12,7 @@ import { labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
 import { take } from "./demonstration-panel.js";
-import { requestOf, save } from "./draft-saving.js";
+import { furtherOf, requestOf, save } from "./draft-saving.js";
 import {
   begin,
   canRedo,
@@ -102,9 +102,9 @@ function gestureOf({ language, gesture }) {
 function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
-    const proposed = labelOf(state.clips.find(({ id }) => id === state.clip)?.name ?? "");
+    const name = state.clips.find(({ id }) => id === state.clip)?.name ?? "";
     return {
-      label: language.labels.includes(proposed) ? "" : proposed,
+      label: byId("expected").value || labelOf(name),
       description: "",
       command: "",
       salient: null,
@@ -139,7 +139,12 @@ function build(section, about) {
   const others = () =>
     currentLanguage()
       .gestures.map((each) => each.label)
-      .filter((label) => label !== gesture);
+      .filter((label) => label !== (gesture ?? draft().label.trim()));
+  /** The gesture of which a new range would be a further demonstration, or null. */
+  const further = () => {
+    const label = draft().label.trim();
+    return gesture === null && currentLanguage().labels.includes(label) ? label : null;
+  };
   const drawn = gesture !== null && !gestureOf(about).has_trajectory;
   /** @type {Preview | null} */
   let preview = null;
@@ -201,12 +206,15 @@ function build(section, about) {
     status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
     restored.hidden = restored.hidden || !isChanged();
     saving.disabled = gesture !== null && !isChanged();
+    if (gesture === null) saving.textContent = further() ? `Add to ${further()}` : "Save gesture";
   }
 
   function changed() {
     problem.hidden = true;
     draw();
-    ask(language.id, requestOf(gesture, draft(), saved(), drawn && !draft().clip));
+    const more = further();
+    const request = requestOf(gesture, draft(), saved(), drawn && !draft().clip);
+    ask(language.id, more ? { label: more, change: furtherOf(draft()) } : request);
   }
 
   function abandon() {
@@ -224,9 +232,10 @@ function build(section, about) {
     isSaving = true;
     try {
       const label = draft().label.trim();
+      const more = further();
       const now = await save(about.language, gesture, draft(), saved());
       abandon();
-      showDone("Gesture saved", `${label}, in ${now.name}`);
+      showDone(more ? "Demonstration added" : "Gesture saved", `${label}, in ${now.name}`);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.

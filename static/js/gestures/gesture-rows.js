@@ -1,12 +1,13 @@
 // The rows of the table that makes gestures of clips: one per take, with a proposed label.
 
+import { labelInName } from "../clips/clip-label.js";
 import { moment, plural } from "../core/format.js";
 import { withoutJoiners } from "../core/joiners.js";
 
-/** @import { Clip, GestureRow, Language, Take } from "../core/types.d.ts" */
+/** @import { Clip, GestureRow, Language, Take, TakeRow } from "../core/types.d.ts" */
 
 const NAMED_BY_CAMERA = /^(img|vid|dscn?|gopr|gh|gx|mvi|mov|pxl|dji|clip|video)?[\d\s._-]*$/i;
-const TRAILING = /[\s._-]+(demonstration|demo|test|take|clip|video|v?\d+)$/i;
+const TRAILING = /[\s._-]+(demonstration|demo|test|take|clip|video|[tv]?\d+)$/i;
 
 /**
  * The label that a clip's file name proposes, or "": "follow_me-demonstration-2.mp4" proposes
@@ -47,33 +48,70 @@ export function withoutGesture(clips, language) {
   return clips.filter(({ id }) => !shown.has(id));
 }
 
+/** The key of a clip's take among readings. */
+export const readingAt = (/** @type {string} */ clip, /** @type {number} */ number) =>
+  `${clip} ${number}`;
+
 /**
- * The rows of clips, in their order. A row is initially selected, unless its clip is already the
- * source of a gesture of the language, or its label occurs in the language or an earlier row.
+ * The rows of clips, in their order. A take of a gesture that the language has is a further
+ * demonstration of it. A row is initially selected, unless its clip is already the source of a
+ * gesture of the language, its label occurs in an earlier row, or the language reads it right.
  *
  * @param {Clip[]} clips
  * @param {Map<string, Take[]>} takes by clip, of those whose poses are found
  * @param {Language | null} language
  * @param {Map<string, Partial<GestureRow>>} edited what the user wrote or chose, by key
+ * @param {Map<string, Pick<TakeRow, "label" | "expected">>} [readings] by the language, see `readingAt`
  * @returns {GestureRow[]}
  */
-export function rowsOf(clips, takes, language, edited) {
+export function rowsOf(clips, takes, language, edited, readings = new Map()) {
   const shown = demonstrated(language);
-  const taken = new Set((language?.labels ?? []).map(withoutJoiners));
+  const labels = language?.labels ?? [];
+  const known = new Map(labels.map((label) => [withoutJoiners(label), label]));
+  const taken = new Set(); // by earlier rows
   return clips.flatMap((clip) => {
     const found = takes.get(clip.id) ?? null;
     const alone = !found || found.length < 2;
     return (found?.length ? found : [null]).map((take, number) => {
       const key = alone ? clip.id : `${clip.id} ${number}`;
-      const proposed = labelOf(clip.name);
-      const label =
-        edited.get(key)?.label ?? (alone || !proposed ? proposed : `${proposed} ${number + 1}`);
-      const compared = withoutJoiners(label);
-      const chosen = edited.get(key)?.chosen ?? (!shown.has(clip.id) && !taken.has(compared));
-      if (chosen && label) taken.add(compared);
-      return { key, clip, takes: found, take, number, label, chosen };
+      const reading = readings.get(readingAt(clip.id, number));
+      const written = edited.get(key);
+      const label = written?.label ?? proposedLabel(clip, labels, reading, alone ? null : number);
+      const compared = withoutJoiners(label.trim());
+      const { further, right, misread } = asFurther(known.get(compared), reading);
+      const wanted = further ? misread : !taken.has(compared);
+      const chosen = written?.chosen ?? (wanted && !shown.has(clip.id));
+      if (chosen && label && !further) taken.add(compared);
+      return { key, clip, takes: found, take, number, label, chosen, further, right };
     });
   });
+}
+
+/**
+ * A take as a further demonstration of a gesture that the language has, if it has it.
+ *
+ * @param {string | undefined} further
+ * @param {Pick<TakeRow, "label"> | undefined} reading
+ */
+function asFurther(further, reading) {
+  if (!further) return { further: "", right: false, misread: false };
+  const right = reading?.label === further;
+  return { further, right, misread: reading !== undefined && !right };
+}
+
+/**
+ * The expected gesture of a take, or the label that its clip's name proposes; `number` counts it
+ * among several.
+ *
+ * @param {Clip} clip
+ * @param {string[]} labels
+ * @param {Pick<TakeRow, "expected"> | undefined} reading
+ * @param {number | null} number
+ */
+function proposedLabel(clip, labels, reading, number) {
+  const known = reading?.expected || labelInName(clip.name, labels);
+  const proposed = known || labelOf(clip.name);
+  return known || !proposed || number === null ? proposed : `${proposed} ${number + 1}`;
 }
 
 /**
@@ -104,30 +142,32 @@ export function rangeWarning({ takes, take }, name = "Vulcan salute") {
 }
 
 /**
- * Why the selected rows cannot be saved yet: per key, and as one sentence; `others` are the labels
- * of the language.
+ * What a row becomes where that is no new gesture; empty for one.
+ *
+ * @param {Pick<GestureRow, "chosen" | "further" | "right">} row
+ */
+export function furtherNote({ chosen, further, right }) {
+  if (!further || !(chosen || right)) return "";
+  const already = right ? ` It is read as \u201c${further}\u201d already.` : "";
+  return `A further demonstration of \u201c${further}\u201d.${already}`;
+}
+
+/**
+ * Why the selected rows cannot be saved yet: per key, and as one sentence.
  *
  * @param {GestureRow[]} rows
- * @param {string[]} others
  * @returns {{ problems: Map<string, string>, note: string }}
  */
-export function problemsOf(rows, others) {
+export function problemsOf(rows) {
   const chosen = rows.filter((row) => row.chosen);
   const problems = new Map();
-  const taken = new Set(others.map(withoutJoiners));
-  const seen = new Set(taken);
-  for (const { key, label } of chosen) {
+  const seen = new Set();
+  for (const { key, label, further } of chosen) {
     const text = label.trim();
     const compared = withoutJoiners(text);
     if (!text) problems.set(key, "Name it.");
-    else if (seen.has(compared))
-      problems.set(
-        key,
-        taken.has(compared)
-          ? `The language has a gesture \u201c${text}\u201d already.`
-          : `Another row is called \u201c${text}\u201d.`,
-      );
-    seen.add(compared);
+    else if (seen.has(compared)) problems.set(key, `Another row is called \u201c${text}\u201d.`);
+    if (!further) seen.add(compared);
   }
   const waiting = chosen.filter(({ takes }) => !takes);
   const unread = waiting.filter(({ clip }) => clip.status !== "done").length;

@@ -1,6 +1,7 @@
 // The table that makes gestures of several clips: named in one place, saved in one undoable step.
 
 import { BUSY } from "../clips/busy.js";
+import { labelInName } from "../clips/clip-label.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { heldName } from "../clips/salutes.js";
 import { addedAt, posterOf, statusText } from "../clips/clip-store.js";
@@ -10,17 +11,26 @@ import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
 import { complain } from "../core/toasts.js";
+import { uniqueId } from "../core/unique-id.js";
 import { showDone } from "../core/undo.js";
 import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
 import { forgetFailures, loadTakesOfClips, takesByClip } from "./clip-takes.js";
-import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./gesture-rows.js";
+import {
+  furtherNote,
+  problemsOf,
+  rangeText,
+  rangeWarning,
+  readingAt,
+  rowsOf,
+  withoutGesture,
+} from "./gesture-rows.js";
 
-/** @import { GestureRow, Language, State } from "../core/types.d.ts" */
+/** @import { GestureRow, Language, State, TakeRow } from "../core/types.d.ts" */
 
 /**
  * The table on display; `edited` is what the user chose, `refused` what the server
- * refused, both by row.
+ * refused, both by row. `readings` are what the language `reads` in takes that have a name of it.
  *
  * @typedef {object} Table
  * @property {HTMLElement} list
@@ -30,12 +40,16 @@ import { problemsOf, rangeText, rangeWarning, rowsOf, withoutGesture } from "./g
  * @property {string} target the language to save into; empty for a new one
  * @property {Map<string, Partial<GestureRow>>} edited
  * @property {Map<string, string>} refused
+ * @property {Map<string, TakeRow>} readings
+ * @property {string} reads
+ * @property {AbortController} leaving
  * @property {boolean} saving
  */
 
 const NEW = "";
 const PROPOSED_NAME = "My gestures";
 const LONGEST_LABEL = 80;
+const MOST_READ = 100; // clips whose takes are read: some seconds
 const LONGEST_NAME = 80;
 
 /** @type {Table | null} */
@@ -69,7 +83,33 @@ export function drawTableButton({ gestures, clip }) {
   button.classList.toggle("primary", unused && !recognisable);
 }
 
-const rows = () => rowsOf(usable(), takesByClip, targetLanguage(), onDisplay().edited);
+const rows = () =>
+  rowsOf(usable(), takesByClip, targetLanguage(), onDisplay().edited, onDisplay().readings);
+
+/** Read the takes whose expected gesture the language has, so that those it reads are left out. */
+async function read() {
+  const language = targetLanguage();
+  if (!table || !isOpen() || !language) return;
+  const tested = new Set(state.testSet?.takes.map(({ clip_id: clip }) => clip));
+  const clips = withoutGesture(usable(), language)
+    .filter(({ status }) => status === "done")
+    .filter(({ id, name }) => tested.has(id) || labelInName(name, language.labels))
+    .slice(0, MOST_READ)
+    .map(({ id }) => id);
+  const reads = [language.id, language.revision, ...clips].join(" ");
+  if (!clips.length || table.reads === reads) return;
+  table.reads = reads;
+  const asked = table;
+  const { signal } = asked.leaving;
+  const found = await api.languages
+    .takeTable(language.id, uniqueId(), clips, signal)
+    .catch(() => null);
+  if (!found || asked.reads !== reads) return;
+  asked.readings = new Map(
+    found.rows.map((row) => [readingAt(row.clip_id, (row.take ?? 1) - 1), row]),
+  );
+  draw();
+}
 
 /**
  * @param {string} key
@@ -128,7 +168,8 @@ function drawRow(row, problem, element) {
   range.textContent = row.takes
     ? [rangeText(row), addedAt(row.clip)].filter(Boolean).join(" \u00b7 ")
     : statusText(row.clip, state.jobs.get(row.clip.job_id));
-  note.textContent = row.chosen ? problem || rangeWarning(row, heldName(state.gestures)) : "";
+  const warning = row.chosen ? rangeWarning(row, heldName(state.gestures)) : "";
+  note.textContent = (row.chosen && problem) || warning || furtherNote(row);
   note.classList.toggle("problem", Boolean(row.chosen && problem));
   return drawn;
 }
@@ -147,23 +188,35 @@ function draw() {
   if (!table || !isOpen()) return;
   const { list, name, note: line, refused, save: button, saving, target } = table;
   const all = rows();
-  const { problems, note } = problemsOf(all, targetLanguage()?.labels ?? []);
+  const { problems, note } = problemsOf(all);
   reconcile(
     list,
     all,
     ({ key }) => key,
     (row, element) => drawRow(row, refused.get(row.key) ?? problems.get(row.key), element),
   );
-  const count = all.filter(({ chosen }) => chosen).length;
+  const chosen = all.filter((row) => row.chosen);
   const unnamed = target === NEW && !name.value.trim();
   line.textContent = unnamed ? "The new language has no name." : note;
-  button.textContent = `Save ${plural(count, "gesture")}`;
+  button.textContent = `Save ${countOf(chosen.map(({ further }) => Boolean(further)))}`;
   button.disabled = Boolean(saving || note || unnamed);
 }
 
+/**
+ * Gestures and demonstrations in words.
+ *
+ * @param {boolean[]} further whether each is a further demonstration
+ */
+function countOf(further) {
+  const more = further.filter(Boolean).length;
+  const fresh = further.length - more;
+  const parts = [plural(fresh, "gesture"), plural(more, "demonstration")];
+  return parts.filter((_, index) => (index ? more : fresh || !more)).join(" and ");
+}
+
 /** @param {GestureRow} row */
-const draftOf = ({ clip, take, label }) => ({
-  label: label.trim(),
+const draftOf = ({ clip, take, label, further }) => ({
+  label: further || label.trim(),
   clip_id: clip.id,
   ...(take ? { start: take.start, end: take.end } : {}),
 });
@@ -186,17 +239,23 @@ async function saveIntoNew(name, drafts) {
 }
 
 /**
- * Save gestures into a language, in one step that can be undone.
+ * Save gestures into a language, in one step that can be undone; those that it has get further
+ * demonstrations.
  *
  * @param {string} id
  * @param {{ label: string, clip_id: string, start?: number, end?: number }[]} drafts
  */
 export async function saveInto(id, drafts) {
   await choose(id);
-  const title = plural(drafts.length, "gesture");
-  await edit("Saving the gestures", `Addition of ${title}`, (language) =>
-    api.languages.addGestures(language, drafts),
-  );
+  const known = new Set(state.gestures?.labels);
+  const title = countOf(drafts.map(({ label }) => known.has(label)));
+  await edit("Saving the gestures", `Addition of ${title}`, async (language) => {
+    const fresh = drafts.filter(({ label }) => !known.has(label));
+    let now = fresh.length ? await api.languages.addGestures(language, fresh) : language;
+    for (const draft of drafts.filter(({ label }) => known.has(label)))
+      now = await api.languages.addDemonstration(now, draft);
+    return now;
+  });
   showDone(`${title} saved`, drafts.map(({ label }) => label).join(", "));
 }
 
@@ -214,7 +273,8 @@ async function save() {
     const at = Number(
       /^\/gestures\/(\d+)/.exec(error.errors?.[0]?.pointer ?? "")?.[1] ?? Number.NaN,
     );
-    if (chosen[at]) shown.refused.set(chosen[at].key, error.message);
+    const refused = chosen.filter(({ further }) => !further)[at];
+    if (refused) shown.refused.set(refused.key, error.message);
     else complain(error, "Saving the gestures");
   } finally {
     shown.saving = false;
@@ -251,6 +311,7 @@ function languageChoice() {
     nameRow.hidden = select.value !== NEW;
     if (select.value !== NEW) await choose(select.value);
     draw();
+    read();
   };
   nameRow.hidden = select.value !== NEW;
   const element = h(
@@ -277,6 +338,9 @@ export function openGestureTable() {
     target,
     edited: new Map(),
     refused: new Map(),
+    readings: new Map(),
+    reads: "",
+    leaving: new AbortController(),
     saving: false,
   };
   const form = h(
@@ -286,7 +350,7 @@ export function openGestureTable() {
     h(
       "p",
       { className: "dim" },
-      `Each take between two ${heldName(state.gestures)}s becomes one gesture, under the name beside it.`,
+      `Each take between two ${heldName(state.gestures)}s becomes one gesture, under the name beside it, or a further demonstration of one that the language has.`,
     ),
     element,
     list,
@@ -306,10 +370,14 @@ export function openGestureTable() {
   };
   dialog.replaceChildren(form);
   dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
+  const { leaving } = table;
+  dialog.onclose = () => leaving.abort();
   dialog.showModal();
   forgetFailures();
-  const load = () => loadTakesOfClips(isOpen, drawSoon);
+  const load = () => {
+    loadTakesOfClips(isOpen, drawSoon);
+    read();
+  };
   if (!followed) {
     followed = true;
     follow(["clips", "gestures", "returns"], load);

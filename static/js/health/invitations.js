@@ -3,11 +3,11 @@
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
 import { byId, h, WRITES } from "../core/dom.js";
-import { ago, dateAndTime } from "../core/format.js";
+import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 
-/** @import { Invitation, InvitedTake, NewInvitation } from "../core/types.d.ts" */
+/** @import { Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook } from "../core/types.d.ts" */
 
 const PEOPLE = 2; // With whoever wrote the language they are three, from which on it is foretold.
 const MOST_PEOPLE = 7; // beside one who has shown it; `MAX_DEMONSTRATIONS` is 8
@@ -31,20 +31,97 @@ export function hindrance(link) {
 }
 
 /**
- * What came in, in words, with the outcome of every take by person.
+ * What became of a take, in words.
  *
- * @param {InvitedTake[]} takes
+ * @param {Pick<ReceivedTake, "diver" | "status" | "reason">} take
  */
-export function arrivals(takes) {
-  /** @type {Map<string, InvitedTake[]>} */
-  const people = Map.groupBy(takes, ({ diver }) => diver);
-  return [...people].map(([diver, shown]) => {
-    const words = shown.map(({ label, status, reason }) => {
-      if (status === "waiting") return `${label} is looked at`;
-      return reason ? `${label} returned (${reason.replace(/\.$/, "")})` : `${label} added`;
-    });
-    return `${diver}: ${words.join(", ")}.`;
-  });
+export function outcome({ diver, status, reason }) {
+  if (status === "asked") return `${diver} is asked: ${reason}`;
+  if (status === "waiting") return reason ? `Waits for you. ${reason}` : "is looked at";
+  return reason ? `${status}: ${reason}` : status;
+}
+
+/** Whether a take waits for an answer: of its person, or of the owner. */
+const isHeld = (/** @type {ReceivedTake} */ { status, reason }) =>
+  status === "asked" || (status === "waiting" && reason !== null);
+
+/**
+ * What the language would read with a take, in words.
+ *
+ * @param {Pick<ReceivedTakeOutlook, "known" | "repaired" | "broken">} outlook
+ */
+export const forecast = ({ known, repaired, broken }) =>
+  known
+    ? `Of ${plural(known, "known take")} this repairs ${repaired} and breaks ${broken}.`
+    : "No take of the test set or of practice tells what it changes.";
+
+/**
+ * A held take as it was shown, its drawing beside that of the gesture, and what it would change.
+ *
+ * @param {string} invitation
+ * @param {ReceivedTake} take
+ */
+async function showTake(invitation, { id, label, clip_id: clip }) {
+  const { id: language, revision } = currentLanguage();
+  const outlook = await api.invitations.outlook(language, invitation, id);
+  const drawing = (/** @type {string} */ src, /** @type {string} */ words) =>
+    h(
+      "figure",
+      {},
+      h("img", { src, alt: "", width: 112, height: 112 }),
+      h("figcaption", {}, words),
+    );
+  return [
+    h("video", {
+      src: `${api.clips.video({ id: clip })}#t=${outlook.start},${outlook.end}`,
+      controls: true,
+      muted: true,
+      playsInline: true,
+      preload: "metadata",
+      "aria-label": `The take of ${label}`,
+    }),
+    drawing(outlook.image, "This take"),
+    drawing(api.languages.image(language, label, revision), label),
+    h("p", {}, forecast(outlook)),
+  ];
+}
+
+/**
+ * One take that came in, with what can be done about it.
+ *
+ * @param {string} invitation
+ * @param {ReceivedTake} take
+ * @param {(take: ReceivedTake, status: "added" | "removed") => void} settle
+ */
+function takeRow(invitation, take, settle) {
+  const { label, diver, status } = take;
+  const held = isHeld(take);
+  const button = (/** @type {"added" | "removed"} */ next, /** @type {string} */ words) =>
+    h(
+      "button",
+      {
+        type: "button",
+        ...WRITES,
+        "aria-label": `${words} ${label} by ${diver}`,
+        onclick: () => settle(take, next),
+      },
+      words,
+    );
+  const shown = h("div", { className: "received-take" });
+  if (held)
+    showTake(invitation, take).then(
+      (parts) => shown.replaceChildren(...parts),
+      (error) => shown.replaceChildren(h("p", { className: "dim" }, error.message)),
+    );
+  return h(
+    "li",
+    { className: `received ${held ? "held" : status}` },
+    h("span", {}, h("b", {}, label), ` by ${diver}`),
+    h("span", { className: "dim" }, outcome(take)),
+    held || status === "removed" ? button("added", "Add") : null,
+    held || status === "added" ? button("removed", "Remove") : null,
+    held ? shown : null,
+  );
 }
 
 /** @param {NewInvitation} made */
@@ -106,7 +183,7 @@ function openForm(made) {
     h(
       "p",
       { className: "dim" },
-      "They open a link on their phones and show each gesture once. Every take is checked, and added as theirs or returned with the reason.",
+      "They open a link on their phones and show each gesture once. Every take is checked, and added as theirs, returned with the reason, or held for you.",
     ),
     h("div", { className: "field" }, h("label", { for: "invited-people" }, "People"), people),
     h("div", { className: "field" }, h("label", { for: "invited-days" }, "Days"), days),
@@ -142,23 +219,30 @@ function openForm(made) {
  *
  * @param {Invitation} invitation
  * @param {() => void} withdraw
+ * @param {(status: "added" | "removed", ...takes: ReceivedTake[]) => void} settle
  */
-function row({ created, expires, closed, most_takes: most, takes, shown }, withdraw) {
+function row({ id, created, expires, closed, most_takes: most, takes, shown }, withdraw, settle) {
   const end = closed ?? `valid until ${dateAndTime(expires)}`;
+  const kept = shown.filter((take) => isHeld(take) || take.status === "added");
+  const button = (/** @type {string} */ words, /** @type {() => void} */ onclick) =>
+    h("button", { type: "button", ...WRITES, onclick }, words);
   return h(
     "li",
-    { className: `invitation ${closed ? "dim" : ""}` },
+    { className: `invitation ${closed ? "closed" : ""}` },
     h(
-      "div",
+      "p",
       {},
-      h(
-        "p",
-        {},
-        `Made ${ago(created)}, ${closed === "expired" ? "over" : end}. ${takes} of ${most} takes sent.`,
-      ),
-      ...arrivals(shown).map((each) => h("p", { className: "dim" }, each)),
+      `Made ${ago(created)}, ${closed === "expired" ? "over" : end}. ${takes} of ${most} takes sent.`,
     ),
-    closed ? null : h("button", { type: "button", ...WRITES, onclick: withdraw }, "Withdraw"),
+    closed ? null : button("Withdraw", withdraw),
+    closed && kept.length
+      ? button("Take back what came in", () => settle("removed", ...kept))
+      : null,
+    h(
+      "ul",
+      { "aria-label": "Takes" },
+      shown.map((take) => takeRow(id, take, (each, status) => settle(status, each))),
+    ),
   );
 }
 
@@ -184,18 +268,37 @@ export function invitationsPart() {
     drawn = now;
     list.hidden = !kept.length;
     list.replaceChildren(
-      ...kept.map((each) =>
-        row(each, async () => {
-          try {
-            await api.invitations.withdraw(language, each.id);
-            toast("Invitation withdrawn", "Its link does nothing any more. What was added stays.");
-          } catch (error) {
-            complain(error, "Withdrawing the invitation");
-          }
-          load();
-        }),
-      ),
+      ...kept.map((each) => row(each, () => withdraw(language, each), settling(language, each))),
     );
+  }
+
+  /** @type {(language: string, invitation: Invitation) => (status: "added" | "removed", ...takes: ReceivedTake[]) => Promise<void>} */
+  const settling =
+    (language, { id }) =>
+    async (status, ...takes) => {
+      try {
+        for (const take of takes) await api.invitations.settle(language, id, take.id, status);
+      } catch (error) {
+        complain(error, status === "added" ? "Adding the take" : "Removing the take");
+      }
+      load();
+    };
+
+  /**
+   * @param {string} language
+   * @param {Invitation} invitation
+   */
+  async function withdraw(language, invitation) {
+    try {
+      await api.invitations.withdraw(language, invitation.id);
+      toast(
+        "Invitation withdrawn",
+        "Its link does nothing any more. What was added stays, until you take it back.",
+      );
+    } catch (error) {
+      complain(error, "Withdrawing the invitation");
+    }
+    load();
   }
 
   follow(["view", "gestures", "clips", "health"], ({ view, gestures, health }) => {

@@ -228,6 +228,7 @@ export function takeRow(take, takes) {
         },
         name,
       ),
+      take.added_by ? h("small", { className: "dim" }, ` by ${take.added_by}`) : null,
     ),
     h(
       "td",

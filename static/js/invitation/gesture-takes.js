@@ -3,13 +3,13 @@
 import { cameraPossible } from "../camera/video-source.js";
 import { h } from "../core/dom.js";
 import { takeCamera } from "./take-camera.js";
-import { findJudged, sendTake } from "./take-sending.js";
+import { answerTake, findJudged, sendTake } from "./take-sending.js";
 
 /** @import { Invited, InvitedGesture } from "../core/types.d.ts" */
 
 /**
- * @typedef {"open" | "sending" | "waiting" | "added" | "returned" | "failed"} Standing
- * @typedef {{ gesture: InvitedGesture, standing: Standing, reason: string, share: number, file: File | null, cancel: (() => void) | null }} Entry
+ * @typedef {"open" | "sending" | "waiting" | "asked" | "held" | "added" | "removed" | "returned" | "failed"} Standing
+ * @typedef {{ gesture: InvitedGesture, standing: Standing, reason: string, id: string, share: number, file: File | null, cancel: (() => void) | null }} Entry
  * @typedef {{ kept: { name: string, takes: Record<string, string> }, write: () => void }} Memory
  */
 
@@ -29,10 +29,16 @@ const WORDS = {
   open: "to show",
   sending: "being sent",
   waiting: "being looked at",
+  asked: "please answer",
+  held: "is looked at by whoever invited you",
   added: "added",
+  removed: "not taken",
   returned: "show it again",
   failed: "not sent",
 };
+
+const DONE = ["held", "added", "removed"]; // Nothing more is to be done by who shows.
+const TO_SHOW = ["asked", "open", "returned", "failed"];
 
 /** @param {Entry} entry */
 const wordOf = ({ standing, share }) =>
@@ -54,6 +60,7 @@ export function showGestures(root, invited, memory) {
     gesture,
     standing: "open",
     reason: "",
+    id: "",
     share: 0,
     file: null,
     cancel: null,
@@ -74,7 +81,13 @@ export function showGestures(root, invited, memory) {
   const description = h("p", { className: "dim description" });
   const step = h("p", { className: "step", role: "status" });
   const reason = h("p", { className: "reason", role: "alert", hidden: true });
-  const asked = h("div", { className: "shown" }, figure, h("div", {}, label, description, reason));
+  const view = h("p", { className: "dim view-of-drawings" }, "Drawn as in a mirror.");
+  const asked = h(
+    "div",
+    { className: "shown" },
+    figure,
+    h("div", {}, label, view, description, reason),
+  );
   const card = h("section", { className: "card" });
   const preview = h("video", {
     className: "preview",
@@ -91,7 +104,7 @@ export function showGestures(root, invited, memory) {
   const standingAt = (/** @type {Standing} */ wanted) =>
     entries.find(({ standing }) => standing === wanted);
   /** The next gesture to show. */
-  const next = () => standingAt("open") ?? standingAt("returned");
+  const next = () => standingAt("asked") ?? standingAt("open") ?? standingAt("returned");
   const busy = () =>
     entries.some(({ standing }) => standing === "sending" || standing === "waiting");
 
@@ -107,27 +120,49 @@ export function showGestures(root, invited, memory) {
   }
 
   /**
-   * Wait for the answer to a take that was sent.
+   * Wait for the answer to a take that was sent, after saying whether it is the gesture.
    *
    * @param {Entry} entry
    * @param {string} id
+   * @param {boolean | null} [confirmed]
    */
-  async function follow(entry, id) {
-    put(entry, { standing: "waiting", cancel: null });
+  async function follow(entry, id, confirmed = null) {
+    put(entry, { standing: "waiting", id, cancel: null });
     try {
+      // An answer that does not arrive is asked for again.
+      if (confirmed !== null) await answerTake(id, confirmed).catch(() => {});
       const { status, reason: why } = await findJudged(id);
-      put(entry, { standing: status === "added" ? "added" : "returned", reason: why ?? "" });
+      put(entry, { standing: status === "waiting" ? "held" : status, reason: why ?? "" });
     } catch (error) {
       const gone = error.status === 404;
       put(
         entry,
         gone ? { standing: "open" } : { standing: "failed", reason: capital(error.message) },
       );
+      delete memory.kept.takes[entry.gesture.label];
     }
-    if (entry.standing !== "added") delete memory.kept.takes[entry.gesture.label];
     memory.write();
     advance();
   }
+
+  /**
+   * The buttons that answer whether a take is the gesture.
+   *
+   * @param {Entry} entry
+   */
+  const answers = (entry) => {
+    const answer = (/** @type {string} */ words, /** @type {boolean} */ confirmed) =>
+      h(
+        "button",
+        {
+          type: "button",
+          className: confirmed ? "primary" : "",
+          onclick: () => follow(entry, entry.id, confirmed),
+        },
+        words,
+      );
+    return [answer("Yes, it is", true), answer("Show it again", false)];
+  };
 
   /**
    * Send a clip as the take of a gesture.
@@ -177,13 +212,11 @@ export function showGestures(root, invited, memory) {
     }
   }
 
-  /** Go to the next gesture to show, unless one is being shown. */
+  /** Go to a question or the next gesture to show, unless one is being shown. */
   function advance() {
     if (taking || handsFree) return;
-    const { standing } = current;
-    if (standing === "open" || standing === "returned" || standing === "failed")
-      return drawCurrent();
-    current = next() ?? standingAt("failed") ?? current;
+    const stays = TO_SHOW.includes(current.standing) ? current : null;
+    current = standingAt("asked") ?? stays ?? next() ?? standingAt("failed") ?? current;
     drawCurrent();
     drawList();
   }
@@ -200,12 +233,12 @@ export function showGestures(root, invited, memory) {
   /** @param {Entry} entry */
   function row(entry) {
     const { gesture, standing, cancel, reason: why } = entry;
-    const shows = ["open", "returned", "failed"].includes(standing);
+    const shows = TO_SHOW.includes(standing);
     return h(
       "li",
       {
         className: `gesture ${standing}`,
-        "aria-current": entry === current && standing !== "added" ? "true" : "false",
+        "aria-current": entry === current && !DONE.includes(standing) ? "true" : "false",
       },
       h("img", { src: gesture.image, width: 44, height: 44, alt: "" }),
       h(
@@ -233,8 +266,12 @@ export function showGestures(root, invited, memory) {
     list.replaceChildren(...entries.map(row));
   }
 
-  /** The ways to a clip without the live camera. */
-  function fileInputs() {
+  /**
+   * The ways to a clip of a gesture without the live camera.
+   *
+   * @param {Entry} entry
+   */
+  function fileInputs(entry) {
     const choice = (/** @type {string} */ words, /** @type {Record<string, any>} */ more) => {
       const input = h("input", {
         type: "file",
@@ -244,7 +281,7 @@ export function showGestures(root, invited, memory) {
       });
       input.onchange = () => {
         const [file] = input.files ?? [];
-        if (file) send(current, file);
+        if (file) send(entry, file);
         input.value = "";
       };
       return h("label", { className: "button" }, words, input);
@@ -253,28 +290,47 @@ export function showGestures(root, invited, memory) {
   }
 
   function drawCurrent() {
-    const { gesture, standing, file, reason: why } = current;
+    const { gesture, standing, reason: why } = current;
     figure.src = gesture.image;
     figure.alt = `The drawing of ${gesture.label}, from the dot along the arrow`;
     label.textContent = gesture.label;
     description.textContent = gesture.description;
-    reason.hidden = !why || standing === "added";
+    reason.hidden = !why || DONE.includes(standing);
     reason.textContent = why;
     card.classList.toggle("live", handsFree);
     if (handsFree) return;
-    const all = entries.every(({ standing: each }) => each === "added");
     const done = !next() && !standingAt("failed");
     asked.hidden = done;
-    step.textContent = all
-      ? "All gestures are added. Thank you! You can close this page."
-      : done
-        ? "All gestures are shown. Wait for the answers."
-        : HOW_TO[invited.trigger];
+    step.textContent = stepWords(done);
+    if (standing === "asked") actions.replaceChildren(...answers(current));
+    else actions.replaceChildren(...(done ? [] : waysToShow(current)));
+  }
+
+  /**
+   * What is to be done now, or that all is done.
+   *
+   * @param {boolean} done
+   */
+  function stepWords(done) {
+    const added = entries.filter(({ standing }) => standing === "added").length;
+    if (entries.every(({ standing }) => DONE.includes(standing)))
+      return `All gestures are ${added === entries.length ? "added" : "shown"}. Thank you! You can close this page.`;
+    if (done) return "All gestures are shown. Wait for the answers.";
+    return current.standing === "asked" ? "Please answer." : HOW_TO[invited.trigger];
+  }
+
+  /**
+   * The buttons that show a gesture.
+   *
+   * @param {Entry} entry
+   */
+  function waysToShow(entry) {
+    const { standing, file } = entry;
     const retry =
       standing === "failed" && file
         ? h(
             "button",
-            { type: "button", className: "primary", onclick: () => send(current, file) },
+            { type: "button", className: "primary", onclick: () => send(entry, file) },
             "Send again",
           )
         : null;
@@ -286,9 +342,7 @@ export function showGestures(root, invited, memory) {
             "Show hands-free",
           )
         : null;
-    actions.replaceChildren(
-      ...(done ? [] : [retry, live, ...fileInputs()].filter((each) => each !== null)),
-    );
+    return [retry, live, ...fileInputs(entry)].filter((each) => each !== null);
   }
 
   /**
@@ -340,7 +394,8 @@ export function showGestures(root, invited, memory) {
       LONGEST,
       Math.ceil(entry.gesture.seconds ?? 2) + AROUND[invited.trigger],
     );
-    const file = await camera.take(seconds, taking.signal, (at) => {
+    const { trigger } = invited;
+    const file = await camera.take({ seconds, trigger, signal: taking.signal }, (at) => {
       const ready = at === "ready";
       step.textContent = ready
         ? `Next: ${entry.gesture.label}. Step back.`
@@ -363,7 +418,13 @@ export function showGestures(root, invited, memory) {
     const awake = await navigator.wakeLock?.request("screen").catch(() => null);
     while (handsFree) {
       const entry = next();
-      if (entry) await takeOne(entry);
+      if (entry?.standing === "asked") {
+        current = entry;
+        drawCurrent();
+        step.textContent = "Please answer.";
+        actions.replaceChildren(...answers(entry), stopButton());
+        await changed();
+      } else if (entry) await takeOne(entry);
       else if (!busy()) break;
       else {
         step.textContent = "All gestures are shown. Wait for the answers.";

@@ -1,13 +1,26 @@
 // The live camera of an invited person: it records a gesture hands-free, after a countdown.
 
+import { frameSender } from "../camera/frame-sender.js";
+import { openLink } from "../camera/live-socket.js";
 import { mirror } from "../camera/mirror.js";
 import { countDown, record } from "../camera/recording.js";
+import { takeEnd } from "../camera/take-end.js";
 import { drawTrouble } from "../camera/trouble.js";
-import { cameraLost, release, showCamera, whyNoCamera } from "../camera/video-source.js";
+import {
+  cameraLost,
+  release,
+  showCamera,
+  watchFrames,
+  whyNoCamera,
+} from "../camera/video-source.js";
 import { h } from "../core/dom.js";
+import { token } from "./take-sending.js";
+
+/** @import { Recognized } from "../camera/live-messages.d.ts" */
 
 const INSTEAD = "record with the phone\u2019s own camera, or choose a clip";
 const SECONDS_BEFORE = 5; // to step back from the phone
+const MORE_SECONDS = 20; // of a recording whose end the server sees, for who begins late
 const TONES = { tick: 660, begin: 990, end: 440 }; // Hz
 const TONE_SECONDS = 0.15;
 
@@ -29,6 +42,40 @@ function sound(kind) {
 }
 
 /**
+ * Let the server look for the end of a take before the camera; it may have no place to look.
+ *
+ * @param {HTMLVideoElement} video
+ * @param {string} trigger
+ */
+function watchTake(video, trigger) {
+  const look = { over: false, watching: true, begin: () => {}, stop: () => {} };
+  const end = takeEnd(() => {
+    look.over = true;
+  });
+  const link = openLink(
+    {
+      seen: end.seen,
+      recognized: (/** @type {Recognized} */ result) => end.recognized(result, trigger),
+      listening: () => {},
+      ended: () => {
+        look.watching = false;
+      },
+    },
+    { path: "/invited/live", protocols: ["osg-studio.take", token()] },
+  );
+  let stopFrames = () => {};
+  look.begin = () => {
+    stopFrames = watchFrames(video, frameSender(video, link));
+  };
+  look.stop = () => {
+    stopFrames();
+    link.close();
+    end.reset();
+  };
+  return look;
+}
+
+/**
  * Make the camera; `ended()` is called when it is lost, `again()` to try once more.
  *
  * @param {{ ended: () => void, again: () => void }} options
@@ -42,7 +89,14 @@ export function takeCamera({ ended, again }) {
   const count = h("p", { className: "count", "aria-hidden": "true", hidden: true });
   const left = h("progress", { "aria-label": "Recording", max: 1, value: 0, hidden: true });
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const element = h("div", { className: "picture", hidden: true }, video, count, left, trouble);
+  const element = h(
+    "div",
+    { className: "picture mirrored", hidden: true },
+    video,
+    count,
+    left,
+    trouble,
+  );
 
   function stop() {
     release(video);
@@ -70,23 +124,28 @@ export function takeCamera({ ended, again }) {
   }
 
   /**
-   * Count down and record for so many seconds; null where nothing was recorded. `signal` ends the
-   * countdown or the recording early, and drops it if its reason is "drop".
+   * Count down and record until the take ends, or for so many seconds where the server does not
+   * look; null where nothing was recorded. `signal` ends the countdown or the recording early, and
+   * drops it if its reason is "drop".
    *
-   * @param {number} seconds
-   * @param {AbortSignal} signal
+   * @param {{ seconds: number, trigger: string, signal: AbortSignal }} wanted
    * @param {(step: "ready" | "recording") => void} step
    */
-  async function take(seconds, signal, step) {
+  async function take({ seconds, trigger, signal }, step) {
     step("ready");
     const show = (/** @type {number | null} */ number) => {
       count.hidden = number === null;
       count.textContent = number === null ? "" : String(number);
       if (number !== null && number <= 3) sound("tick");
     };
-    if (!(await countDown(SECONDS_BEFORE, show, signal))) return null;
+    const look = watchTake(video, trigger); // The server takes its time to begin.
+    const ready = await countDown(SECONDS_BEFORE, show, signal);
     const { srcObject } = video;
-    if (!(srcObject instanceof MediaStream)) return null;
+    if (!ready || !(srcObject instanceof MediaStream)) {
+      look.stop();
+      return null;
+    }
+    look.begin();
     sound("begin");
     step("recording");
     const recording = record(srcObject);
@@ -95,12 +154,14 @@ export function takeCamera({ ended, again }) {
     const since = performance.now();
     await new Promise((resolve) => {
       const timer = setInterval(() => {
-        left.value = Math.min(1, (performance.now() - since) / (1000 * seconds));
-        if (left.value < 1 && !signal.aborted) return;
+        const most = seconds + (look.watching ? MORE_SECONDS : 0);
+        left.value = Math.min(1, (performance.now() - since) / (1000 * most));
+        if (left.value < 1 && !look.over && !signal.aborted) return;
         clearInterval(timer);
         resolve(null);
       }, 100);
     });
+    look.stop();
     element.classList.remove("recording");
     left.hidden = true;
     sound("end");

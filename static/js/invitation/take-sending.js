@@ -1,4 +1,4 @@
-// What an invited person's page asks the server: the gestures to show, and takes with their answer.
+// What an invited person's page asks the server: the gestures to show, and what became of takes.
 
 import { ApiError, BASE, problemOf, unreachable } from "../core/api.js";
 
@@ -8,13 +8,17 @@ const PLACE = `${BASE}/invited`;
 const LOOK = 1500; // ms between two looks whether a take is judged; its poses take some seconds.
 
 // Behind the "#", which browsers do not send.
-const token = () => location.hash.slice(1);
+export const token = () => location.hash.slice(1);
 
-/** @param {string} path */
-async function get(path) {
+/**
+ * @param {string} path
+ * @param {RequestInit & { headers?: Record<string, string> }} [more]
+ */
+async function request(path, { headers = {}, ...more } = {}) {
   let response;
   try {
-    response = await fetch(PLACE + path, { headers: { Authorization: `Bearer ${token()}` } });
+    const authorization = { Authorization: `Bearer ${token()}` };
+    response = await fetch(PLACE + path, { headers: { ...authorization, ...headers }, ...more });
   } catch {
     throw unreachable();
   }
@@ -23,7 +27,23 @@ async function get(path) {
 }
 
 /** @type {() => Promise<Invited>} */
-export const findInvited = () => get("");
+export const findInvited = () => request("");
+
+const takeAt = (/** @type {string} */ id) => `/takes/${encodeURIComponent(id)}`;
+
+/**
+ * Answer whether a take is the gesture that it was sent as.
+ *
+ * @param {string} id
+ * @param {boolean} confirmed
+ * @returns {Promise<InvitedTake>}
+ */
+export const answerTake = (id, confirmed) =>
+  request(`${takeAt(id)}/answer`, {
+    method: "PUT",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ confirmed }),
+  });
 
 /**
  * Send the clip of a take; `progress` gets the share that is sent. `cancel` ends it, and then
@@ -64,8 +84,9 @@ export function sendTake({ label, diver, file, progress }) {
 export async function findJudged(id) {
   for (;;) {
     try {
-      const take = await get(`/takes/${encodeURIComponent(id)}`);
-      if (take.status !== "waiting") return take;
+      /** @type {InvitedTake} */
+      const take = await request(takeAt(id));
+      if (take.status !== "waiting" || take.reason) return take; // With a reason the owner decides.
     } catch (error) {
       if (error.status && error.status < 500) throw error;
     }

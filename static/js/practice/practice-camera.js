@@ -5,6 +5,7 @@ import { openLink } from "../camera/live-socket.js";
 import { drawSeen, overlay } from "../camera/pose-overlay.js";
 import { mirror } from "../camera/mirror.js";
 import { record } from "../camera/recording.js";
+import { takeEnd } from "../camera/take-end.js";
 import { howTo, situation } from "../camera/take-steps.js";
 import { drawTrouble } from "../camera/trouble.js";
 import {
@@ -16,6 +17,7 @@ import {
   watchFrames,
   whyNoCamera,
 } from "../camera/video-source.js";
+import { SALUTE } from "../clips/salute-threshold.js";
 import { saluteHand } from "../clips/salutes.js";
 import { h, WRITES } from "../core/dom.js";
 import { state } from "../core/state.js";
@@ -23,8 +25,7 @@ import { state } from "../core/state.js";
 /** @import { Recognized, Seen } from "../camera/live-messages.d.ts" */
 
 const INSTEAD = "show the gesture by a clip";
-const AFTER_TAKE = 1000; // ms, so that the clip shows the whole end of a gesture.
-const LONGEST_WAIT = 60_000; // ms: longest recording before a take begins; memory is finite.
+const LEAD = 2000; // ms before a take that its clip shows at least; what is seen is told later.
 const LONGEST = 5 * 60_000; // ms of one recording.
 
 /**
@@ -41,7 +42,7 @@ export function practiceCamera({ started, nameOf, taken }) {
   });
   const idle = h("div", { className: "camera-idle" }, saluteHand(), "The camera is off");
   const trouble = h("div", { className: "camera-problem", role: "alert", hidden: true });
-  const picture = h("div", { className: "camera-picture" }, video, idle, trouble);
+  const picture = h("div", { className: "camera-picture mirrored" }, video, idle, trouble);
   const words = h("p", { className: "practice-step", role: "status" });
   const toggle = h("button", { type: "button", ...WRITES });
   const judge = h(
@@ -60,15 +61,16 @@ export function practiceCamera({ started, nameOf, taken }) {
 
   /** @type {ReturnType<typeof record> | null} */
   let recording = null;
-  let since = 0; // when it began, by the page's clock
+  /** @type {ReturnType<typeof record> | null} the one after it, which begins while nothing is shown */
+  let later = null;
+  let since = 0; // when the newer of both began, by the page's clock
   /** @type {ReturnType<typeof openLink> | null} */
   let link = null;
   /** @type {(() => void) | null} */
   let stopFrames = null;
   /** @type {SVGSVGElement | null} */
   let drawing = null;
-  let ending = 0; // timer of a take's end
-  let ended = false; // a take ended, and its closing trigger is still held
+  const end = takeEnd(() => finish());
 
   function draw() {
     const running = recording !== null;
@@ -80,18 +82,33 @@ export function practiceCamera({ started, nameOf, taken }) {
     if (!running) words.textContent = howTo();
   }
 
-  /** Begin a new recording and drop the running one. */
+  function begin() {
+    const { srcObject } = video;
+    since = performance.now();
+    return srcObject instanceof MediaStream ? record(srcObject) : null;
+  }
+
+  /** Begin a new recording and drop the running ones. */
   function renew() {
     recording?.stop();
-    const { srcObject } = video;
-    recording = srcObject instanceof MediaStream ? record(srcObject) : null;
-    since = performance.now();
+    later?.stop();
+    later = null;
+    recording = begin();
+  }
+
+  /** Drop what was recorded while nothing was shown, but for the last moments. */
+  function shorten() {
+    if (performance.now() - since < LEAD) return;
+    if (later) {
+      recording?.stop();
+      recording = later;
+    }
+    later = begin();
   }
 
   /** Pass on the recorded file, and begin a new recording. */
   async function finish() {
-    clearTimeout(ending);
-    ending = 0;
+    end.reset();
     const whole = recording;
     if (!whole) return;
     recording = null;
@@ -105,19 +122,17 @@ export function practiceCamera({ started, nameOf, taken }) {
     if (drawing) drawSeen(drawing, answer);
     const [, text] = situation(answer);
     if (words.textContent !== text) words.textContent = text;
-    // Wait until the closing salute is over: on the next clip it would begin a take.
-    if (ended && answer.state !== "done") finish();
-    ended = answer.state === "done";
-    const lasted = performance.now() - since;
-    if (lasted > (answer.state === "waiting" && !ending ? LONGEST_WAIT : LONGEST)) renew();
+    end.seen(answer);
+    if (answer.state === "idle" && bounded() && answer.salute <= SALUTE) shorten();
+    else if (performance.now() - since > LONGEST) renew();
   }
 
+  const kind = () => state.gestures?.trigger?.kind ?? "salute";
+  /** Whether takes begin by a salute or a pose, before which nothing needs to be kept. */
+  const bounded = () => kind() === "salute" || kind() === "pose";
+
   /** @param {Recognized} result */
-  function recognized({ closed }) {
-    const kind = state.gestures?.trigger?.kind ?? "salute";
-    if (closed && (kind === "gesture" || kind === "none") && !ending)
-      ending = setTimeout(finish, AFTER_TAKE);
-  }
+  const recognized = (result) => end.recognized(result, kind());
 
   /**
    * Show that the connection has failed: the camera goes on, but the end of a take is no longer
@@ -133,15 +148,14 @@ export function practiceCamera({ started, nameOf, taken }) {
   }
 
   function stop() {
-    clearTimeout(ending);
+    end.reset();
     stopFrames?.();
     link?.close();
     recording?.stop();
+    later?.stop();
     release(video);
     drawing?.remove();
-    link = stopFrames = recording = drawing = null;
-    ending = 0;
-    ended = false;
+    link = stopFrames = recording = later = drawing = null;
     draw();
   }
 

@@ -52,7 +52,11 @@ function takeRow(take, remove) {
         : take.pair
           ? ` asked back: ${askWhich(take.pair)}`
           : ` read as ${take.label ?? "nothing"}`,
-      h("small", { className: "dim" }, ` revision ${take.revision}`),
+      h(
+        "small",
+        { className: "dim" },
+        ` revision ${take.revision}${take.added_by ? `, added by ${take.added_by}` : ""}`,
+      ),
     ),
     clip
       ? h(

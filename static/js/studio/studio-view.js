@@ -57,7 +57,7 @@ function takesOf(clip, soFar) {
  */
 function keepTakes(takes, timeline, soFar) {
   if (soFar && !takes.length) return undefined;
-  if (!soFar) shownView = ""; // What was shown may have been only the beginning.
+  shownView = ""; // What was shown may have been only the beginning.
   const kept = state.take !== null && state.take < takes.length ? state.take : null;
   const byHand = state.start !== null || state.end !== null;
   return update({ takes, timeline, take: kept ?? (takes.length && !byHand ? 0 : null) });

@@ -17,14 +17,20 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.sync.client import connect
 from websockets.sync.connection import Connection
-from websockets.typing import Origin
+from websockets.typing import Origin, Subprotocol
 
 from app.api.http.websockets import UNSUPPORTED_DATA
 from app.api.live.frame_pipeline import decode_frame
-from app.api.live.socket import MESSAGE_TOO_BIG, MOST_VIEWS, TRY_AGAIN_LATER
+from app.api.live.socket import (
+    INVITED_PROTOCOL,
+    MESSAGE_TOO_BIG,
+    MOST_VIEWS,
+    TRY_AGAIN_LATER,
+)
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.settings import Settings
+from tests.api.invitations import invite, token_of
 from tests.api.running import Running, until
 from tests.conftest import ROOT
 
@@ -59,11 +65,17 @@ def frames_of(clip: Path) -> Iterator[tuple[float, bytes]]:
 
 
 @contextmanager
-def live(server: Running, origin: str | None = None) -> Iterator[Connection]:
+def live(
+    server: Running, origin: str | None = None, invited: str | None = None
+) -> Iterator[Connection]:
+    """Open a live view, or with the token of an invitation its own."""
     address = server.address.replace("http", "ws")
     with connect(
-        f"{address}/api/v1/live",
+        f"{address}/api/v1{'' if invited is None else '/invited'}/live",
         origin=None if origin is None else Origin(origin),
+        subprotocols=None
+        if invited is None
+        else [Subprotocol(INVITED_PROTOCOL), Subprotocol(invited)],
         proxy=None,
         max_size=None,
         open_timeout=60,
@@ -120,6 +132,32 @@ def test_a_gesture_shown_to_the_camera_is_recognised_when_its_second_salute_is_h
     assert take["closed"]
     assert (take["label"], take["problem"]) == ("line", None)
     assert 1.5 < take["start"] < 2.2 < 3.4 < take["end"] < 4.4
+
+
+def test_an_invited_person_learns_when_a_take_ends_and_not_what_was_read(
+    server: Running, client: httpx.Client, sample_clips: Path
+) -> None:
+    token = token_of(invite(client, sample_language(client)))
+    with live(server, invited=token) as view:
+        assert view.subprotocol == INVITED_PROTOCOL
+        seen, (take,) = watch(view, sample_clips / "line-test-2.mp4")
+        assert {each["state"] for each in seen} == {"idle", "recording", "done"}
+        assert take["closed"]
+        read = {each for each, value in take.items() if value}
+        assert read == {"kind", "start", "end", "closed"}
+        # One at a time is looked at, whoever opens another one.
+        with live(server, invited=token) as other, pytest.raises(ConnectionClosed) as closed:
+            other.recv(timeout=60)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == TRY_AGAIN_LATER
+        view.send(json.dumps({"do": "listen", "language_id": sample_language(client)}))
+        with pytest.raises(ConnectionClosed) as closed:
+            view.recv(timeout=60)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == UNSUPPORTED_DATA
+    for wrong in (token[1:], "x"):
+        with pytest.raises(InvalidHandshake), live(server, invited=wrong):
+            raise AssertionError("the view is open")
 
 
 def test_only_the_newest_of_many_frames_is_looked_at(server: Running, sample_clips: Path) -> None:

@@ -118,13 +118,60 @@ def test_a_row_says_what_is_wrong_with_it(
         box.uncheck()
     expect(dialog.get_by_role("button", name="Save 0 gestures")).to_be_disabled()
     row.get_by_role("textbox").fill("circle")
-    expect(row).to_contain_text("has a gesture \u201ccircle\u201d already")
+    expect(row).to_contain_text("No Vulcan salute was found")
     row.get_by_role("textbox").fill("still")
     expect(row).to_contain_text("No Vulcan salute was found")
     assert faults(page) == []
     dialog.get_by_role("button", name="Save 1 gesture").click()
     expect(row).to_contain_text("still: ")  # Nothing moves in it.
     expect(dialog).to_be_visible()
+
+
+def test_takes_of_known_gestures_become_further_demonstrations_where_they_are_misread(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    library = library_of(server, client, "known")
+    add_clip(server, "circle", name="circle t2.mp4")
+    add_clip(server, "corner", name="circle t3.mp4")
+    corner = add_clip(server, "corner", name="IMG_2222.mp4")
+    takes = [{"clip_id": corner, "expected": "line"}]
+    place = f"/api/v1/languages/{library.language}"
+    assert client.post(f"{place}/test-set", json={"takes": takes}).status_code == 201
+    page = open_page({"language": library.language}, scene=False)
+    dialog = open_table(page)
+    row = {
+        name: dialog.get_by_role("listitem").filter(has_text=f"{name}.mp4")
+        for name in ("circle t2", "circle t3", "IMG_2222")
+    }
+    expect(row["circle t3"].get_by_role("checkbox")).to_be_checked()
+    expect(row["circle t2"]).to_contain_text("It is read as \u201ccircle\u201d already.")
+    expect(row["circle t2"].get_by_role("checkbox")).not_to_be_checked()
+    expect(row["IMG_2222"].get_by_role("textbox")).to_have_value("line")
+    assert faults(page) == []
+    for each in dialog.get_by_role("listitem").all():
+        text = each.inner_text()
+        if "circle t3" not in text and "IMG_2222" not in text:
+            each.get_by_role("checkbox").uncheck()  # Clips of other tests.
+    dialog.get_by_role("button", name="Save 2 demonstrations").click()
+    expect(page.get_by_text("2 demonstrations saved")).to_be_visible()
+
+    def shown() -> dict[str, int]:
+        gestures = client.get(place).json()["gestures"]
+        return {each["label"]: len(each["demonstrations"]) for each in gestures}
+
+    assert shown() == {"circle": 2, "line": 2}
+    page.keyboard.press("Control+z")
+    expect(page.get_by_text("Undone")).to_be_visible()
+    assert shown() == {"circle": 1, "line": 1}
+
+    # One take by itself: the editor proposes what it is expected to be.
+    page.goto(re.sub(r"\?.*", f"?language={library.language}&clip={corner}", page.url))
+    page.get_by_label("Expected").select_option("line")
+    page.get_by_role("button", name="Save as gesture").click()
+    expect(page.get_by_label("Label", exact=True)).to_have_value("line")
+    page.get_by_role("button", name="Add to line").click()
+    expect(page.get_by_text("Demonstration added")).to_be_visible()
+    assert shown() == {"circle": 1, "line": 2}
 
 
 def test_a_phone_shows_every_field_of_the_table(

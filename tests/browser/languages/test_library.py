@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
+from app.recognition import Language
 from tests.api.running import Running, client_of, until
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -163,7 +164,7 @@ def test_going_back_to_a_revision_can_itself_be_taken_back(
 
 
 def test_undo_of_a_new_language_does_not_take_back_what_others_did(
-    open_page: OpenPage, library: Library
+    open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
     page = open_page({"view": "languages"}, scene=False)
     page.get_by_role("button", name="New language").first.click()
@@ -175,9 +176,28 @@ def test_undo_of_a_new_language_does_not_take_back_what_others_did(
     place = f"/api/v1/languages/{made['id']}"
     assert library.client.patch(place, json={"author": "Bo"}).status_code == 200
     page.keyboard.press("Control+z")
-    expect(
-        page.get_by_text("The language was changed elsewhere as well (revision 2")
-    ).to_be_visible()
+    refusal = page.get_by_text("The language was changed elsewhere as well (revision 2")
+    expect(refusal).to_be_visible()
+    assert library.client.get(place).json()["author"] == "Bo"
+
+    # So it is with an imported one, and with the repeated deletion of a restored one.
+    page.get_by_role("button", name="Dismiss").last.click()
+    file = tmp_path / "brought.json"
+    file.write_text(Language("brought", []).to_json(), "utf-8")
+    drop(page, file)
+    expect(page.get_by_text("Language imported")).to_be_visible()
+    listed = library.client.get("/api/v1/languages").json()
+    place = next(f"/api/v1/languages/{each['id']}" for each in listed if each["name"] == "brought")
+    command(page, "brought", "Delete")
+    expect(page.get_by_text("Language deleted")).to_be_visible()
+    page.keyboard.press("Control+z")
+    expect(card(page, "brought")).to_be_visible()
+    assert library.client.patch(place, json={"author": "Bo"}).status_code == 200
+    page.keyboard.press("Control+Shift+Z")
+    expect(refusal).to_be_visible()
+    page.get_by_role("button", name="Dismiss").last.click()
+    page.keyboard.press("Control+z")
+    expect(refusal).to_be_visible()
     assert library.client.get(place).json()["author"] == "Bo"
 
 

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
 import pytest
 from playwright.sync_api import Browser, expect
 
+from app.recognition import Language
+from app.settings import Settings
 from tests.api.running import Running
 from tests.browser.accessibility import faults
-from tests.browser.camera import camera_showing, see_seconds, write_feed
+from tests.browser.camera import OTHER_VIEWS, camera_showing, see_seconds, write_feed
 from tests.browser.conftest import OpenPage, started
 
 FEED_RATE = 12
 """Frames a second, every second one of a clip of 25 Hz: the diver moves as on the clip."""
 
-ONE_ROUND = 8.0
+STILL = 12
+"""Seconds in which the diver waits before the clip."""
+
+ONE_ROUND = 8.0 + STILL
 """Seconds in which the camera shows the whole clip."""
 
 ROUNDS = 3
@@ -32,21 +38,33 @@ JUDGED_MS = 300_000
 
 
 @pytest.fixture(scope="module")
-def browser(
-    browser: Browser, clips: Path, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Browser]:
+def feed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("camera") / "line.y4m"
+
+
+@pytest.fixture(scope="module")
+def browser(browser: Browser, clips: Path, feed: Path) -> Iterator[Browser]:
     """Start a second Chromium, whose camera sees a diver who draws a line between two salutes."""
-    feed = tmp_path_factory.mktemp("camera") / "line.y4m"
-    write_feed(clips / "line-test-2.mp4", feed, FEED_RATE)
+    write_feed(clips / "line-test-2.mp4", feed, FEED_RATE, still=STILL)
     with started(browser.browser_type, *camera_showing(feed)) as another:
         yield another
 
 
+@pytest.fixture(scope="module")
+def language(server: Running, settings: Settings) -> str:
+    """Return the id of a language whose line goes one way only."""
+    sample = Language.from_json((settings.samples_dir / "osg-table-2.json").read_text("utf-8"))
+    gestures = [
+        replace(each, switches=replace(each.switches, direction="on")) for each in sample.gestures
+    ]
+    content = replace(sample, name="one way", gestures=gestures).to_json()
+    place = f"{server.address}/api/v1/languages/import"
+    return str(httpx.post(place, content=content, timeout=60).json()["id"])
+
+
 def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
-    open_page: OpenPage, server: Running
+    open_page: OpenPage, server: Running, language: str, clips: Path, feed: Path
 ) -> None:
-    listed = httpx.get(f"{server.address}/api/v1/languages", timeout=60).json()
-    language = next(each["id"] for each in listed if "Table 2" in each["name"])
     page = open_page({"view": "practice", "language": language}, scene=False)
     start = page.get_by_role("button", name="Start the camera")
     # Without any clip, practice offers the camera.
@@ -54,7 +72,12 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     page.get_by_label("Diver").fill("Ana")
     page.get_by_label("Gesture to show").select_option("line")
     start.click()
-    expect(page.get_by_role("button", name="Stop the camera")).to_be_visible()
+    stop = page.get_by_role("button", name="Stop the camera")
+    expect(stop).to_be_visible()
+    if page.evaluate(OTHER_VIEWS % (".practice-picture", ".practice-camera video")):
+        stop.click()
+        write_feed(clips / "line-test-2.mp4", feed, FEED_RATE, still=STILL, backward=True)
+        start.click()
     expect(page.locator(".practice-camera .bones")).to_have_attribute("d", re.compile("^M.+L"))
     assert faults(page) == []
     answer = page.locator(".practice-answer")
@@ -71,7 +94,11 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     record = page.get_by_role("region", name="Ana")
     expect(record).to_contain_text(re.compile(r"\d errors in \d+ takes?:"))
     expect(record).to_contain_text("line recognised")
-    page.get_by_role("button", name="Stop the camera").click()
+    stop.click()
     expect(page.get_by_text("The camera is off")).to_be_visible()
     names = [each.clip.name for each in server.studio.clips.all()]
     assert any(re.match(r"Ana line \d{4}-\d\d-\d\d", name) for name in names), names
+    # The clip of a take begins shortly before it, and not when the diver begins to wait.
+    (shown,) = httpx.get(f"{server.address}/api/v1/languages/{language}/practice").json()
+    right = [each["clip_id"] for each in shown["shown"] if each["right"]]
+    assert min(server.studio.clips.get(each).clip.duration or 0 for each in right) < STILL

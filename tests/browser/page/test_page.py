@@ -263,11 +263,14 @@ def test_a_label_that_is_taken_is_refused_in_the_editor(
     problem = page.get_by_role("alert")
     expect(problem.filter(has_text="Label is empty; type one.")).to_be_visible()
     label.fill("circle")
-    page.get_by_role("button", name="Save gesture").click()
-    expect(problem.filter(has_text="There is a gesture \u201ccircle\u201d already")).to_be_visible()
+    expect(page.get_by_role("button", name="Add to circle")).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
     page.get_by_role("button", name="Discard", exact=True).click()
     expect(page.get_by_role("button", name="Save as gesture")).to_be_visible()
+    page.goto(f"{page.url}&view=gesture&gesture=line")
+    label.fill("circle")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(problem.filter(has_text="There is a gesture \u201ccircle\u201d already")).to_be_visible()
 
 
 def test_a_range_can_be_chosen_by_hand_with_the_keyboard(

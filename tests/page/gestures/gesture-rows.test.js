@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
+  furtherNote,
   labelOf,
   problemsOf,
   rangeText,
@@ -51,9 +52,9 @@ test("every take is a row, and clips without poses wait", () => {
     "",
   ]);
   assert.match(rangeWarning(rows[3]), /^No Vulcan salute was found/);
-  assert.match(problemsOf(rows, []).note, /^1 clip still without poses/);
+  assert.match(problemsOf(rows).note, /^1 clip still without poses/);
   const loading = rowsOf(clips.slice(0, 3), new Map(), null, new Map());
-  assert.match(problemsOf(loading, []).note, /^Takes of 3 clips not loaded yet/);
+  assert.match(problemsOf(loading).note, /^Takes of 3 clips not loaded yet/);
 });
 
 test("clips of the language and second clips of a label are left out until they are chosen", () => {
@@ -69,17 +70,52 @@ test("clips of the language and second clips of a label are left out until they 
   assert.deepEqual(chosen([["c", { chosen: true }]]), [false, true, true]);
 });
 
-test("a row needs a name that neither the language nor another row has", () => {
-  const row = (key, label) => ({ key, label, chosen: true, takes: [TAKE], take: TAKE });
-  const { problems, note } = problemsOf([row("a", "up"), row("b", " up"), row("c", "")], ["down"]);
+test("a row needs a name that no other row has, unless the language has the gesture", () => {
+  const row = (key, label, further = "") => ({
+    key,
+    label,
+    further,
+    chosen: true,
+    takes: [TAKE],
+    take: TAKE,
+  });
+  const { problems, note } = problemsOf([row("a", "up"), row("b", " up"), row("c", "")]);
   assert.deepEqual([...problems.keys()], ["b", "c"]);
   assert.match(note, /^2 rows without a name/);
-  assert.equal(problemsOf([row("a", "up")], ["down"]).note, "");
-  assert.equal(problemsOf([row("a", "down")], ["down"]).problems.size, 1);
-  assert.equal(
-    problemsOf([row("a", "می\u200cروم")], ["میروم"]).problems.get("a"),
-    "The language has a gesture \u201cمی\u200cروم\u201d already.",
+  assert.equal(problemsOf([row("a", "up")]).note, "");
+  assert.equal(problemsOf([row("a", "up", "up"), row("b", "up", "up")]).note, "");
+});
+
+test("takes of gestures of the language are further demonstrations, unless they are read", () => {
+  const clips = [
+    clip("a", "line t2.mp4"),
+    clip("b", "IMG_1.mp4"),
+    clip("c", "line t3.mp4"),
+    clip("d", "می\u200cروم.mp4"),
+    clip("e", "wave t1.mp4"),
+  ];
+  const takes = new Map(clips.map(({ id }) => [id, [TAKE]]));
+  const language = { labels: ["line", "circle", "میروم"], gestures: [] };
+  const readings = new Map([
+    ["a 0", { label: "line", expected: null }],
+    ["b 0", { label: "line", expected: "circle" }],
+    ["d 0", { label: null, expected: null }],
+  ]);
+  const rows = rowsOf(clips, takes, language, new Map(), readings);
+  assert.deepEqual(
+    rows.map(({ label, further, chosen, right }) => [label, further, chosen, right]),
+    [
+      ["line", "line", false, true],
+      ["circle", "circle", true, false],
+      ["line", "line", false, false], // not read yet
+      ["میروم", "میروم", true, false],
+      ["wave", "", true, false],
+    ],
   );
+  assert.match(furtherNote(rows[0]), /further demonstration of “line”.*read as “line” already/);
+  assert.match(furtherNote(rows[1]), /demonstration of “circle”\.$/);
+  assert.equal(furtherNote(rows[2]), "");
+  assert.equal(furtherNote(rows[4]), "");
 });
 
 test("a clip shows no gesture yet unless a demonstration of the language was taken of it", () => {

@@ -1,24 +1,21 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { arrivals, hindrance } from "../../../static/js/health/invitations.js";
+import { forecast, hindrance, outcome } from "../../../static/js/health/invitations.js";
 import { across, up } from "../../../static/js/health/people-curve.js";
 
-const take = (diver, label, status, reason = null) => ({ diver, label, status, reason });
+test("what became of a take is told, with its reason, and who has to answer", () => {
+  const told = (status, reason = null) => outcome({ diver: "Bo", status, reason });
+  assert.equal(told("added"), "added");
+  assert.equal(told("waiting"), "is looked at");
+  assert.equal(told("returned", "Hand not seen."), "returned: Hand not seen.");
+  assert.equal(told("asked", "Is it 'three'?"), "Bo is asked: Is it 'three'?");
+  assert.equal(told("waiting", "It is read as 'line'."), "Waits for you. It is read as 'line'.");
+});
 
-test("what came in is told by person, with the reason of what was returned", () => {
-  assert.deepEqual(arrivals([]), []);
-  assert.deepEqual(
-    arrivals([
-      take("Bo", "circle", "added"),
-      take("Cy", "circle", "waiting"),
-      take("Bo", "line", "returned", "Hand not seen. Show it again nearer."),
-    ]),
-    [
-      "Bo: circle added, line returned (Hand not seen. Show it again nearer).",
-      "Cy: circle is looked at.",
-    ],
-  );
+test("what a take changes is told where there are takes that tell it", () => {
+  assert.match(forecast({ known: 38, repaired: 1, broken: 5 }), /38 known takes .* 1 and breaks 5/);
+  assert.match(forecast({ known: 0, repaired: 0, broken: 0 }), /^No take/);
 });
 
 test("an address that phones do not reach is named, and one without https", () => {

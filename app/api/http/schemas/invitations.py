@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from datetime import datetime
-from typing import Annotated, Final, Literal
+from typing import Annotated, Final, Literal, Self
 
 from pydantic import BaseModel, Field
 
 from app.api.http.schemas.values import Body
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.triggers.trigger import TriggerKind
+from app.store import InvitedTake
 from app.store.invitations import LONGEST_DAYS
 
 MOST_TAKE_BYTES: Final = 64 * 1024 * 1024
@@ -21,7 +22,7 @@ TAKES_OF_A_GESTURE: Final = 3
 MEAN_TAKE_BYTES: Final = 16 * 1024 * 1024
 """Bytes that an invitation allows for each take on average: ten seconds of ordinary video."""
 
-TakeStatus = Literal["waiting", "added", "returned"]
+TakeStatus = Literal["waiting", "asked", "added", "removed", "returned"]
 
 
 class InvitationDraft(Body):
@@ -47,8 +48,47 @@ class InvitedTakeView(BaseModel):
     id: str
     label: str = Field(description="The gesture that it shows")
     diver: str = Field(description="Who shows it")
-    status: TakeStatus
-    reason: str | None = Field(description="Why it was returned, and what to do; else null")
+    status: TakeStatus = Field(
+        description="`waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: "
+        "of the person who shows"
+    )
+    reason: str | None = Field(
+        description="Why it was returned, and what to do; or why it is doubted; else null"
+    )
+
+    @classmethod
+    def of(cls, take: InvitedTake) -> Self:
+        """Return what is shown of a take."""
+        return cls(**take.model_dump() | {"status": take.standing})
+
+
+class InvitedAnswer(Body):
+    """What the person who shows says about a take that is asked about."""
+
+    confirmed: bool = Field(description="It is the gesture; false: another take will be shown")
+
+
+class ReceivedTakeView(InvitedTakeView):
+    """A take for whoever invited."""
+
+    clip_id: str
+
+
+class ReceivedTakeChange(Body):
+    """What becomes of a take that is held, was added, or was removed."""
+
+    status: Literal["added", "removed"]
+
+
+class ReceivedTakeOutlook(BaseModel):
+    """A take that is held, and what the language would read with it."""
+
+    start: float = Field(description="Seconds in its clip")
+    end: float
+    image: str = Field(description="Its drawing with start dot and arrow: a data URI of a PNG")
+    known: int = Field(description="Known takes of the test set and of practice")
+    repaired: int = Field(description="Of these, those that are read right only with it")
+    broken: int = Field(description="Those that are read right only without it")
 
 
 class InvitationView(BaseModel):
@@ -62,7 +102,7 @@ class InvitationView(BaseModel):
     most_bytes: int
     takes: int = Field(description="Takes sent so far, also returned ones")
     bytes: int = Field(description="Bytes of these takes together")
-    shown: list[InvitedTakeView] = Field(description="These takes, the oldest first")
+    shown: list[ReceivedTakeView] = Field(description="These takes, the oldest first")
 
 
 class NewInvitationView(InvitationView):

@@ -55,6 +55,7 @@ class LabelledTakeView(BaseModel):
     start: float
     end: float
     expected: str
+    added_by: str = Field(description="Name of who added it; empty: not known")
     demonstration: bool = Field(
         description="It is a demonstration of the language, which does not count"
     )

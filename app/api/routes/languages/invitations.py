@@ -1,4 +1,4 @@
-"""Routes of a language's invitations: make one, list them with what came in, withdraw one."""
+"""Routes of a language's invitations: make, list, withdraw; add or remove what came in."""
 
 from __future__ import annotations
 
@@ -11,12 +11,21 @@ from app.api.http.schemas.invitations import (
     TAKES_OF_A_GESTURE,
     InvitationDraft,
     InvitationView,
-    InvitedTakeView,
     NewInvitationView,
+    ReceivedTakeChange,
+    ReceivedTakeOutlook,
+    ReceivedTakeView,
 )
+from app.api.ingest.invited_takes import Returned, add_take, choose_range, remove_take
 from app.api.ingest.quotas import SenderQuota
-from app.api.services.running_studio import CurrentStudio
-from app.store import InvitationState
+from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
+from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
+from app.api.services.stored_recognitions import load_known
+from app.recognition import Recognizer
+from app.recognition.explanation.context import count_effect, read_all
+from app.store import InvitationState, InvitedTake, NotFound
+from app.ui.charts import data_url
+from app.ui.direction_marks import mark_gesture
 from app.ui.qr_code import draw_qr_code
 
 router = APIRouter(prefix="/languages/{language_id}/invitations", tags=["invitations"])
@@ -70,10 +79,72 @@ def withdraw_invitation(language_id: str, invitation_id: str, studio: CurrentStu
     return Response(status_code=204)
 
 
+@router.get("/{invitation_id}/takes/{take_id}", responses=problem_responses(404, 409))
+@computed
+def get_received_take(
+    language_id: str, invitation_id: str, take_id: str, studio: CurrentStudio
+) -> ReceivedTakeOutlook:
+    """Show a take that is held, and what the language would read with it."""
+    state = studio.languages.get(language_id)
+    language = studio.language(state)
+    take = _find_take(studio, language_id, invitation_id, take_id)
+    try:
+        draft = choose_range(studio, take, gesture_in(language, take.label), language.trigger)
+    except Returned as error:
+        raise _refusal(error) from error
+    shown = demonstration_at(studio, draft, language.trigger)
+    changed = add_demonstration_to(language, draft, shown)
+    recognizer = studio.recognizer(state)
+    known = list(load_known(studio, language_id, recognizer, but=take.clip_id))
+    with_it = Recognizer(changed, recognizer.profile, tuning=recognizer.tuning)
+    repaired, broken = count_effect(known, read_all(recognizer, known), read_all(with_it, known))
+    return ReceivedTakeOutlook(
+        start=shown.start,
+        end=shown.end,
+        image=data_url(mark_gesture(changed.gesture(take.label).single_demonstrations()[-1])),
+        known=len(known),
+        repaired=repaired,
+        broken=broken,
+    )
+
+
+@router.put("/{invitation_id}/takes/{take_id}", responses=problem_responses(404, 409))
+@edited
+def change_received_take(
+    language_id: str,
+    invitation_id: str,
+    take_id: str,
+    change: ReceivedTakeChange,
+    studio: CurrentStudio,
+    quota: SenderQuota,
+) -> ReceivedTakeView:
+    """Add a take to the language, or remove it; its clip stays."""
+    take = _find_take(studio, language_id, invitation_id, take_id)
+    try:
+        (add_take if change.status == "added" else remove_take)(studio, take, quota)
+    except Returned as error:
+        raise _refusal(error) from error
+    return ReceivedTakeView.of(studio.invitations.take(invitation_id, take_id))
+
+
+def _find_take(studio: Studio, language_id: str, invitation_id: str, take_id: str) -> InvitedTake:
+    """Return a take of an invitation to a language that is neither returned nor looked at."""
+    if studio.invitations.get(invitation_id).language_id != language_id:
+        raise NotFound(f"there is no invitation {invitation_id!r} to this language")
+    take = studio.invitations.take(invitation_id, take_id)
+    if not take.held and take.status not in ("added", "removed"):
+        raise ProblemError(409, "take_not_held", "this take was returned, or is looked at still")
+    return take
+
+
+def _refusal(error: Returned) -> ProblemError:
+    return ProblemError(409, "take_unusable", str(error))
+
+
 def _view(state: InvitationState) -> InvitationView:
     invitation = state.invitation
     return InvitationView(
         **invitation.model_dump(exclude={"language_id", "sha256", "owner", "withdrawn"}),
         closed=invitation.closed,
-        shown=[InvitedTakeView(**take.model_dump()) for take in state.takes],
+        shown=[ReceivedTakeView.of(take) for take in state.takes],
     )

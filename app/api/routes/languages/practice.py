@@ -48,6 +48,7 @@ class PracticeTakeView(BaseModel):
     clip_id: str
     recognition_id: str
     revision: int
+    added_by: str = Field(description="Name of who added it; empty: not known")
 
 
 class PracticeRecordView(BaseModel):
@@ -124,6 +125,7 @@ def show_gesture(
             pair=write_pair(made.answer),
             revision=record.revision,
             recognition_id=record.id,
+            added_by=quota.owner,
         )
     )
     why = explain(load_context(record, studio), draft.expected, with_counterfactuals=False)

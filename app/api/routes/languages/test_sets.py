@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
+from app.api.ingest.quotas import SenderQuota
 from app.api.jobs.job import JobCancelled
 from app.api.middleware.shutdown import stopping
 from app.api.services.running_studio import CurrentStudio, Studio
@@ -31,11 +32,11 @@ def get_test_set(language_id: str, studio: CurrentStudio) -> TestSetView:
 
 @router.post("", status_code=201, responses=problem_responses(404, 409))
 def add_labelled_takes(
-    language_id: str, draft: LabelledTakesDraft, studio: CurrentStudio
+    language_id: str, draft: LabelledTakesDraft, studio: CurrentStudio, quota: SenderQuota
 ) -> TestSetView:
     """Add takes with the gesture that each shows; `POST .../run` recognises them."""
     state = studio.languages.get(language_id)
-    add_labelled(studio, language_id, draft.takes)
+    add_labelled(studio, language_id, draft.takes, quota.owner)
     return _changed(studio, state)
 
 

@@ -26,11 +26,11 @@ from app.store import Invitation, InvitedTake, Role, TokenFile
 from app.store.invitations import MOST_LISTED
 from app.store.models import now
 from app.ui.qr_code import draw_qr_code
+from tests.api.invitations import INVITED, client_with, divers_of, invite, show, token_of
 from tests.api.languages import LANGUAGES, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, client_of, running, until
 
-INVITED = "/api/v1/invited"
 ADMIN = "correct-horse-battery"
 MOST_BYTES = 2**20
 """Largest clip that the server of these tests takes."""
@@ -46,10 +46,6 @@ def server(settings: Settings) -> Iterator[Running]:
 @pytest.fixture
 def tokens(settings: Settings) -> TokenFile:
     return TokenFile(settings.tokens)
-
-
-def client_with(server: Running, token: str) -> httpx.Client:
-    return client_of(server.address, headers={"Authorization": f"Bearer {token}"})
 
 
 @pytest.fixture
@@ -69,17 +65,6 @@ def pool(client: httpx.Client, language_id: str, circle_clip: str, line_clip: st
     for clip, label in ((circle_clip, "circle"), (line_clip, "line")):
         assert add_gesture(client, language_id, clip, label).status_code == 201
     return language_id
-
-
-def invite(client: httpx.Client, language_id: str, **limits: int) -> dict[str, Any]:
-    answer = client.post(f"{LANGUAGES}/{language_id}/invitations", json=limits)
-    assert answer.status_code == 201, answer.text
-    made: dict[str, Any] = answer.json()
-    return made
-
-
-def token_of(made: dict[str, Any]) -> str:
-    return str(made["link"]).partition("#")[2]
 
 
 @pytest.fixture
@@ -111,26 +96,6 @@ def send_in_chunks(guest: httpx.Client, content: bytes) -> httpx.Response:
         content=iter([head, content, b"\r\n--b--\r\n"]),
         headers={"Content-Type": "multipart/form-data; boundary=b"},
     )
-
-
-def show(
-    studio: Studio,
-    made: dict[str, Any],
-    recording: Recording,
-    *,
-    label: str = "circle",
-    diver: str = "Bo",
-) -> InvitedTake:
-    """Send a take whose poses are known, and return it once it is judged."""
-    take = studio.invitations.receive(made["id"], label=label, diver=diver, size=1024)
-    add_recorded_clip(studio, recording, clip_id=take.clip_id)
-    until(lambda: studio.invitations.take(made["id"], take.id).status != "waiting")
-    return studio.invitations.take(made["id"], take.id)
-
-
-def divers_of(client: httpx.Client, language_id: str, label: str) -> list[str]:
-    place = f"{LANGUAGES}/{language_id}/demonstrations"
-    return [each["diver"] for each in client.get(place, params={"label": label}).json()]
 
 
 def assert_closed(answer: httpx.Response, reason: str) -> dict[str, object]:
@@ -198,6 +163,8 @@ def test_the_page_of_invited_people_may_fetch_what_it_imports_and_no_more() -> N
         ("DELETE", "/api/v1/languages/{language}"),
         ("POST", "/api/v1/languages/{language}/demonstrations"),
         ("GET", "/api/v1/languages/{language}/invitations"),
+        ("GET", "/api/v1/languages/{language}/invitations/x/takes/x"),
+        ("PUT", "/api/v1/languages/{language}/invitations/x/takes/x"),
         ("GET", "/api/v1/languages/{language}/export"),
     ],
 )
@@ -293,6 +260,16 @@ def test_a_name_that_would_be_shown_otherwise_is_refused(guest: httpx.Client, di
     assert_problem(answer, 422, "request_invalid")
 
 
+def test_who_added_takes_to_the_test_set_and_to_practice_is_shown(
+    client: httpx.Client, studio: Studio, pool: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of("circle"))
+    take = {"clip_id": clip, "expected": "circle"}
+    tested = client.post(f"{LANGUAGES}/{pool}/test-set", json={"takes": [take]}).json()
+    shown = client.post(f"{LANGUAGES}/{pool}/practice", json=take | {"diver": "Bo"}).json()
+    assert tested["takes"][0]["added_by"] == shown["take"]["added_by"] == "Ada"
+
+
 def test_all_open_invitations_are_listed_and_there_are_not_more_than_can_be_looked_through(
     client: httpx.Client, pool: str
 ) -> None:
@@ -324,6 +301,8 @@ def test_readers_see_invitations_and_make_none(
         assert {"link", "qr", "sha256"}.isdisjoint(listed)
         assert_problem(reader.post(place, json={}), 403, "role_required")
         assert_problem(reader.delete(f"{place}/{made['id']}"), 403, "role_required")
+        take = f"{place}/{made['id']}/takes/x"
+        assert_problem(reader.put(take, json={"status": "added"}), 403, "role_required")
 
 
 @pytest.mark.parametrize(

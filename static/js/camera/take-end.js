@@ -1,0 +1,38 @@
+// The end of a take before the camera, from what the server sees: when its closing trigger is over.
+
+/** @import { Recognized, Seen } from "./live-messages.d.ts" */
+
+const AFTER_TAKE = 1000; // ms, so that the clip shows the whole end of a gesture.
+
+/**
+ * Watch for the ends of takes; `over()` is called at each.
+ *
+ * @param {() => void} over
+ */
+export function takeEnd(over) {
+  let ended = false; // a take ended, and its closing trigger is still held
+  let ending = 0; // timer of a take's end
+  return {
+    /** @param {Pick<Seen, "state">} answer */
+    seen({ state }) {
+      // Wait until the closing salute is over: on the next clip it would begin a take.
+      if (ended && state !== "done") over();
+      ended = state === "done";
+    },
+    /**
+     * @param {Pick<Recognized, "closed">} result
+     * @param {string} trigger
+     */
+    recognized({ closed }, trigger) {
+      if (closed && (trigger === "gesture" || trigger === "none") && !ending)
+        ending = setTimeout(over, AFTER_TAKE);
+    },
+    /** Whether a take has ended, and what follows it is still awaited. */
+    ending: () => ending !== 0,
+    reset() {
+      clearTimeout(ending);
+      ending = 0;
+      ended = false;
+    },
+  };
+}
