@@ -241,8 +241,8 @@ def _side(columns: int, count: int, width: float, height: float) -> float:
 
 
 def _text_height(side: float) -> float:
-    """Return the height of a name, its strokes and two lines of meaning below a figure."""
-    return 0.42 * side
+    """Return the height of a name, two lines of strokes and two of meaning below a figure."""
+    return 0.5 * side
 
 
 def _cell(gesture: Gesture, left: float, top: float, cell: float, side: float) -> Iterator[Part]:
@@ -254,10 +254,9 @@ def _cell(gesture: Gesture, left: float, top: float, cell: float, side: float) -
         gesture.label, (left, base), fit_size(gesture.label, name, cell, bold=True), bold=True
     )
     small = max(1.9, MEANING_SIZE * (0.4 + 0.6 * scale))
-    strokes = describe_strokes(transcribe_gesture(gesture))
-    if strokes:
+    for line in wrap(describe_strokes(transcribe_gesture(gesture)), small, cell, 2):
         base += 1.35 * small
-        yield Words(strokes, (left, base), fit_size(strokes, small, cell), grey=True)
+        yield Words(line, (left, base), small, grey=True)
     for line in wrap(_meaning(gesture), small, cell, 2):
         base += 1.35 * small
         yield Words(line, (left, base), small)
