@@ -45,18 +45,25 @@ function faultTag({ demonstrations }) {
 }
 
 /**
+ * What a gesture is in the recognition on display; null: nothing.
+ *
+ * @param {Gesture} gesture
+ */
+function markOf({ label }) {
+  const { result } = state;
+  if (!result) return null;
+  if ((result.pair ?? [result.label]).includes(label)) return "chosen";
+  return label === result.expected ? "expected" : null;
+}
+
+/**
  * @param {Gesture} gesture
  * @param {HTMLElement | undefined} element
  */
 function draw(gesture, element) {
-  const mark =
-    state.result &&
-    ((state.result.pair ?? [state.result.label]).includes(gesture.label)
-      ? "chosen"
-      : gesture.label === state.result.expected
-        ? "expected"
-        : null);
-  const signature = JSON.stringify([gesture, mark]);
+  const mark = markOf(gesture);
+  const tag = mark === "chosen" && state.result?.pair ? "one of two" : mark;
+  const signature = JSON.stringify([gesture, tag]);
   if (element?.dataset.signature === signature) return element;
   const image = withMarks(gesture.thumbnail);
   const card = h(
@@ -86,7 +93,7 @@ function draw(gesture, element) {
         },
         plural(gesture.demonstrations.length, "demonstration"),
       ),
-      mark ? h("span", { className: `tag ${mark}` }, mark) : null,
+      mark ? h("span", { className: `tag ${mark}` }, tag) : null,
       faultTag(gesture),
     ),
     h(

@@ -1,7 +1,9 @@
 // What to expect of a language: its test set first, then what its demonstrations foretell.
 
-import { h } from "../core/dom.js";
+import { h, WRITES } from "../core/dom.js";
+import { plural } from "../core/format.js";
 import { follow } from "../core/state.js";
+import { runTestSet } from "../languages/test-set.js";
 import { invitationsPart } from "./invitations.js";
 import { curvePart } from "./people-curve.js";
 import { rateText } from "./rates.js";
@@ -20,7 +22,22 @@ export function testWords(testSet) {
   const { right, asked, rate, low, high } = testSet.overall;
   const share =
     rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
-  return `Of the test set ${right} of ${asked} takes are read right${share}.`;
+  const older = testSet.waiting
+    ? ` Not by revision ${testSet.revision}: ${plural(testSet.waiting, "take")}.`
+    : "";
+  return `Of the test set ${right} of ${asked} takes are read right${share}.${older}`;
+}
+
+/**
+ * The gestures of which the test set reads less than half right, as words; empty: none.
+ *
+ * @param {TestSet | null} testSet
+ */
+export function failingWords(testSet) {
+  const failing = (testSet?.gestures ?? []).filter(
+    ({ right, asked }) => asked > 1 && 2 * right < asked,
+  );
+  return failing.map(({ label, right, asked }) => `${label} ${right} of ${asked}`).join(", ");
 }
 
 /**
@@ -46,6 +63,20 @@ export function forecastWords({ people, words, asks_more: more, right, asked, re
   ];
 }
 
+/**
+ * The button that recognises the takes again that an older revision has read; null without any.
+ *
+ * @param {TestSet | null} testSet
+ */
+const againButton = (testSet) =>
+  testSet?.waiting && testSet.overall.asked
+    ? h(
+        "button",
+        { type: "button", className: "link", ...WRITES, onclick: () => runTestSet() },
+        "Recognise again",
+      )
+    : null;
+
 /** Make the section, and keep it in step with the report and the test set. */
 export function expectation() {
   const lines = h("div", { className: "expectation-lines", role: "status" });
@@ -70,7 +101,9 @@ export function expectation() {
     if (words.join() === drawn) return; // A status that is written again is read out again.
     drawn = words.join();
     lines.replaceChildren(
-      ...words.map((each, index) => h("p", { className: index ? "" : "first" }, each)),
+      ...words.map((each, index) =>
+        h("p", { className: index ? "" : "first" }, each, index ? null : againButton(testSet)),
+      ),
     );
   });
   return section;

@@ -8,7 +8,7 @@ import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { batchSection } from "./test-set-section.js";
 import { dialSection } from "./dial.js";
-import { expectation } from "./expectation.js";
+import { expectation, failingWords } from "./expectation.js";
 import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { gestureTable } from "./gesture-table.js";
@@ -37,16 +37,23 @@ const imageOf = (label) =>
     state.health?.shown ?? currentLanguage().revision,
   );
 
-/** @param {HealthReport} report */
-function verdict({ ok, warnings: findings }) {
+/**
+ * The check in a few words: its errors, and the gestures that the test set shows to fail.
+ *
+ * @param {HealthReport} report
+ * @param {TestSet | null} testSet
+ */
+function verdict({ ok, warnings: findings }, testSet) {
   const errors = findings.filter((finding) => finding.error).length;
   const notes = findings.length - errors;
-  const text = ok ? "No errors" : plural(errors, "error");
+  const failing = failingWords(testSet);
+  const well = ok && !failing;
   return h(
     "p",
-    { className: `verdict ${ok ? "well" : "unwell"}`, role: "status" },
-    h("span", { className: "mark", "aria-hidden": "true" }, ok ? "\u2713" : "!"),
-    h("b", {}, text),
+    { className: `verdict ${well ? "well" : "unwell"}`, role: "status" },
+    h("span", { className: "mark", "aria-hidden": "true" }, well ? "\u2713" : "!"),
+    errors || !failing ? h("b", {}, ok ? "No errors" : plural(errors, "error")) : null,
+    failing ? h("b", { title: "Of the test set read right" }, failing) : null,
     notes ? h("span", { className: "dim" }, plural(notes, "note")) : null,
   );
 }
@@ -242,7 +249,9 @@ function overview() {
     name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
     about.textContent = report ? `Revision ${health?.shown}${triggerText(report)}` : "";
     says.replaceChildren(
-      ...(report && isCurrent(health) && health?.status === "done" ? [verdict(report)] : []),
+      ...(report && isCurrent(health) && health?.status === "done"
+        ? [verdict(report, testSetOf(state))]
+        : []),
     );
     bar.replaceChildren(
       ...[gestures?.gestures.length ? progress(state) : null].filter((each) => each !== null),
@@ -266,7 +275,7 @@ function overview() {
       ...(now === "nothing" ? [nothing()] : report ? drawReport(report, testSet) : []),
     );
   };
-  follow(["gestures", "health"], head);
+  follow(["gestures", "health", "testSet"], head);
   follow(["checking"], () => advance(bar, state));
   follow(["gestures", "health", "loaded", "testSet"], draw);
   return h(

@@ -1,7 +1,7 @@
 // The recognitions of the live view: the newest one large, the others in a list.
 
 import { byId, h } from "../core/dom.js";
-import { askWhich, moment, plural } from "../core/format.js";
+import { askWhich, moment } from "../core/format.js";
 import { endName } from "../clips/salutes.js";
 import { state } from "../core/state.js";
 import { go } from "../core/views.js";
@@ -18,7 +18,7 @@ function verdict(result) {
   if (result.label !== null)
     return {
       title: result.label,
-      text: `${percent(result.confidence ?? 0)} sure, ${result.agreeing} of ${plural(result.voters, "voter")}`,
+      text: `${percent(result.confidence ?? 0)} sure`,
     };
   if (result.pair)
     return { title: askWhich(result.pair), text: "It lies between these two: show it again" };

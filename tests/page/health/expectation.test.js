@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { forecastWords, testWords } from "../../../static/js/health/expectation.js";
+import { failingWords, forecastWords, testWords } from "../../../static/js/health/expectation.js";
 import { testedShare } from "../../../static/js/health/gesture-table.js";
 
 const rate = (value) => ({ rate: value, low: value / 2, high: (1 + value) / 2, n: 12 });
@@ -55,4 +55,21 @@ test("a gesture has the share of its own takes in the test set", () => {
   assert.deepEqual(testedShare(testSet, "circle"), { rate: 0.75, low: 0.3, high: 0.95, n: 4 });
   assert.equal(testedShare(testSet, "line"), null);
   assert.equal(testedShare(null, "circle"), null);
+});
+
+test("a figure of an older revision says so", () => {
+  assert.match(
+    testWords({ overall: share, waiting: 4, revision: 22 }),
+    /Not by revision 22: 4 takes\.$/,
+  );
+});
+
+test("a gesture that the test set shows to fail is a finding", () => {
+  const gestures = [
+    { label: "square", right: 1, asked: 5 },
+    { label: "circle", right: 3, asked: 5 },
+    { label: "line", right: 0, asked: 1 },
+  ];
+  assert.equal(failingWords({ gestures }), "square 1 of 5");
+  assert.equal(failingWords(null), "");
 });
