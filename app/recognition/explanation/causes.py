@@ -49,6 +49,13 @@ chosen by `benchmarks.accuracy.misreadings`, people left out."""
 PAIR: Final = 0.1
 """Share that a take that is turned over and lacks an end must remove more than either alone."""
 
+TURNS: Final = ("reversed", "mirrored", "other_arm", "upside_down")
+"""Kinds that turn all of a take over, of which several may be the same for a gesture: of those that
+bring it as near, within `SAME`, the first one is named."""
+
+SAME: Final = 0.25
+"""Step of novelty within which two changes are as good."""
+
 USUAL: Final = 0.45
 """Novelty of a right take by another person: what no change is expected to remove."""
 
@@ -232,24 +239,26 @@ def prove_change(
     None where none removes `explained` of it, where another kind removes more than `following` of
     that share, or where the drawings do not show it.
     """
-    best: dict[tuple[str, str], tuple[float, Undone]] = {}
+    best: dict[tuple[str, str], Undone] = {}
     for undone in comparison.undo_all():
-        share = measure_share(comparison.base, undone.novelty)
         key = undone.kind, undone.also
-        if key not in best or share > best[key][0]:
-            best[key] = share, undone
-    alone = {kind: found[0] for (kind, also), found in best.items() if not also}
-    first, (share, undone) = max(
-        best.items(), key=lambda each: each[1][0] - PAIR * bool(each[0][1])
-    )
-    others = [each for kind, each in alone.items() if kind not in first]
-    if (
-        share < explained
-        or max(others, default=0.0) > following * share
-        or not comparison.is_drawn(undone)
-    ):
-        return None
-    return share, undone
+        if key not in best or undone.novelty < best[key].novelty:
+            best[key] = undone
+    shares = {key: measure_share(comparison.base, each.novelty) for key, each in best.items()}
+
+    def rank(key: tuple[str, str]) -> tuple[float, int, int]:
+        order = TURNS.index(key[0]) if key[0] in TURNS else len(TURNS)
+        return PAIR * bool(key[1]) - shares[key], int(best[key].novelty / SAME), order
+
+    first = min(best, key=rank)
+    others = [
+        share
+        for (kind, also), share in shares.items()
+        # A circle that is drawn backwards is its mirror image too: of turns the nearest one counts.
+        if not also and kind not in first and not {kind, first[0]} <= {*TURNS}
+    ]
+    enough = shares[first] >= max(explained, max(others, default=0.0) / following)
+    return (shares[first], best[first]) if enough and comparison.is_drawn(best[first]) else None
 
 
 def measure_share(before: float, after: float) -> float:
