@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+from typing import Any
+
 from app.recognition import PoseError, Recognition, Take
 from app.recognition.text.wording import ask_which, join_words
 from app.robot.active_language import ActiveLanguage
@@ -98,3 +101,27 @@ def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str
         f"no gesture of {language.name!r}: the nearest, {recognition.nearest!r}, is "
         f"{recognition.nearest_novelty:.1f} times as far away as it may be"
     )
+
+
+def list_message_fields(event: TakeRecognized | TakeRejected, language: str) -> dict[str, Any]:
+    """Return the fields of a ``GestureRecognition`` message, in ROS 2 and over DDS.
+
+    All but its header and its times, whose types differ; `language` is the language's name.
+    """
+    answer = event.recognition
+    return {
+        "language_id": event.sha256,
+        "language_name": language,
+        "language_revision": event.revision,
+        "profile": answer.profile if answer else "",
+        "closed": event.closed,
+        "label": "" if isinstance(event, TakeRejected) else event.label,
+        "nearest": event.nearest or "",
+        "confidence": event.confidence or 0.0,
+        "margin": event.margin or 0.0,
+        "rejected": isinstance(event, TakeRejected),
+        "reason": event.reason if isinstance(event, TakeRejected) else "",
+        "report": json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
+        "pair": list((event.pair if isinstance(event, TakeRejected) else None) or ()),
+        "novelty": answer.nearest_novelty if answer else 0.0,
+    }

@@ -39,6 +39,7 @@ from app.robot.publishing.dds_messages import (
     String,
     Time,
 )
+from app.robot.take_result import list_message_fields
 
 NAMESPACE: Final = "osg"
 """First part of the topic names, such as ``/osg/events``."""
@@ -158,25 +159,11 @@ class DdsPublisher:
         return DataWriter(self._participant, topic, qos=RELIABLE)
 
     def _recognition(self, event: TakeRecognized | TakeRejected) -> GestureRecognition:
-        answer = event.recognition
         return GestureRecognition(
             header=Header(self._stamp(event.time)),
-            language_id=event.sha256,
-            language_name=self._language,
-            language_revision=event.revision,
-            profile=answer.profile if answer else "",
             start=self._stamp(event.start),
             end=self._stamp(event.end),
-            closed=event.closed,
-            label=event.label if isinstance(event, TakeRecognized) else "",
-            nearest=event.nearest or "",
-            confidence=event.confidence or 0.0,
-            margin=event.margin or 0.0,
-            rejected=isinstance(event, TakeRejected),
-            reason=event.reason if isinstance(event, TakeRejected) else "",
-            report=json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
-            pair=list((event.pair if isinstance(event, TakeRejected) else None) or ()),
-            novelty=answer.nearest_novelty if answer else 0.0,
+            **list_message_fields(event, self._language),
         )
 
     def _phrase(self, event: PhraseHeard) -> Phrase:

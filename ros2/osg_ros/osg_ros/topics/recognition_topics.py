@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 from builtin_interfaces.msg import Time
 from osg_interfaces.msg import ActiveLanguage as LanguageMessage
 from osg_interfaces.msg import GestureRecognition, RecognizerState
@@ -18,6 +16,7 @@ from app.robot import (
     TakeRecognized,
     TakeRejected,
 )
+from app.robot.take_result import list_message_fields
 from osg_ros.commands.table import format_command
 from osg_ros.nodes.managed_node import LATCHED, RESULTS, ManagedNode
 from osg_ros.topics.body_messages import DIVER
@@ -137,27 +136,14 @@ def to_recognition_message(
     event: TakeRecognized | TakeRejected, language: ActiveLanguage, clock: Stopwatch, header: Header
 ) -> GestureRecognition:
     """Convert a take to a message; see `RecognitionTopics.publish_take`."""
-    recognized = isinstance(event, TakeRecognized)
-    answer = event.recognition
+    fields = list_message_fields(event, language.name)
+    fields["profile"] = language.recognizer.profile
     return GestureRecognition(
         header=header,
         body_id=DIVER,
-        language_id=event.sha256,
-        language_name=language.name,
-        language_revision=event.revision,
-        profile=language.recognizer.profile,
         start=clock.stamp(event.start),
         end=clock.stamp(event.end),
-        closed=event.closed,
-        label=event.label if isinstance(event, TakeRecognized) else "",
-        nearest=event.nearest or "",
-        confidence=event.confidence or 0.0,
-        margin=event.margin or 0.0,
-        rejected=not recognized,
-        reason=event.reason if isinstance(event, TakeRejected) else "",
-        report=json.dumps(answer.to_dict(), allow_nan=False) if answer else "",
-        pair=list((event.pair if isinstance(event, TakeRejected) else None) or ()),
-        novelty=answer.nearest_novelty if answer else 0.0,
+        **fields,
     )
 
 
