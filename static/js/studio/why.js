@@ -332,7 +332,7 @@ const strokes = (title, pieces, { transcript: { shown, differs } }) =>
     "p",
     {},
     h("b", {}, `${title}: `),
-    pieces.map((piece, index) => {
+    pieces.flatMap((piece, index) => {
       const marked = index === differs ? "differs" : "";
       const word =
         pieces === shown
@@ -343,16 +343,25 @@ const strokes = (title, pieces, { transcript: { shown, differs } }) =>
     pieces.length === differs ? h("span", { className: "differs" }, " (ends)") : null,
   );
 
-/** @param {Explanation} why */
-const transcriptOf = (why) =>
-  why.transcript.shown.length && why.transcript.expected.length
-    ? h(
-        "div",
-        { className: "transcript", role: "group", "aria-label": "Strokes in words" },
-        strokes("You showed", why.transcript.shown, why),
-        strokes(why.expected, why.transcript.expected, why),
-      )
-    : null;
+/**
+ * The strokes of both in words; without a cause they are the sentence.
+ *
+ * @param {Explanation} why
+ */
+function transcriptOf(why) {
+  const { shown, expected } = why.transcript;
+  if (why.right || !shown.length || !expected.length) return null;
+  return h(
+    "div",
+    {
+      className: why.causes.length ? "transcript" : "transcript why-sentence",
+      role: "group",
+      "aria-label": "Strokes in words",
+    },
+    strokes("You showed", shown, why),
+    strokes(why.expected, expected, why),
+  );
+}
 
 /** @param {Explanation} why */
 const notesOf = ({ notes }) =>
@@ -365,13 +374,19 @@ const notesOf = ({ notes }) =>
     : null;
 
 /** @param {Explanation} why */
-const reasons = (why) => [
-  h("p", { className: "why-sentence" }, `${why.sentence} `, demonstrationsOf(why) ?? momentOf(why)),
-  transcriptOf(why),
-  notesOf(why),
-  remediesOf(why),
-  detailsOf(why),
-];
+function reasons(why) {
+  const transcript = transcriptOf(why);
+  const to = demonstrationsOf(why) ?? momentOf(why);
+  return [
+    transcript && !why.causes.length
+      ? null
+      : h("p", { className: "why-sentence" }, `${why.sentence} `, to),
+    transcript,
+    notesOf(why),
+    remediesOf(why),
+    detailsOf(why),
+  ];
+}
 
 /**
  * The question which gesture was meant; an answer shows the explanation at once.

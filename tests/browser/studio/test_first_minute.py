@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -61,7 +62,13 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     page.get_by_role("button", name="All keys").click()
     page.get_by_role("button", name="Example").click()
     why = page.get_by_role("region", name="Why")
-    expect(why).to_contain_text("'triangle'")
+    # The strokes in words show at a glance that the take is upside down and unfinished.
+    strokes = why.get_by_role("group", name="Strokes in words")
+    expect(strokes).to_contain_text("You showed: down right, up right, left")
+    expect(strokes).to_contain_text("triangle: down left, right, up left")
+    expect(strokes.locator(".differs")).to_have_text(["down right", "down left"])
+    strokes.get_by_role("button", name="up right").click()
+    expect(page.locator("#clock")).to_have_text(re.compile(r"^3\.[4-9]"))
 
 
 def test_the_tour_shows_its_steps_on_the_example(
