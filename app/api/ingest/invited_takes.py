@@ -57,7 +57,7 @@ LOST: Final = timedelta(minutes=5)
 
 DOUBT: Final = 0.25
 """Confidence below which a take is read with doubt; at 0.5 ten to thirty percent more of the right
-takes would be asked about, see `benchmarks.accuracy.invited`."""
+takes would be asked about, see `benchmarks.invited_takes`."""
 
 MOST_MENDED: Final = 2
 """Ranges that are tried for a take whose first range is not the best one: its stroke, and that

@@ -27,8 +27,6 @@ export function takeEnd(over) {
       if (closed && (trigger === "gesture" || trigger === "none") && !ending)
         ending = setTimeout(over, AFTER_TAKE);
     },
-    /** Whether a take has ended, and what follows it is still awaited. */
-    ending: () => ending !== 0,
     reset() {
       clearTimeout(ending);
       ending = 0;

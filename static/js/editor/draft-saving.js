@@ -57,6 +57,15 @@ export const requestOf = (gesture, values, saved, fixed = false) => ({
 });
 
 /**
+ * The gesture of the language that a draft is called, or null.
+ *
+ * @param {Language} language
+ * @param {Pick<Draft, "label">} values
+ */
+export const knownLabel = ({ labels }, { label }) =>
+  labels.find((each) => each === label.trim()) ?? null;
+
+/**
  * The change by which a draft becomes a further demonstration of a gesture.
  *
  * @param {Draft} values
@@ -99,8 +108,8 @@ function changeOf(gesture, values, saved) {
 export function save(language, gesture, values, saved) {
   if (gesture === null) {
     const { clip, label, description, command, ...rest } = values;
-    const known = label.trim();
-    if (language.labels.includes(known))
+    const known = knownLabel(language, values);
+    if (known)
       return edit(
         "Adding the demonstration",
         `Further demonstration of ${known}`,

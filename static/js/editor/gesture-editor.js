@@ -8,11 +8,11 @@ import { currentLanguage, follow, selectedRange, state } from "../core/state.js"
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
-import { labelOf } from "../gestures/gesture-rows.js";
+import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
 import { take } from "./demonstration-panel.js";
-import { furtherOf, requestOf, save } from "./draft-saving.js";
+import { furtherOf, knownLabel, requestOf, save } from "./draft-saving.js";
 import {
   begin,
   canRedo,
@@ -103,8 +103,9 @@ function valuesOf({ language, gesture }) {
   if (gesture === null) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
     const name = state.clips.find(({ id }) => id === state.clip)?.name ?? "";
+    const clip = { clip_id: state.clip ?? "", start, end, keep_transit: false };
     return {
-      label: byId("expected").value || labelOf(name),
+      label: labelIfNew(byId("expected").value || labelOf(name), language, clip),
       description: "",
       command: "",
       salient: null,
@@ -112,7 +113,7 @@ function valuesOf({ language, gesture }) {
       tempo: "auto",
       mirror: "auto",
       hand_shape: "auto",
-      clip: { clip_id: state.clip ?? "", start, end, keep_transit: false },
+      clip,
     };
   }
   const shown = gestureOf({ language, gesture });
@@ -141,10 +142,7 @@ function build(section, about) {
       .gestures.map((each) => each.label)
       .filter((label) => label !== (gesture ?? draft().label.trim()));
   /** The gesture of which a new range would be a further demonstration, or null. */
-  const further = () => {
-    const label = draft().label.trim();
-    return gesture === null && currentLanguage().labels.includes(label) ? label : null;
-  };
+  const further = () => (gesture === null ? knownLabel(currentLanguage(), draft()) : null);
   const drawn = gesture !== null && !gestureOf(about).has_trajectory;
   /** @type {Preview | null} */
   let preview = null;

@@ -38,6 +38,23 @@ const demonstrated = (language) =>
   );
 
 /**
+ * The label unless the language has the range as a demonstration of that gesture already; else "".
+ *
+ * @param {string} label
+ * @param {Language} language
+ * @param {{ clip_id: string, start: number, end: number }} range
+ */
+export function labelIfNew(label, { gestures }, { clip_id: clip, start, end }) {
+  const sources = gestures
+    .filter((each) => each.label === label)
+    .flatMap(({ demonstrations }) => demonstrations.map(({ source }) => source));
+  const shown = sources.some(
+    (each) => each?.clip_id === clip && each.start < end && start < each.end,
+  );
+  return shown ? "" : label;
+}
+
+/**
  * The clips that show no gesture of the language yet.
  *
  * @param {Clip[]} clips

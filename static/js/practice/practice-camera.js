@@ -123,8 +123,10 @@ export function practiceCamera({ started, nameOf, taken }) {
     const [, text] = situation(answer);
     if (words.textContent !== text) words.textContent = text;
     end.seen(answer);
-    if (answer.state === "idle" && bounded() && answer.salute <= SALUTE) shorten();
-    else if (performance.now() - since > LONGEST) renew();
+    if (answer.state === "idle" && bounded() && answer.salute <= SALUTE) return shorten();
+    later?.stop(); // What is shown now is in the other one.
+    later = null;
+    return performance.now() - since > LONGEST ? renew() : undefined;
   }
 
   const kind = () => state.gestures?.trigger?.kind ?? "salute";

@@ -168,7 +168,7 @@ def test_undo_of_a_new_language_does_not_take_back_what_others_did(
 ) -> None:
     page = open_page({"view": "languages"}, scene=False)
     page.get_by_role("button", name="New language").first.click()
-    page.get_by_label("Name").fill("shared")
+    page.get_by_role("textbox", name="Name", exact=True).fill("shared")
     page.get_by_role("button", name="Create").click()
     expect(page.get_by_text("Language made")).to_be_visible()
     listed = library.client.get("/api/v1/languages").json()

@@ -25,6 +25,9 @@ PHONE = ViewportSize(width=390, height=844)
 
 GESTURES = ("circle", "line")
 
+LONGEST = 25.0
+"""Seconds from which on a recording was not ended by the salute, but by its limit."""
+
 JUDGED_MS = 300_000
 """Longest wait for the poses of a clip of a few seconds on a loaded machine."""
 
@@ -115,6 +118,7 @@ def shows(page: Page, label: str, words: str) -> None:
 def test_three_people_finish_a_language(
     open_page: OpenPage,
     phone: Callable[..., Page],
+    server: Running,
     client: httpx.Client,
     language: str,
     clips: Path,
@@ -158,6 +162,9 @@ def test_three_people_finish_a_language(
     picture(bo, "invitation")
     expect(bo.get_by_text("This is sent in a moment.")).to_be_visible()
     expect(bo.get_by_text("All gestures are added. Thank you!")).to_be_visible(timeout=JUDGED_MS)
+    recordings = [each.clip for each in server.studio.clips.all() if each.clip.name[:3] == "Bo "]
+    durations = [each.duration for each in recordings]
+    assert min(filter(None, durations)) < LONGEST, durations
 
     # Cy has no live camera: first a clip without a take, then the right ones.
     cy = phone(link, "delete MediaDevices.prototype.getUserMedia;")

@@ -3,6 +3,7 @@ import { test } from "node:test";
 
 import {
   furtherNote,
+  labelIfNew,
   labelOf,
   problemsOf,
   rangeText,
@@ -55,6 +56,16 @@ test("every take is a row, and clips without poses wait", () => {
   assert.match(problemsOf(rows).note, /^1 clip still without poses/);
   const loading = rowsOf(clips.slice(0, 3), new Map(), null, new Map());
   assert.match(problemsOf(loading).note, /^Takes of 3 clips not loaded yet/);
+});
+
+test("a range that is a demonstration already is not proposed again", () => {
+  const source = { clip_id: "a", start: 1, end: 2 };
+  const language = { gestures: [{ label: "ring", demonstrations: [{ source }, {}] }] };
+  const at = (clip, start, end) => ({ clip_id: clip, start, end });
+  assert.equal(labelIfNew("ring", language, at("a", 0.5, 1.5)), "");
+  assert.equal(labelIfNew("ring", language, at("a", 2, 3)), "ring");
+  assert.equal(labelIfNew("ring", language, at("b", 1, 2)), "ring");
+  assert.equal(labelIfNew("line", language, at("a", 1, 2)), "line");
 });
 
 test("clips of the language and second clips of a label are left out until they are chosen", () => {

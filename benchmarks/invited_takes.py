@@ -4,7 +4,7 @@ A language is shown by one person, or by three; takes of people who show nothing
 own gesture (`right`), and as another one of the language (`wrong`). A take goes live unasked if it
 is read as what it was sent as, with at least a confidence. `DOUBT` of the studio is 0.25.
 
-    python -m benchmarks.accuracy.invited ../shared/data --draws 5 --sets utd_other utkinect
+    python -m benchmarks.invited_takes ../shared/data --draws 5 --sets utd_other utkinect
 """
 
 from __future__ import annotations
