@@ -34,6 +34,8 @@ def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
         )
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")
+    if result.disagreed:
+        people.print(f"the take from {take.start:.2f} s: the two ways of comparing disagree")
     if len(result.between) > 2:
         people.print(
             f"the take from {take.start:.2f} s lies between {join_words(result.between)}",

@@ -16,6 +16,9 @@ CONFIDENCE_PER_SHARE = -2.9
 """Coefficients of `estimate_confidence`, fitted on thirteen sets, in languages of half the classes.
 Without any one of the sets they differ by at most 0.6 (`benchmarks/studies/cutting.md`)."""
 
+SURE = 0.2
+"""Least confidence of a take with a label, and largest of one that is asked back."""
+
 TIE_EXPONENT = 9.0
 """Exponent of the probability that the nearest of two gestures is meant: a logistic fit to takes of
 six recorded sets, 6 to 15 on each. The probability is 0.84 with a runner-up 1.2 times as far, and
@@ -50,3 +53,10 @@ def estimate_confidence(novelty: float, nearest: float, second: float) -> float:
     meant = 1.0 / (1.0 + math.exp(min(-odds, 700.0)))
     this_one = 1.0 / (1.0 + math.exp(min(TIE_EXPONENT * (here - there), 700.0)))
     return min(meant, this_one)
+
+
+def bound_confidence(confidence: float, answers: int) -> float:
+    """Return a confidence of at least `SURE` with one answer, and of at most `SURE` with two."""
+    if answers == 1:
+        return max(SURE, confidence)
+    return min(SURE, confidence) if answers == 2 else confidence

@@ -10,7 +10,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.confidence import estimate_confidence
+from app.recognition.decision.confidence import bound_confidence, estimate_confidence
 from app.recognition.decision.distinctions import find_tempo_dependent, find_unambiguous_traversals
 from app.recognition.decision.fusion import fuse, weigh_distances, weigh_voters
 from app.recognition.decision.hand_references import (
@@ -37,6 +37,7 @@ from app.recognition.decision.rejection import (
 )
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.second_opinion import EXPONENT, hear
 from app.recognition.decision.virtual_views import list_views
 from app.recognition.features.motion import SHARES, SIZE
 from app.recognition.features.trajectory_image import is_drawable
@@ -46,10 +47,10 @@ from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.held_hands import find_least_movement, measure_movement
-from app.recognition.voters.motion_voters import Path, Tempo, Velocity
+from app.recognition.voters.motion_voters import Path, SecondOpinion, Tempo, Velocity
 from app.recognition.voters.registry import HAND_VOTER_NAMES, MOTION_VOTERS, VOTER_NAMES
 
-_TEMPO = VOTER_NAMES.index(Tempo.name)
+_TEMPO, _SECOND = (VOTER_NAMES.index(voter.name) for voter in (Tempo, SecondOpinion))
 _ALL_NAMES = (*VOTER_NAMES, *HAND_VOTER_NAMES)
 
 
@@ -147,7 +148,11 @@ class FusedVote:
         factors = tuning.weights_of(VOTER_NAMES)
         weighed: FloatArray = self._weights * factors
         # Voters that have no weight in this language decide where the author leaves no others.
-        self._weights = weighed if weighed.any() or not tuning.weights else factors
+        weighed = weighed if weighed.any() or not tuning.weights else factors
+        known = np.isfinite(self.references.described[SecondOpinion.name]).all()
+        heard = factors[_SECOND] * self._weights.sum() / max(weighed.sum(), 1e-9)
+        self._heard = float(heard) if known and not self._moving.any_counts else 0.0
+        self._weights = weighed
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
@@ -183,6 +188,7 @@ class FusedVote:
     def weights(self) -> Mapping[str, float]:
         """Each voter's weight in the decision, summing to 1."""
         weights = self._weights.copy()
+        weights[_SECOND] += EXPONENT * self._heard * weights.sum()
         if self._tempo.any():
             weights[_TEMPO] += Tempo.weight_where_needed
         names = VOTER_NAMES
@@ -228,7 +234,7 @@ class FusedVote:
             self._tabulate(self._compare_in(view, trajectory, comparable), view, trajectory.facing)
             for view in list_views(self.references, trajectory.facing)
         ]
-        return min(tables, key=lambda table: float(table.scores.min()))
+        return hear(min(tables, key=lambda table: float(table.scores.min())), self._heard)
 
     def _compare_hands(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a held hand shape with those of the language."""
@@ -256,8 +262,10 @@ class FusedVote:
         rows = rows[comparable[references.rows[rows]]]
         distances, shown = references.measure(query, rows), references.rows[rows]
         weighed = weigh_distances(distances, self._weights, self._between)
-        shares = references.correct(query[SHARES], rows) * weighed
-        scores, penalties = shares.sum(axis=0), references.penalties[rows]
+        correction, penalties = references.correct(query[SHARES], rows), references.penalties[rows]
+        shares = correction * weighed
+        scores = shares.sum(axis=0)
+        distances[_SECOND] *= correction * penalties / self._between[_SECOND]
         turned = np.where(penalties > 1, (penalties - 1) * scores, 0.0)
         slower = self._tempo[shown] & np.isfinite(distances[_TEMPO])
         shares[_TEMPO, slower] += Tempo.weight_where_needed * distances[_TEMPO, slower]
@@ -342,16 +350,19 @@ class FusedVote:
         winner = int(scores.argmin())
         able = np.flatnonzero(np.isfinite(distances).any(axis=1)).tolist()
         nearest_by_voter = distances.argmin(axis=1)
-        answer = [self._labels[index] for index in find_answer(scores, novelty)]
+        opinion = int(nearest_by_voter[_SECOND]) if _SECOND in able else None
+        found = find_answer(scores, novelty, opinion)
+        answer = [self._labels[index] for index in found]
+        confidence = estimate_confidence(
+            float(novelty[winner]),
+            float(scores[winner]),
+            float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
+        )
         return Recognition(
             label=answer[0] if len(answer) == 1 else None,
             pair=(answer[0], answer[1]) if len(answer) == 2 else None,
             nearest=self._labels[winner],
-            confidence=estimate_confidence(
-                float(novelty[winner]),
-                float(scores[winner]),
-                float(np.sort(scores)[1]) if len(scores) > 1 else np.inf,
-            ),
+            confidence=bound_confidence(confidence, len(answer)),
             profile="full",
             voters=compared.voters,
             gestures=self._labels,

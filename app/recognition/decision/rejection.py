@@ -46,8 +46,15 @@ SCORE_FLOOR: Final = 0.02
 """Added to scores and novelties before the logarithm: below that of two takes by one careful
 person."""
 
-ASK_RATIO: Final = 1.16
-"""Largest ratio of a gesture's score to the nearest one's at which the take may be either."""
+ASK_RATIO: Final = 1.165
+"""Largest ratio of a gesture's score to the nearest one's at which the take may be either
+(`benchmarks/studies/rejection.md`, as the next two)."""
+
+USUAL_NOVELTY: Final = 0.5
+"""Novelty up to which `ASK_RATIO` holds where the second opinion is heard."""
+
+FARTHER_EXPONENT: Final = 0.3
+"""Exponent by which the ratio grows with the novelty beyond: a far take must be clearer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,8 +141,12 @@ def is_rejected(novelty: float) -> bool:
     return novelty > 1.0
 
 
-def find_answer(scores: FloatArray, novelty: FloatArray) -> tuple[int, ...]:
+def find_answer(
+    scores: FloatArray, novelty: FloatArray, opinion: int | None = None
+) -> tuple[int, ...]:
     """Find the gestures that a take may be: one is the label, two are a pair, more a rejection.
+
+    The table that decides, in `docs/recognizer.md`.
 
     Parameters
     ----------
@@ -143,19 +154,23 @@ def find_answer(scores: FloatArray, novelty: FloatArray) -> tuple[int, ...]:
         ``(G,)``, smaller = more alike, infinite where not comparable; one of them finite.
     novelty
         ``(G,)``, above 1: rejected; NaN where nothing is rejected.
+    opinion
+        Index of the second opinion's nearest gesture; None where it abstains.
 
     Returns
     -------
-    Indices of the gestures, nearest first: those within `ASK_RATIO` of the nearest one that are not
-    rejected themselves. Empty where the nearest one is rejected.
+    Indices of the gestures, nearest first; empty where the nearest one is rejected.
 
     """
     order = np.argsort(scores, kind="stable").tolist()
-    if is_rejected(float(novelty[order[0]])):
+    novel = float(novelty[order[0]])
+    if is_rejected(novel):
         return ()
-    limit = ASK_RATIO * float(scores[order[0]])
-    return tuple(
-        index
-        for index in order
-        if scores[index] <= limit and not is_rejected(float(novelty[index]))
+    farther = 1.0 if opinion is None else max(1.0, novel / USUAL_NOVELTY) ** FARTHER_EXPONENT
+    alike, close = (
+        tuple(index for index in order if scores[index] <= ratio * scores[order[0]])
+        for ratio in (ASK_RATIO, ASK_RATIO * farther)
     )
+    if opinion is not None and opinion in close[1:]:
+        return order[0], opinion
+    return alike if len(alike) > 2 else close[:2]

@@ -15,6 +15,7 @@ from app.recognition.decision.rejection import find_answer
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind
+from app.recognition.voters.motion_voters import SecondOpinion
 
 Outcome = Literal["recognized", "pair", "rejected"]
 """What a recognition answers: a label, a pair that the diver decides between, or neither."""
@@ -124,7 +125,8 @@ class Recognition:
         The best gesture even when rejected.
     confidence
         In [0, 1]. Profile ``full``: the estimated probability that `nearest` is the gesture
-        meant, if half of all movements are out-of-vocabulary, see `estimate_confidence`. Profile
+        meant, if half of all movements are out-of-vocabulary, see `estimate_confidence`; at least
+        `confidence.SURE` with a label, at most with a pair. Profile
         ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean
         relative distance over that of the nearest other gesture), or 0 where the other one is
         nearer; it is relative to the language and does not detect out-of-vocabulary movements.
@@ -156,7 +158,8 @@ class Recognition:
         the mean relative distance. Empty in results of earlier versions.
     novelty
         ``(G,)``: score relative to the language's limit; if that of `nearest` is above 1, the take
-        is rejected (`rejection`). NaN in profile ``paper``.
+        is rejected (`rejection`). The second opinion's part of a score does not count; the gesture
+        that it names may be `second_opinion.AGREED` times as far. NaN in profile ``paper``.
     novelty_by_view
         By `rejection.NOVELTIES` the novelties ``(G,)`` of the movement and of the hand alone, of
         which `novelty` is the larger; NaN where that is not compared. Empty for profile ``paper``,
@@ -216,6 +219,11 @@ class Recognition:
             return self.pair or ()
         answer = find_answer(self.scores, self.novelty)
         return tuple(self.gestures[index] for index in answer) if len(answer) > 2 else ()
+
+    @property
+    def disagreed(self) -> bool:
+        """Whether the diver is asked because the second opinion names the other of the two."""
+        return self.pair is not None and self.votes.get(SecondOpinion.name) == self.pair[1]
 
     @property
     def runner_up(self) -> str | None:

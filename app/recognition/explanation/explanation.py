@@ -55,7 +55,7 @@ class Explanation(BaseModel):
         The recogniser's.
     expected
         The gesture that should have been recognised.
-    label, nearest, runner_up, confidence, between
+    label, nearest, runner_up, confidence, between, disagreed
         The recognition as it was answered, see `Recognition`.
     other
         The gesture that the expected one is compared with: the nearest one, or the runner-up where
@@ -104,6 +104,7 @@ class Explanation(BaseModel):
     runner_up: str | None
     confidence: float
     between: Annotated[tuple[str, ...], Field(exclude=True)]
+    disagreed: Annotated[bool, Field(exclude=True)]
     other: str | None
     score: Distance
     other_score: Distance
@@ -169,6 +170,8 @@ class Explanation(BaseModel):
     def _list_details(self) -> Iterator[str]:
         if self.fault is not None:
             yield f"The keypoints are too poor to judge: {self.fault}."
+        if self.disagreed:
+            yield f"The two ways of comparing disagree: by directions it is {self.between[1]!r}."
         if math.isfinite(self.score) and self.other is not None:
             yield (
                 f"{self.expected!r} is at distance {self.score:.2f}, "
@@ -244,6 +247,7 @@ def explain(
         runner_up=result.runner_up,
         confidence=result.confidence,
         between=result.between,
+        disagreed=result.disagreed,
         other=None if other is None else result.gestures[other],
         score=float(table.scores[at]),
         other_score=math.inf if other is None else float(table.scores[other]),

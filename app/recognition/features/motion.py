@@ -58,6 +58,9 @@ SIDES = ("left_", "right_")
 ARM_JOINTS = ("elbow", "wrist")
 """Joints of an arm whose places in time are compared, of both arms."""
 
+ARMS = len(SIDES) * len(ARM_JOINTS)
+"""Number of these joints."""
+
 RESTING_SHARE = 0.04
 """Share of the joint path that is cut at either end, with the rests before and after a gesture.
 
@@ -88,8 +91,11 @@ class Movement:
     places
         ``(N, A, 2)`` in the trajectory's unit: `list_arm_landmarks` at N equal times, relative to
         the body without its drift; NaN for landmarks that were not seen.
+    ways
+        ``(N, 4, 2)``: `ARM_JOINTS` of both `SIDES` in steps of equal length along their own joint
+        path, relative to the torso of the same moment; all NaN where one of them was not seen.
     relative_to_body
-        Whether `places` are measured from a torso and in its lengths.
+        Whether `places` and `ways` are measured from a torso and in its lengths.
 
     """
 
@@ -97,6 +103,7 @@ class Movement:
     limbs: FloatArray
     reached: FloatArray
     places: FloatArray
+    ways: FloatArray
     relative_to_body: bool
 
     @cached_property
@@ -153,7 +160,11 @@ class Movement:
     def reorder(self, order: npt.NDArray[np.intp]) -> Movement:
         """Return the movement with its steps in another order, each as long as before."""
         return replace(
-            self, paths=self.paths[order], limbs=self.limbs[order], places=self.places[order]
+            self,
+            paths=self.paths[order],
+            limbs=self.limbs[order],
+            places=self.places[order],
+            ways=self.ways[order],
         )
 
     def with_sides_exchanged(self, landmarks: Sequence[str]) -> Movement:
@@ -169,9 +180,11 @@ class Movement:
         sides = _sides_of(parts)
         by_side = self.limbs.reshape(len(self.limbs), len(sides), len(LIMBS), 2)
         placed = tuple(parse_body_part(name) for name in list_arm_landmarks(landmarks))
+        across = [_index_across(placed, part) for part in placed]
         return replace(
             self,
-            places=self.places[:, [_index_across(placed, part) for part in placed]],
+            places=self.places[:, across],
+            ways=self.ways[:, across[: self.ways.shape[1]]],
             paths=self.paths[:, [_index_across(parts, part) for part in parts]],
             limbs=by_side[:, [_index_across(sides, side) for side in sides]].reshape(
                 self.limbs.shape
@@ -298,8 +311,19 @@ def build_movement(trajectory: Trajectory, landmarks: Sequence[str]) -> Movement
         limbs=limbs,
         reached=reached - trajectory.time[0],
         places=places,
+        ways=_follow_arms(smooth, at),
         relative_to_body=trajectory.unit == "torso_length",
     )
+
+
+def _follow_arms(smooth: Trajectory, at: _Columns) -> FloatArray:
+    """Return `Movement.ways` of a smoothed trajectory."""
+    joints = at.joints[at.placed < ARMS]
+    xy = smooth.xy.take(joints, axis=1)
+    if len(joints) < ARMS or not np.isfinite(xy[0]).all():
+        return np.full((STEPS, ARMS, 2), np.nan)
+    arms = replace(smooth, xy=xy)
+    return arms.at(arms.find_arc_length_moments(STEPS)).xy
 
 
 @dataclass(frozen=True, eq=False)

@@ -128,3 +128,28 @@ class Tempo(MotionVoter):
     def distances(self, query: FloatArray, references: FloatArray) -> FloatArray:
         """Return absolute differences, ``(M,)``."""
         return absolute_differences(query, references)
+
+
+class SecondOpinion(DtwVoter):
+    """DTW distance between the directions in which elbows and wrists go, at steps of equal way.
+
+    A second way of comparing, which knows neither speed nor place: of both arms together, relative
+    to the torso of the same moment, only where they go next, as a unit vector. It is no part of the
+    weighted mean: `second_opinion.hear` says how it counts. It abstains where no torso, or not both
+    arms are seen.
+    """
+
+    name = "second_opinion"
+    unit = "difference of directions, as a share of that of two gestures"
+    prior = 0.0
+    within = 0.0
+    between = 0.7
+
+    def describe(self, movement: Movement) -> FloatArray:
+        """Return ``(N, 8)`` unit vectors; all NaN where it abstains."""
+        ways = movement.ways.reshape(len(movement.ways), -1)
+        # The last step goes on as the one before.
+        steps = np.diff(ways, axis=0, append=2 * ways[-1:] - ways[-2:-1])
+        if not movement.relative_to_body or np.isnan(steps).any():
+            return np.full(steps.shape, np.nan)
+        return np.asarray(steps / np.maximum(np.sqrt(np.vecdot(steps, steps)), 1e-9)[:, None])

@@ -12,7 +12,14 @@ from app.recognition.voters.hand_voters import (
     HandVoter,
 )
 from app.recognition.voters.hu import HuMoments
-from app.recognition.voters.motion_voters import MotionVoter, Path, Place, Tempo, Velocity
+from app.recognition.voters.motion_voters import (
+    MotionVoter,
+    Path,
+    Place,
+    SecondOpinion,
+    Tempo,
+    Velocity,
+)
 from app.recognition.voters.shape_voters import (
     AspectRatio,
     Circularity,
@@ -40,6 +47,7 @@ MOTION_VOTERS: Final[tuple[MotionVoter, ...]] = (
     Path(),
     WristBend(),
     Tempo(),
+    SecondOpinion(),
 )
 """The voters of profile ``full`` that compare movements."""
 

@@ -199,6 +199,9 @@ const supportWords = (result) =>
   [
     `confidence ${percent(result.confidence)}`,
     `voters with ${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the weight`,
+    result.pair && result.votes.second_opinion === result.pair[1]
+      ? "the two ways of comparing disagree"
+      : "",
     result.trial ? "on trial, not saved" : "",
   ]
     .filter(Boolean)

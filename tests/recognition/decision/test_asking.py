@@ -9,7 +9,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition import Gesture, Language, Recognition, Recognizer
+from app.recognition.decision.confidence import SURE
 from app.recognition.decision.rejection import ASK_RATIO, find_answer
+from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import circle, line, recording, square, wedge
 
 WITHIN, BEYOND = (1 + ASK_RATIO) / 2, 2 * ASK_RATIO - 1
@@ -28,23 +30,42 @@ def split(measured: list[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
 
 
 @given(shares)
-def test_the_answer_is_the_nearest_gestures_and_none_that_is_rejected(
+def test_the_answer_is_the_nearest_gestures_unless_the_nearest_is_rejected(
     measured: list[tuple[float, float]],
 ) -> None:
     scores, novelty = split(measured)
     answer = find_answer(scores, novelty)
-    accepted = ~(novelty > 1)
     nearest = int(scores.argmin())
-    assert bool(answer) == accepted[nearest]
-    assert answer[:1] == ((nearest,) if answer else ())
+    assert bool(answer) == bool(not novelty[nearest] > 1)
     assert sorted(answer, key=lambda index: scores[index]) == list(answer)
     if answer:
-        meant = {
-            index
-            for index in range(len(scores))
-            if accepted[index] and scores[index] <= ASK_RATIO * scores[nearest]
-        }
-        assert set(answer) == meant
+        assert set(answer) == set(np.flatnonzero(scores <= ASK_RATIO * scores[nearest]))
+
+
+@given(shares, st.randoms(use_true_random=False))
+def test_a_second_opinion_makes_no_pair_an_answer_and_no_refusal_a_command(
+    measured: list[tuple[float, float]], draw: random.Random
+) -> None:
+    scores, novelty = split(measured)
+    opinion = draw.randrange(len(scores))
+    alone, heard = find_answer(scores, novelty), find_answer(scores, novelty, opinion)
+    assert heard[:1] == alone[:1]
+    assert len(heard) != 1 or len(alone) == 1
+    if len(heard) == 2 and opinion in alone[1:]:
+        assert heard[1] == opinion
+
+
+def test_a_far_take_must_be_clearer_where_both_opinions_are_heard() -> None:
+    scores = np.array([1.0, 1.2 * ASK_RATIO])
+    near, far = np.array([0.3, 0.4]), np.array([1.0, 1.3])
+    assert find_answer(scores, near, 0) == find_answer(scores, far) == (0,)
+    assert find_answer(scores, far, 0) == (0, 1)
+
+
+def test_where_the_opinions_differ_the_diver_is_asked_for_these_two() -> None:
+    scores = np.array([1.0, ASK_RATIO - 0.02, ASK_RATIO - 0.01])
+    assert find_answer(scores, np.full(3, 0.3), 2) == (0, 2)
+    assert find_answer(scores, np.full(3, 0.3), 0) == (0, 1, 2)
 
 
 @given(shares, st.integers(-20, 20))
@@ -69,7 +90,8 @@ def test_the_order_of_the_gestures_does_not_matter(
 def recognizer() -> Recognizer:
     shapes = {"circle": circle, "line": line, "square": square, "wedge": wedge}
     gestures = [Gesture.from_demonstration(name, recording(shapes[name])) for name in shapes]
-    return Recognizer(Language("pool", gestures))
+    alone = Tuning(weights={"second_opinion": 0.0})
+    return Recognizer(Language("pool", gestures), tuning=alone)
 
 
 def decide(recognizer: Recognizer, *scores: float, far: tuple[int, ...] = ()) -> Recognition:
@@ -100,10 +122,19 @@ def test_one_gesture_is_the_label_two_are_a_pair_and_three_a_rejection(
     assert {each.nearest for each in (one, two, three)} == {"line"}
 
 
-def test_a_gesture_that_is_rejected_is_not_asked_for(recognizer: Recognizer) -> None:
-    assert decide(recognizer, 9.0, 1.0, WITHIN, 9.0, far=(2,)).label == "line"
+def test_a_take_beyond_the_limit_is_rejected_and_not_asked_about(recognizer: Recognizer) -> None:
+    assert decide(recognizer, 9.0, 1.0, WITHIN, 9.0, far=(2,)).pair == ("line", "square")
     rejected = decide(recognizer, 9.0, 1.0, WITHIN, 9.0, far=(1,))
     assert (rejected.label, rejected.pair, rejected.between) == (None, None, ())
+
+
+def test_no_take_is_accepted_at_a_lower_confidence_than_one_that_is_asked_back(
+    recognizer: Recognizer,
+) -> None:
+    surely = decide(recognizer, 1.0, 9.0, 9.0, 9.0).confidence
+    hardly = decide(recognizer, 1.0, BEYOND, 9.0, 9.0).confidence
+    asked = [decide(recognizer, 1.0, ratio, 9.0, 9.0).confidence for ratio in (1.0, WITHIN)]
+    assert max(asked) <= SURE <= hardly < surely
 
 
 def test_profile_paper_answers_with_one_label(recognizer: Recognizer) -> None:

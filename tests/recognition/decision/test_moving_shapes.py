@@ -9,6 +9,7 @@ import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.gestures.switches import Switch, Switches
+from app.recognition.gestures.tuning import Tuning
 from app.recognition.voters.registry import HAND_VOTER_NAMES, VOTER_NAMES
 from tests.recognition.held_takes import FIST, FLAT, TWO, hold
 from tests.recognition.moving_takes import circle, corner, draw, without_hands
@@ -99,7 +100,9 @@ def test_switched_on_the_shape_counts_without_a_twin() -> None:
 def test_twins_without_a_hand_are_refused_naming_both() -> None:
     query = without_hands(draw(FIST, circle(0.41), seed=5))
     result = Recognizer(twins()).recognize(query)
-    plain = Recognizer(twins("off", "off")).recognize(query)
+    # Beside shapes that count, the second opinion abstains.
+    alone = Tuning(weights={"second_opinion": 0.0})
+    plain = Recognizer(twins("off", "off"), tuning=alone).recognize(query)
     assert (result.label, result.nearest) == (None, plain.nearest)
     assert result.fault is not None
     assert "'fist'" in result.fault

@@ -21,6 +21,7 @@ from app.recognition.decision.rejection import (
     choose_limit,
 )
 from app.recognition.gestures.switches import Switches
+from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import TAUGHT, shown_by
 from tests.recognition.strategies import SHAPES, circle, recording
@@ -66,7 +67,8 @@ def test_profile_paper_never_rejects(recognizer: Recognizer) -> None:
 
 
 def test_novelty_is_the_score_over_one_limit_for_all_gestures(recognizer: Recognizer) -> None:
-    result = recognizer.recognize(recording(bounce, jitter=0.01))
+    alone = Recognizer(recognizer.language, tuning=Tuning(weights={"second_opinion": 0.0}))
+    result = alone.recognize(recording(bounce, jitter=0.01))
     # A take as large as its gesture has no further factor.
     np.testing.assert_allclose(result.novelty, result.scores / limit_of(recognizer))
     np.testing.assert_array_equal(result.novelty, result.novelty_by_view["movement"])
@@ -74,9 +76,11 @@ def test_novelty_is_the_score_over_one_limit_for_all_gestures(recognizer: Recogn
 
 
 def test_a_take_much_smaller_than_its_gesture_is_more_novel(recognizer: Recognizer) -> None:
+    alone = Recognizer(recognizer.language, tuning=Tuning(weights={"second_opinion": 0.0}))
+
     def sized(scale: float) -> float:
         poses = recording(lambda share: scale * circle(share), jitter=0.002)
-        result = recognizer.recognize(poses)
+        result = alone.recognize(poses)
         return float(result.novelty[0] / result.scores[0]) * limit_of(recognizer)
 
     assert [sized(scale) for scale in (1.0, 0.8, 2.0)] == pytest.approx([1.0] * 3)

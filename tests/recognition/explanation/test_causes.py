@@ -98,7 +98,7 @@ def change_body(poses: PoseSequence) -> PoseSequence:
         (recording(in_place((-1, 1))), "mirrored"),
         (recording(corners(*HOOK[:3]), frames=30), "ended_early"),
         (
-            recording(corners((-0.2, 1.2), (-0.9, 1.0), (-0.2, 0.6), *HOOK), frames=105),
+            recording(corners((-0.1, 1.3), (-1.0, 1.0), (-0.1, 0.6), *HOOK), frames=105),
             "part_added",
         ),
         (leap(recording(hook)), "keypoints_jumped"),

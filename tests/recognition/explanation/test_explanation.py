@@ -199,6 +199,15 @@ def test_a_take_between_gestures_is_told_so(expected: str) -> None:
     assert rejected.to_dict()["pair"] is None
 
 
+def test_two_ways_of_comparing_that_disagree_are_told() -> None:
+    examined = between(asked=True)
+    votes = {**examined.result.votes, "second_opinion": "circle"}
+    trace = replace(examined.trace, result=replace(examined.result, votes=votes))
+    vars(examined)["trace"] = trace
+    told = explain(examined, "square", with_counterfactuals=False)
+    assert "The two ways of comparing disagree: by directions it is 'circle'." in told.details
+
+
 def test_a_recording_too_poor_to_judge_is_told_so() -> None:
     query = recording(circle)
     xy = query.xy.copy()

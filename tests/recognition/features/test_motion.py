@@ -32,6 +32,21 @@ def test_steps_are_equally_long_and_reached_in_time() -> None:
     assert seen.duration == pytest.approx((1 - 2 * RESTING_SHARE) * 59 / 30, abs=2 / 30)
 
 
+def test_arms_are_followed_in_equal_steps_without_the_body_and_where_all_are_seen() -> None:
+    poses = recording(circle)
+    lean = 30 * np.sin(np.linspace(0, np.pi, len(poses)))[:, None, None] * (1.0, 0.0)
+    seen, leaning = (
+        build_movement(Trajectory.from_poses(each), WRIST).ways
+        for each in (poses, replace(poses, xy=poses.xy + lean))
+    )
+    steps = np.linalg.norm(np.diff(seen.reshape(STEPS, -1), axis=0), axis=1)
+    assert steps.std() < 0.02 * steps.mean()
+    np.testing.assert_allclose(leaning, seen, atol=0.02)
+    one_arm = [name for name in poses.landmarks if name != "left_elbow"]
+    alone = build_movement(Trajectory.from_poses(poses.select(one_arm)), WRIST)
+    assert np.isnan(alone.ways).all()
+
+
 def test_the_size_is_in_doublings_of_the_torso_and_unknown_without_one() -> None:
     whole = recording(circle)
     half = recording(lambda share: 0.5 * circle(share))
@@ -70,6 +85,7 @@ def test_exchanging_sides_is_naming_the_landmarks_of_the_other_side() -> None:
     exchanged = build_movement(shown, wrists).with_sides_exchanged(wrists)
     np.testing.assert_allclose(exchanged.paths, build_movement(mistaken, wrists).paths)
     np.testing.assert_allclose(exchanged.limbs, build_movement(mistaken, wrists).limbs)
+    np.testing.assert_allclose(exchanged.ways, build_movement(mistaken, wrists).ways)
     spread = np.ptp(exchanged.paths, axis=0).max(axis=1)
     assert spread[0] > 0.5 > 1e-9 > spread[1]
     again = exchanged.with_sides_exchanged(wrists)

@@ -10,7 +10,14 @@ from hypothesis import strategies as st
 from app.recognition.features.motion import Movement, build_movement
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.voters.motion_voters import MotionVoter, Path, Place, Tempo, Velocity
+from app.recognition.voters.motion_voters import (
+    MotionVoter,
+    Path,
+    Place,
+    SecondOpinion,
+    Tempo,
+    Velocity,
+)
 from app.recognition.voters.registry import MOTION_VOTERS
 from tests.recognition.strategies import Shape, circle, line, recording, recordings
 
@@ -84,13 +91,21 @@ def shifted(poses: PoseSequence, share: float) -> PoseSequence:
 def test_place_sees_where_a_figure_is_drawn_and_no_other_voter_does() -> None:
     high, low = moved(recording(circle)), moved(shifted(recording(circle), 0.5))
     assert distance(Place(), high, low) == pytest.approx(2**0.5 * 0.5, rel=0.15)
-    for voter in (Velocity(), Path()):
+    for voter in (Velocity(), Path(), SecondOpinion()):
         assert distance(voter, high, low) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_without_a_torso_no_place_is_compared() -> None:
+def test_without_a_torso_no_place_is_compared_and_there_is_no_second_opinion() -> None:
     wrists = moved(recording(circle).select(HANDS))
-    assert distance(Place(), wrists, wrists) == np.inf
+    assert distance(Place(), wrists, wrists) == distance(SecondOpinion(), wrists, wrists) == np.inf
+
+
+def test_the_second_opinion_does_not_know_speed() -> None:
+    steady, hurried, other = (
+        moved(recording(shape)) for shape in (circle, lambda share: circle(share**1.5), line)
+    )
+    voter = SecondOpinion()
+    assert distance(voter, steady, hurried) < 0.1 * distance(voter, steady, other)
 
 
 def rested(poses: PoseSequence, frames: int) -> PoseSequence:
