@@ -55,6 +55,22 @@ export const forecast = ({ known, repaired, broken }) =>
     ? `Of ${plural(known, "known take")} this repairs ${repaired} and breaks ${broken}.`
     : "No take of the test set or of practice tells what it changes.";
 
+/** @type {Map<string, Promise<ReceivedTakeOutlook>>} */
+const outlooks = new Map(); // by take and revision: each takes seconds to compute
+
+/**
+ * @param {string} invitation
+ * @param {string} take
+ */
+function outlookOf(invitation, take) {
+  const { id: language, revision } = currentLanguage();
+  const key = `${take} ${revision}`;
+  const found = outlooks.get(key) ?? api.invitations.outlook(language, invitation, take);
+  outlooks.set(key, found);
+  found.catch(() => outlooks.delete(key));
+  return found;
+}
+
 /**
  * A held take as it was shown, its drawing beside that of the gesture, and what it would change.
  *
@@ -63,7 +79,7 @@ export const forecast = ({ known, repaired, broken }) =>
  */
 async function showTake(invitation, { id, label, clip_id: clip }) {
   const { id: language, revision } = currentLanguage();
-  const outlook = await api.invitations.outlook(language, invitation, id);
+  const outlook = await outlookOf(invitation, id);
   const drawing = (/** @type {string} */ src, /** @type {string} */ words) =>
     h(
       "figure",
