@@ -442,7 +442,7 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
                 size=min(1.0, (abs(a - start) + abs(b - end)) / duration),
                 start=a,
                 end=b,
-                longer=a < start or b > end,
+                longer=bool(a < start or b > end),
             )
             for a, b in inside
             if duration > 0 and min(b, end) - max(a, start) >= LEAST_KEPT * duration - 1e-9

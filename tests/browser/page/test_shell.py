@@ -125,7 +125,7 @@ def test_why_is_told_and_a_change_can_be_tried_and_taken_back(
     download.value.save_as(analysis)
     page.context.set_offline(True)
     page.goto(analysis.as_uri())
-    expect(page.get_by_role("region", name="Why")).to_contain_text("looks like 'circle'")
+    expect(page.get_by_role("region", name="Why")).to_contain_text("You showed")
     frame = page.get_by_label("Frame", exact=True)
     expect(frame).to_have_value("0")
     page.get_by_role("button", name="Play", exact=True).click()

@@ -85,7 +85,9 @@ def test_a_demonstration_unlike_the_takes_of_the_test_set_is_named(
     report = client.get(f"{place}/check", headers={"If-None-Match": tag}).json()
     faults = [each for each in report["warnings"] if each["kind"] == "demonstration_fault"]
     assert [each["gestures"] for each in faults] == [["circle"]]
-    assert faults[0]["message"].endswith("is unlike the takes that should be it. Show it again.")
+    assert faults[0]["message"] == (
+        "Show the demonstration of 'circle' again: a take in its place repairs 2, breaks 0."
+    )
 
 
 def test_an_older_revision_can_be_checked(client: httpx.Client, imported: str) -> None:
