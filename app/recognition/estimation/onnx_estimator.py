@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -14,10 +13,12 @@ from app.recognition.estimation.landmark_models.arms import find_stray_wrist
 from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
+from app.recognition.estimation.landmark_models.hand_finder import HandFinder
 from app.recognition.estimation.landmark_models.hands import (
     HAND_SIGNATURE,
     HandModel,
     HandSearch,
+    HandsInFrame,
     HandTracker,
 )
 from app.recognition.estimation.landmark_models.onnx_session import (
@@ -26,7 +27,7 @@ from app.recognition.estimation.landmark_models.onnx_session import (
     Signature,
     check_provider,
 )
-from app.recognition.models import ModelName, model_path
+from app.recognition.models import ModelName, finder_path, model_path
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2
@@ -104,9 +105,9 @@ class OnnxPoseEstimator:
             following = self._helper.submit(self._hands.follow, image, time)
             found = self._body.track(image, time)
             followed = following.result()
-        hands = self._hands.complete(image, followed, found.bodies, time)
-        self._body.seek(find_stray_wrist(hands, found.bodies))
-        return replace(found, hands=hands)
+        seen = self._hands.complete(image, followed, found.bodies, time)
+        self._body.seek(find_stray_wrist(seen.hands, seen.bodies))
+        return _with_hands(seen)
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking.
@@ -118,8 +119,11 @@ class OnnxPoseEstimator:
 
         """
         check_image(image)
-        found, hands = self._body.examine(image), self._hands.renew()
-        return replace(found, hands=hands.complete(image, hands.follow(image), found.bodies))
+        return _with_hands(self._hands.examine(image, self._body.examine(image).bodies))
+
+    def adopt(self) -> None:
+        """Follow from now on the hands that examinations of the last frame have found."""
+        self._hands.adopt()
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands that move or hang once a second, on a machine too slow for its camera."""
@@ -135,6 +139,13 @@ class OnnxPoseEstimator:
         if self._helper is not None:
             self._helper.shutdown()
         del self._body, self._hands
+
+
+def _with_hands(seen: HandsInFrame) -> FrameLandmarks:
+    followed, *others = seen.bodies or (None,)
+    return FrameLandmarks(
+        followed, seen.hands, tuple(one for one in others if one is not None), seen.places
+    )
 
 
 def body_tracker(
@@ -154,7 +165,12 @@ def hand_tracker(
     """Load MediaPipe's hand models; see `OnnxPoseEstimator` for parameters and errors."""
     load = partial(_session, models, threads, provider)
     palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
-    return HandTracker(palms, HandModel(load("hand_landmark_full", HAND_SIGNATURE)), search)
+    model = HandModel(load("hand_landmark_full", HAND_SIGNATURE))
+    taught = finder_path() if search == "pose" else None
+    if taught is None:
+        return HandTracker(palms, model, search)
+    session = ModelSession(taught, PALM_LAYOUT.signature, threads=threads, provider=provider)
+    return HandTracker(palms, model, search, HandFinder(Detector(session, PALM_LAYOUT)))
 
 
 def _session(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, Literal
 
@@ -15,11 +16,13 @@ from app.recognition.estimation.landmark_models.arms import (
     Arm,
     ArmPace,
     ArmPaces,
+    find_far_arm,
     region_of_wrist,
     regions_of_forearm,
     wrist_distance,
 )
 from app.recognition.estimation.landmark_models.detector import Detector
+from app.recognition.estimation.landmark_models.hand_finder import HandFinder, HandPlace
 from app.recognition.estimation.landmark_models.hand_regions import (
     box_of,
     palm_size,
@@ -30,7 +33,7 @@ from app.recognition.estimation.landmark_models.onnx_session import ModelSession
 from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
 from app.recognition.estimation.landmark_models.suppression import measure_overlaps
 from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 
 INPUT_SIZE: Final = 224
 """Side of the landmark model's input in pixels."""
@@ -66,6 +69,31 @@ SURE: Final = 0.8
 palm detector away from the body's arms, are no hands. While a tracked hand is below it, palms are
 detected even with two tracked hands, because one of them may be false."""
 
+PLACE_SCORE: Final = 0.7
+"""Least score of a place of a hand that is new."""
+
+KEPT_SCORE: Final = 0.3
+"""Least score of a place at which a hand was in the frame before."""
+
+MOST_PLACES: Final = 3
+"""Places at which fingers are looked for in a search."""
+
+MOST_NOTED: Final = 8
+"""Hands of examinations that are kept until they are followed."""
+
+SAME_PLACE: Final = 0.5
+"""Distance of the middles of two hands, over the larger one's size, below which they are one; for
+hands of which only the place is seen."""
+
+FINGERS_SECONDS: Final = 0.3
+"""Seconds between two looks for the fingers of a hand of which only the place is seen."""
+
+FINGERS_PRESENCE: Final = 0.8
+"""Least presence of a hand whose fingers are seen at a place."""
+
+FINGERS_SCALES: Final = (1.1, 1.5)
+"""Sides of the regions in which fingers are looked for, over the side of the place's box."""
+
 DUPLICATE_DISTANCE: Final = 0.2
 DUPLICATE_LANDMARKS: Final = 10
 DUPLICATE_OVERLAP: Final = 0.2
@@ -94,6 +122,11 @@ class SeenHand:
         The arm that it is at the end of; None: none, or not known yet.
     carried
         Whether it was not looked at in this frame, but is where its arm carried it.
+    box
+        The box of a hand that the finder found; it is looked for there when its landmarks are
+        lost.
+    looked
+        Time of the last look for the fingers of a hand of which only the place is seen.
 
     """
 
@@ -102,6 +135,18 @@ class SeenHand:
     fresh: bool = False
     arm: ArmPace | None = None
     carried: bool = False
+    box: Region | None = None
+    looked: float = -np.inf
+
+    @classmethod
+    def at(cls, place: HandPlace, looked: float = -np.inf) -> Self:
+        """Return a hand of which only the place is seen."""
+        return cls(place.hand, place.box, box=place.box, looked=looked)
+
+    @property
+    def shows_fingers(self) -> bool:
+        """Whether its landmarks are seen, and not its place alone."""
+        return bool(np.isfinite(self.hand.xy).all())
 
     def carry(self) -> SeenHand:
         """Return the hand where the movement of its arm in the last frame has carried it."""
@@ -113,6 +158,26 @@ class SeenHand:
         return replace(
             self, hand=moved, following=replace(region, x=region.x + dx, y=region.y + dy)
         )
+
+
+@dataclass(frozen=True, eq=False)
+class HandsInFrame:
+    """What the hand tracker says about a frame.
+
+    Attributes
+    ----------
+    hands
+        The hands whose landmarks are seen, larger first.
+    places
+        Those of which only the place is; see `FrameLandmarks.places`.
+    bodies
+        The bodies, each wrist where its hand is.
+
+    """
+
+    hands: tuple[Hand, ...]
+    places: tuple[Hand, ...]
+    bodies: tuple[Body, ...]
 
 
 class HandModel:
@@ -176,14 +241,25 @@ class HandTracker:
         The hand landmark model.
     search
         How to find untracked hands.
+    finder
+        Finds hands whose fingers need not be seen; None: only hands with fingers are found. It
+        looks where an image is examined, and in turn with the palm detector.
 
     """
 
-    def __init__(self, palms: Detector, model: HandModel, search: HandSearch) -> None:
+    def __init__(
+        self,
+        palms: Detector,
+        model: HandModel,
+        search: HandSearch,
+        finder: HandFinder | None = None,
+    ) -> None:
         self._palms = palms
         self._model = model
         self._search = search
+        self._finder = finder
         self._spares = False
+        self._noted: deque[SeenHand] = deque(maxlen=MOST_NOTED)
         self.reset()
 
     def reset(self) -> None:
@@ -191,6 +267,7 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
+        self._turn = 0
         self._paces = ArmPaces(spares=self._spares)
 
     def spare(self, *, spares: bool) -> None:
@@ -199,7 +276,24 @@ class HandTracker:
 
     def renew(self) -> Self:
         """Return a tracker with the same models that has seen nothing yet."""
-        return type(self)(self._palms, self._model, self._search)
+        return type(self)(self._palms, self._model, self._search, self._finder)
+
+    def examine(self, image: Image, bodies: Sequence[Body]) -> HandsInFrame:
+        """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
+        alone = self.renew()
+        followed = (*alone.follow(image), *alone._search_places(image))
+        found = alone.complete(image, followed, bodies)
+        self._noted.extend(alone._tracked)
+        return found
+
+    def adopt(self) -> None:
+        """Follow from now on the hands that examinations of the last frame have found."""
+        tracked = list(self._tracked)
+        for one in _by_belief(self._noted):
+            if not _known(one, tracked):
+                tracked.append(replace(one, arm=None, fresh=False))
+        self._noted.clear()
+        self._tracked = tuple(tracked)
 
     def follow(self, image: Image, time: float = 0.0) -> tuple[SeenHand, ...]:
         """Return the hands in `image`, taken at `time` seconds, by tracking and palm detection.
@@ -211,14 +305,61 @@ class HandTracker:
             if tracked.arm is not None and not tracked.arm.is_due(time):
                 kept.append(replace(tracked, carried=True, fresh=False))
                 continue
-            seen = self._model.look(image, tracked.following)
+            seen = self._look_again(image, tracked, time)
             if seen is not None and not _known(seen, kept):
                 kept.append(seen)
-        for region in self._detect_palms(image):
-            seen = self._model.look(image, region)
-            if seen is not None and not _known(seen, kept):
+        for seen in self._detect(image):
+            if not _known(seen, kept):
                 kept.append(replace(seen, fresh=True))
         return tuple(kept)
+
+    def _look_again(self, image: Image, tracked: SeenHand, time: float) -> SeenHand | None:
+        """Return a tracked hand in the next frame; without its fingers where these are lost."""
+        box = tracked.box
+        if tracked.shows_fingers:
+            seen = self._model.look(image, tracked.following)
+            if seen is not None or box is None:
+                return seen and replace(seen, box=box)
+            box = replace(box, x=tracked.following.x, y=tracked.following.y)
+        assert box
+        assert self._finder
+        place = self._finder.look(image, box, KEPT_SCORE)
+        if place is None:
+            return None
+        if time - tracked.looked < FINGERS_SECONDS:
+            return SeenHand.at(place, tracked.looked)
+        return self._look_for_fingers(image, place) or SeenHand.at(place, time)
+
+    def _look_for_fingers(self, image: Image, place: HandPlace) -> SeenHand | None:
+        """Return the hand at a place with its landmarks, None where they are not seen."""
+        for scale in FINGERS_SCALES:
+            region = replace(place.box, side=scale * place.box.side)
+            seen = self._model.look_twice(image, region)
+            if seen is not None and seen.hand.score >= FINGERS_PRESENCE:
+                seen = replace(seen, box=place.box)
+                if _known(seen, [SeenHand.at(place)]):
+                    return seen
+        return None
+
+    def _search_places(self, image: Image, part: int | None = None) -> list[SeenHand]:
+        """Return the hands, with or without fingers, at the places that the finder finds."""
+        if self._finder is None:
+            return []
+        places = self._finder.search(image, PLACE_SCORE, part)[:MOST_PLACES]
+        return [self._look_for_fingers(image, place) or SeenHand.at(place) for place in places]
+
+    def _detect(self, image: Image) -> Iterator[SeenHand]:
+        """Yield untracked hands: every few frames, by the palm detector or the finder in turn."""
+        if not self._is_due():
+            return
+        self._turn += 1
+        if self._finder is not None and not self._tracked and self._turn % 2 == 0:
+            yield from self._search_places(image, self._turn // 2)
+            return
+        for region in self._detect_palms(image):
+            seen = self._model.look(image, region)
+            if seen is not None:
+                yield seen
 
     def complete(
         self,
@@ -226,8 +367,8 @@ class HandTracker:
         followed: tuple[SeenHand, ...],
         bodies: Sequence[Body],
         time: float = 0.0,
-    ) -> tuple[Hand, ...]:
-        """Return the hands in `image`, larger first.
+    ) -> HandsInFrame:
+        """Return the hands in `image`, and the bodies with their wrists at these hands.
 
         Parameters
         ----------
@@ -242,23 +383,38 @@ class HandTracker:
 
         """
         self._most = MOST_HANDS * max(1, len(bodies))
+        paces: list[ArmPace] = []
         if self._search == "pose" and bodies:
-            seen = self._on_arms(image, followed, bodies, time)
+            free = [(body, side) for body in bodies for side in SIDES]
+            paces = self._paces.update(free, time)
+            seen = self._on_arms(image, followed, free, paces, time)
         else:
             alone = [replace(one, arm=None, carried=False) for one in followed]
             seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
-        return tuple(sorted((one.hand for one in seen), key=lambda hand: -hand.size))
+        hands = sorted(seen, key=lambda one: -one.hand.size)
+        return HandsInFrame(
+            tuple(one.hand for one in hands if one.shows_fingers),
+            tuple(one.hand for one in hands if not one.shows_fingers),
+            tuple(
+                _move_wrists(body, paces[2 * place : 2 * place + 2])
+                for place, body in enumerate(bodies)
+            ),
+        )
+
+    def _is_due(self) -> bool:
+        """Return whether untracked hands are looked for in this frame, where some may be."""
+        if sum(one.hand.score >= SURE for one in self._tracked) >= self._most:
+            return False
+        self._until_palms -= 1
+        if self._until_palms >= 0:
+            return False
+        self._until_palms = PALM_PAUSE - 1
+        return True
 
     def _detect_palms(self, image: Image) -> list[Region]:
-        """Return the regions of palms that are not tracked yet, where some may be."""
+        """Return the regions of palms that are not tracked yet."""
         tracked = [one.following for one in self._tracked]
-        if sum(one.hand.score >= SURE for one in self._tracked) >= self._most:
-            return []
-        if self._until_palms > 0:
-            self._until_palms -= 1
-            return []
-        self._until_palms = PALM_PAUSE - 1
         proposals = [region_of_palm(palm) for palm in self._palms.detect(image)[: self._most]]
         return [
             proposal
@@ -268,21 +424,27 @@ class HandTracker:
         ]
 
     def _on_arms(
-        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body], time: float
+        self,
+        image: Image,
+        followed: tuple[SeenHand, ...],
+        free: Sequence[Arm],
+        paces: Sequence[ArmPace],
+        time: float,
     ) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
         Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
         people whose body is not seen, or where the pose is wrong) compete with those at the arms by
-        score.
+        score; such an arm's wrist goes to its hand.
         """
-        free = [(body, side) for body in bodies for side in SIDES]
-        paces = self._paces.update(free, time)
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
+        far = _find_far_arms(elsewhere, free, arms, paces)
         for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
             if place in arms:
                 pace.read = pace.read if arms[place].carried else time
+                pace.misses = 0
+            elif place in far:
                 pace.misses = 0
             elif pace.is_due(time):
                 pace.read = time
@@ -295,6 +457,9 @@ class HandTracker:
                 pace.misses = 0 if place in arms else pace.misses + 1
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
         alone = [replace(one, arm=None, carried=False) for one in elsewhere]
+        for place, pace in enumerate(paces):
+            one = arms.get(place) or far.get(place)
+            pace.steer(one.hand if one else None, self._paces.seconds, parted=place in far)
         return self._most_believed((*at_arms, *alone))
 
     def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
@@ -340,12 +505,54 @@ def _sort_by_arm(
     return arms, elsewhere
 
 
+def _find_far_arms(
+    elsewhere: Iterable[SeenHand],
+    free: Sequence[Arm],
+    arms: Mapping[int, SeenHand],
+    paces: Sequence[ArmPace],
+) -> dict[int, SeenHand]:
+    """Assign hands that are away from all arms to arms without a hand, whose pose is then wrong.
+
+    An arm keeps the hand that it had in the frame before, where that one is still the nearest to
+    its wrist as it was.
+    """
+    far: dict[int, SeenHand] = {}
+    for one in elsewhere:
+        vacant = [place for place in range(len(free)) if place not in arms and place not in far]
+        kept = [place for place in vacant if paces[place].has(one.hand)]
+        among = kept or vacant
+        found = find_far_arm(one.hand, [free[place] for place in among])
+        if found is not None:
+            far[among[found]] = one
+    return far
+
+
+def _move_wrists(body: Body, paces: Sequence[ArmPace]) -> Body:
+    """Return a body with its wrists where its hands are; see `ArmPace.steer`."""
+    if not any(pace.lead for pace in paces):
+        return body
+    xy, visibility = body.xy.copy(), body.visibility.copy()
+    for pace in paces:
+        row = POSE_LANDMARKS.index(f"{pace.side}_wrist")
+        xy[row] = pace.steered
+        visibility[row] = max(visibility[row], (pace.lead or 0.0) * pace.belief)
+    return replace(body, xy=xy, visibility=visibility)
+
+
 def _by_belief(seen: Iterable[SeenHand]) -> list[SeenHand]:
-    return sorted(seen, key=lambda one: -one.hand.score)
+    """Return hands with their fingers before those without, and each by score."""
+    return sorted(seen, key=lambda one: (not one.shows_fingers, -one.hand.score))
 
 
 def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:
-    return any(find_duplicates(seen.hand, one.hand) for one in others)
+    return any(_is_same(seen, one) for one in others)
+
+
+def _is_same(one: SeenHand, other: SeenHand) -> bool:
+    if one.shows_fingers and other.shows_fingers:
+        return find_duplicates(one.hand, other.hand)
+    apart = np.nanmean(one.hand.xy, axis=0) - np.nanmean(other.hand.xy, axis=0)
+    return bool(np.linalg.norm(apart) < SAME_PLACE * max(one.hand.size, other.hand.size))
 
 
 def find_duplicates(one: Hand, other: Hand) -> bool:
