@@ -14,9 +14,8 @@ from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.hand_finder import HandFinder
+from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE, HandModel
 from app.recognition.estimation.landmark_models.hands import (
-    HAND_SIGNATURE,
-    HandModel,
     HandSearch,
     HandsInFrame,
     HandTracker,
@@ -121,9 +120,9 @@ class OnnxPoseEstimator:
         check_image(image)
         return _with_hands(self._hands.examine(image, self._body.examine(image).bodies))
 
-    def adopt(self) -> None:
-        """Follow from now on the hands that examinations of the last frame have found."""
-        self._hands.adopt()
+    def adopt(self, image: Image) -> None:
+        """Follow from now on the hands that are found when the last frame is searched."""
+        self._hands.adopt(image)
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands that move or hang once a second, on a machine too slow for its camera."""

@@ -37,10 +37,10 @@ class Sparing(Protocol):
 
 @runtime_checkable
 class Adopter(Protocol):
-    """Interface of estimators that can follow what examinations of a frame have found."""
+    """Interface of estimators that can search the last frame for further hands."""
 
-    def adopt(self) -> None:
-        """Follow from now on the hands that examinations of the last frame have found."""
+    def adopt(self, image: Image) -> None:
+        """Follow from now on what examinations of the last frame, and a search in it, find."""
         ...
 
 
@@ -96,5 +96,5 @@ class WaterSight:
             estimator.reset()
             found = estimator.estimate(apply_correction(image, choice.correction), time)
         if isinstance(estimator, Adopter):
-            estimator.adopt()
+            estimator.adopt(apply_correction(image, choice.correction))
         return found

@@ -13,12 +13,13 @@ from typing import Final
 
 import numpy as np
 
+from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.detector import Detector
 from app.recognition.estimation.landmark_models.hand_regions import KNUCKLES, WRIST
 from app.recognition.estimation.landmark_models.region import Region, upright
 from app.recognition.estimation.landmark_models.suppression import Detection
-from app.recognition.poses.frame import Hand, Image
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.frame import Body, Hand, Image, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 
 PART: Final = 0.62
 """Side of the four parts of an image that are searched, over its longer side: a hand of a
@@ -26,6 +27,9 @@ distant diver is too small in the whole."""
 
 CENTRES: Final = (0.3, 0.7)
 """Centres of these parts, across and down, as shares of the image."""
+
+AT_WRIST: Final = 1.5
+"""Side of the region around a wrist of the pose, in body sizes."""
 
 AROUND: Final = 3.5
 """Side of the region in which a place is looked for again, over the side of its box."""
@@ -64,32 +68,15 @@ class HandFinder:
     def __init__(self, detector: Detector) -> None:
         self._detector = detector
 
-    def search(self, image: Image, least: float, turn: int | None = None) -> tuple[HandPlace, ...]:
-        """Return the places with a score from `least` in the whole image and in parts of it.
-
-        Parameters
-        ----------
-        image
-            ``(height, width, 3)`` RGB.
-        least
-            Least score of a place.
-        turn
-            Only the whole or one of the parts is searched, another one at the next number.
-
-        """
-        height, width = image.shape[:2]
-        whole = Region.around(image)
-        parts = [
-            Region(across * width, down * height, PART * whole.side)
-            for across in CENTRES
-            for down in CENTRES
-        ]
-        regions = (whole, *parts)
-        chosen = regions if turn is None else (regions[turn % len(regions)],)
+    def search(
+        self, image: Image, regions: Iterable[Region], least: float
+    ) -> tuple[HandPlace, ...]:
+        """Return the places with a score from `least` in regions of `image`, best first."""
         return _distinct(
             _place(found)
-            for part in chosen
-            for found in self._detector.detect_in(image, part, least=least)
+            for region in regions
+            if region.usable
+            for found in self._detector.detect_in(image, region, least=least)
         )
 
     def look(self, image: Image, box: Region, least: float) -> HandPlace | None:
@@ -98,6 +85,24 @@ class HandFinder:
         places = [_place(found) for found in self._detector.detect_in(image, around, least=least)]
         near = [place for place in places if _distance(place.box, box) < 1]
         return min(near, key=lambda place: _distance(place.box, box), default=None)
+
+
+def parts_of(image: Image) -> tuple[Region, ...]:
+    """Return the whole of an image, and four overlapping parts of it."""
+    height, width = image.shape[:2]
+    whole = Region.around(image)
+    parts = (
+        Region(across * width, down * height, PART * whole.side)
+        for across in CENTRES
+        for down in CENTRES
+    )
+    return (whole, *parts)
+
+
+def region_at_wrist(body: Body, side: Side) -> Region:
+    """Return the region around an arm's wrist in which its hand is large enough."""
+    x, y = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
+    return Region(float(x), float(y), AT_WRIST * measure_body(body))
 
 
 def _place(found: Detection) -> HandPlace:

@@ -22,37 +22,24 @@ from app.recognition.estimation.landmark_models.arms import (
     wrist_distance,
 )
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.hand_finder import HandFinder, HandPlace
-from app.recognition.estimation.landmark_models.hand_regions import (
-    box_of,
-    palm_size,
-    region_of_hand,
-    region_of_palm,
+from app.recognition.estimation.landmark_models.hand_finder import (
+    HandFinder,
+    HandPlace,
+    parts_of,
+    region_at_wrist,
 )
-from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
-from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
-from app.recognition.estimation.landmark_models.suppression import measure_overlaps
+from app.recognition.estimation.landmark_models.hand_model import (
+    HandModel,
+    SeenHand,
+    find_duplicates,
+)
+from app.recognition.estimation.landmark_models.hand_regions import region_of_palm
+from app.recognition.estimation.landmark_models.region import Region
 from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
-
-INPUT_SIZE: Final = 224
-"""Side of the landmark model's input in pixels."""
-
-HAND_SIGNATURE: Final = Signature(
-    INPUT_SIZE, outputs=((1, 3 * len(HAND_LANDMARKS)), (1, 1), (1, 1))
-)
-"""Landmarks (x, y, z), probability of a hand, probability that it is a right one."""
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 MOST_HANDS: Final = 2
 """Most hands of one person; each costs a run of the landmark model per frame."""
-
-LEAST_PRESENCE: Final = 0.5
-"""Least probability of a hand; MediaPipe's default minimum presence confidence."""
-
-WORTH_A_SECOND_LOOK: Final = 0.1
-"""Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
-hand that is off centre scores between this and 0.5, no hand below 0.01. Replaces the re-crop model
-of MediaPipe Holistic."""
 
 SAME_REGION: Final = 0.5
 """Overlap above which a candidate is a hand that is tracked already (MediaPipe's default)."""
@@ -94,70 +81,9 @@ FINGERS_PRESENCE: Final = 0.8
 FINGERS_SCALES: Final = (1.1, 1.5)
 """Sides of the regions in which fingers are looked for, over the side of the place's box."""
 
-DUPLICATE_DISTANCE: Final = 0.2
-DUPLICATE_LANDMARKS: Final = 10
-DUPLICATE_OVERLAP: Final = 0.2
-"""Two hands are one if at least this number of landmarks lies within this share of the palm's size
-of each other and their boxes overlap by more than this; MediaPipe found the three values by
-experiment."""
-
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
 detector; or with the palm detector alone, as MediaPipe's hand landmarker."""
-
-
-@dataclass(frozen=True, eq=False)
-class SeenHand:
-    """A hand of this frame.
-
-    Attributes
-    ----------
-    hand
-        Its landmarks.
-    following
-        Its region in the next frame.
-    fresh
-        Whether it was not tracked from the frame before.
-    arm
-        The arm that it is at the end of; None: none, or not known yet.
-    carried
-        Whether it was not looked at in this frame, but is where its arm carried it.
-    box
-        The box of a hand that the finder found; it is looked for there when its landmarks are
-        lost.
-    looked
-        Time of the last look for the fingers of a hand of which only the place is seen.
-
-    """
-
-    hand: Hand
-    following: Region
-    fresh: bool = False
-    arm: ArmPace | None = None
-    carried: bool = False
-    box: Region | None = None
-    looked: float = -np.inf
-
-    @classmethod
-    def at(cls, place: HandPlace, looked: float = -np.inf) -> Self:
-        """Return a hand of which only the place is seen."""
-        return cls(place.hand, place.box, box=place.box, looked=looked)
-
-    @property
-    def shows_fingers(self) -> bool:
-        """Whether its landmarks are seen, and not its place alone."""
-        return bool(np.isfinite(self.hand.xy).all())
-
-    def carry(self) -> SeenHand:
-        """Return the hand where the movement of its arm in the last frame has carried it."""
-        if self.arm is None:
-            return self
-        dx, dy = self.arm.shift
-        moved = replace(self.hand, xy=self.hand.xy + self.arm.shift)
-        region = self.following
-        return replace(
-            self, hand=moved, following=replace(region, x=region.x + dx, y=region.y + dy)
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,45 +104,6 @@ class HandsInFrame:
     hands: tuple[Hand, ...]
     places: tuple[Hand, ...]
     bodies: tuple[Body, ...]
-
-
-class HandModel:
-    """The hand landmark model (Zhang et al. 2020, MediaPipe Hands).
-
-    Parameters
-    ----------
-    session
-        The model, loaded with `HAND_SIGNATURE`.
-
-    """
-
-    def __init__(self, session: ModelSession) -> None:
-        self._session = session
-
-    def look(self, image: Image, region: Region) -> SeenHand | None:
-        """Return the hand in a usable `region` of `image`, or None where the model finds none."""
-        seen = self._landmarks(image, region)
-        return seen if seen.hand.score >= LEAST_PRESENCE else None
-
-    def look_twice(self, image: Image, region: Region) -> SeenHand | None:
-        """Return the hand near a `region`, which need not fit it well.
-
-        If the first run finds something, a second one at the region of its landmarks decides.
-        """
-        first = self._landmarks(image, region)
-        if not first.hand.score >= WORTH_A_SECOND_LOOK or not first.following.usable:
-            return None
-        return self.look(image, first.following)
-
-    def _landmarks(self, image: Image, region: Region) -> SeenHand:
-        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._session.pixels)
-        raw, presence, right = self._session.run()
-        points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
-        xy = region.to_image(points, INPUT_SIZE)
-        # The model was trained on mirrored selfies and renamed since: in an unmirrored image
-        # this output is the probability of the person's own right hand.
-        side: Side = "right" if right[0, 0] > 0.5 else "left"
-        return SeenHand(Hand(xy, side, min(float(presence[0, 0]), 1.0)), region_of_hand(xy))
 
 
 class HandTracker:
@@ -268,6 +155,7 @@ class HandTracker:
         self._most = MOST_HANDS
         self._until_palms = 0
         self._turn = 0
+        self._free: list[Arm] = []
         self._paces = ArmPaces(spares=self._spares)
 
     def spare(self, *, spares: bool) -> None:
@@ -281,15 +169,22 @@ class HandTracker:
     def examine(self, image: Image, bodies: Sequence[Body]) -> HandsInFrame:
         """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
         alone = self.renew()
-        followed = (*alone.follow(image), *alone._search_places(image))
-        found = alone.complete(image, followed, bodies)
+        found = alone.complete(image, alone.follow(image), bodies)
         self._noted.extend(alone._tracked)
         return found
 
-    def adopt(self) -> None:
-        """Follow from now on the hands that examinations of the last frame have found."""
+    def adopt(self, image: Image) -> None:
+        """Follow from now on what examinations of the last frame, and the finder in it, find.
+
+        Parameters
+        ----------
+        image
+            The last frame, corrected as the next ones will be.
+
+        """
+        regions = *parts_of(image), *(region_at_wrist(*arm) for arm in self._free)
         tracked = list(self._tracked)
-        for one in _by_belief(self._noted):
+        for one in (*_by_belief(self._noted), *self._search_places(image, regions)):
             if not _known(one, tracked):
                 tracked.append(replace(one, arm=None, fresh=False))
         self._noted.clear()
@@ -315,14 +210,13 @@ class HandTracker:
 
     def _look_again(self, image: Image, tracked: SeenHand, time: float) -> SeenHand | None:
         """Return a tracked hand in the next frame; without its fingers where these are lost."""
-        box = tracked.box
         if tracked.shows_fingers:
             seen = self._model.look(image, tracked.following)
-            if seen is not None or box is None:
-                return seen and replace(seen, box=box)
-            box = replace(box, x=tracked.following.x, y=tracked.following.y)
-        assert box
-        assert self._finder
+            if seen is not None:
+                return replace(seen, box=tracked.box)
+        if tracked.box is None or self._finder is None:
+            return None
+        box = replace(tracked.box, x=tracked.following.x, y=tracked.following.y)
         place = self._finder.look(image, box, KEPT_SCORE)
         if place is None:
             return None
@@ -341,11 +235,11 @@ class HandTracker:
                     return seen
         return None
 
-    def _search_places(self, image: Image, part: int | None = None) -> list[SeenHand]:
-        """Return the hands, with or without fingers, at the places that the finder finds."""
+    def _search_places(self, image: Image, regions: Iterable[Region]) -> list[SeenHand]:
+        """Return the hands, with or without fingers, that the finder finds in regions."""
         if self._finder is None:
             return []
-        places = self._finder.search(image, PLACE_SCORE, part)[:MOST_PLACES]
+        places = self._finder.search(image, regions, PLACE_SCORE)[:MOST_PLACES]
         return [self._look_for_fingers(image, place) or SeenHand.at(place) for place in places]
 
     def _detect(self, image: Image) -> Iterator[SeenHand]:
@@ -354,7 +248,8 @@ class HandTracker:
             return
         self._turn += 1
         if self._finder is not None and not self._tracked and self._turn % 2 == 0:
-            yield from self._search_places(image, self._turn // 2)
+            parts = parts_of(image)
+            yield from self._search_places(image, [parts[self._turn // 2 % len(parts)]])
             return
         for region in self._detect_palms(image):
             seen = self._model.look(image, region)
@@ -385,10 +280,11 @@ class HandTracker:
         self._most = MOST_HANDS * max(1, len(bodies))
         paces: list[ArmPace] = []
         if self._search == "pose" and bodies:
-            free = [(body, side) for body in bodies for side in SIDES]
-            paces = self._paces.update(free, time)
-            seen = self._on_arms(image, followed, free, paces, time)
+            self._free = [(body, side) for body in bodies for side in SIDES]
+            paces = self._paces.update(self._free, time)
+            seen = self._on_arms(image, followed, self._free, paces, time)
         else:
+            self._free = []
             alone = [replace(one, arm=None, carried=False) for one in followed]
             seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
@@ -553,12 +449,3 @@ def _is_same(one: SeenHand, other: SeenHand) -> bool:
         return find_duplicates(one.hand, other.hand)
     apart = np.nanmean(one.hand.xy, axis=0) - np.nanmean(other.hand.xy, axis=0)
     return bool(np.linalg.norm(apart) < SAME_PLACE * max(one.hand.size, other.hand.size))
-
-
-def find_duplicates(one: Hand, other: Hand) -> bool:
-    """Return whether two results show the same hand."""
-    near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
-    distances = np.linalg.norm(one.xy - other.xy, axis=1)
-    if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:
-        return False
-    return bool(measure_overlaps(box_of(one.xy), box_of(other.xy)[None])[0] > DUPLICATE_OVERLAP)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.arms import wrist_distance
+from app.recognition.estimation.landmark_models.hand_model import SeenHand, find_duplicates
 from app.recognition.estimation.landmark_models.hand_regions import region_of_hand
-from app.recognition.estimation.landmark_models.hands import SeenHand, find_duplicates
 from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
