@@ -2,8 +2,8 @@
 
 FOLDER holds ``boxes.csv`` (columns image, what, x0, y0, x1, y1: Diver, Head or Hand, and corners in
 pixels) and the photographs in ``images/``; the letters at the beginning of a file's name denote its
-water. Each photograph is processed by itself, as a clip of `LOOKS` equal frames: the estimator is
-reset before it, and what the last frame shows counts.
+water. Each photograph is processed by itself: the estimator is reset before it. As the first frame
+of a clip, one in which no hand is found is examined under every correction, and searched in parts.
 
 - body: photographs with a diver's box; found if the centre of shoulders and hips is in one.
 - head: photographs with a head's box; found if the nose is in one.
@@ -16,7 +16,7 @@ reset before it, and what the last frame shows counts.
   divides them by the number of photographs.
 - wrist: boxes of hands; found if the box's middle is within 0.3 of `measure_body` of a wrist of the
   body that is followed.
-- runs: runs of the models a photograph's frame takes.
+- runs: runs of the models a photograph takes.
 
 Every share has its number and Wilson's 95 % interval. ``--part even`` takes every second photograph
 of the sorted names, on which constants are chosen, ``--part odd`` the others. ``--by-size`` prints
@@ -71,9 +71,6 @@ NOSE: Final = POSE_LANDMARKS.index("nose")
 WRISTS: Final = [POSE_LANDMARKS.index(f"{side}_wrist") for side in ("left", "right")]
 WRIST_REACH: Final = 0.3
 """Distance from a wrist to the middle of its hand's box, in body sizes, that is right."""
-
-LOOKS, RATE = 10, 25
-"""A photograph is shown as this number of frames, at this number a second."""
 
 SIZES: Final = (0.0, 0.5, 0.75, 1.01)
 """Limits of the rows by size: far, near, and as large as the picture."""
@@ -221,9 +218,7 @@ def measure(
         image = read_photograph(still.path)
         sight.reset()
         row = size_of(still, image) if by_size else still.water
-        for look in range(LOOKS):
-            found = sight.estimate(image, look / RATE)
-        yield row, score_still(still.boxes, found)
+        yield row, score_still(still.boxes, sight.estimate(image, 0.0))
 
 
 @contextmanager
@@ -266,7 +261,7 @@ def main() -> None:
             for row, score in sorted(rows.items(), key=lambda each: (each[0] == "all", each[0])):
                 wrong = score.wrong.correct / max(counts[row], 1)
                 print(f"{water} | {row} | {score} | {wrong:.2f}", flush=True)
-            print(f"{water}: {runs[0] / LOOKS / max(len(stills), 1):.1f} runs a frame", flush=True)
+            print(f"{water}: {runs[0] / max(len(stills), 1):.1f} runs a photograph", flush=True)
             runs[0] = 0
 
 

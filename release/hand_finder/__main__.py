@@ -22,6 +22,7 @@ def main() -> None:
     teach.add_argument("--without", nargs="*", default=[], help="beginnings of names to leave out")
     teach.add_argument("--steps", type=int, default=800, help="of 16 crops each")
     teach.add_argument("--seed", type=int, default=0, help="of the crops")
+    teach.add_argument("--whole", action="store_true", help="teach the first stage too")
     teach.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
     arguments = parser.parse_args()
     if arguments.step == "draw":
@@ -46,6 +47,7 @@ def _teach(arguments: argparse.Namespace) -> None:
         arguments.output,
         steps=arguments.steps,
         seed=arguments.seed,
+        whole=arguments.whole,
     )
 
 

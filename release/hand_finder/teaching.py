@@ -29,6 +29,12 @@ BOTH = (40.0, 90.0)
 TEACHABLE = (7.0, 170.0)
 """Sides of hands, in pixels of the input, that teach; smaller and larger ones are ignored."""
 
+AROUND_HANDS = 0.6
+"""Share of the crops that are around a hand; the others are anywhere, so that heads, trunks and
+whole divers of any size teach that they are no hands."""
+ANYWHERE = (0.12, 2.0)
+"""Sides of the others, over the picture's longer side."""
+
 BATCH = 16
 RATE = 3e-4
 """Largest rate of the optimiser (AdamW, Loshchilov and Hutter 2019)."""
@@ -68,7 +74,7 @@ _IS_FINE = np.arange(len(_ANCHORS)) < 2 * (SIDE // 8) ** 2
 
 
 def teach(
-    detector: Path, pictures: Sequence[Picture], output: Path, *, steps: int, seed: int = 0
+    detector: Path, pictures: Sequence[Picture], output: Path, *, steps: int, seed: int = 0, whole: bool = False
 ) -> None:
     """Teach a finder, and write it as ONNX.
 
@@ -84,11 +90,13 @@ def teach(
         Number of steps of `BATCH` crops; the rate falls along half a cosine.
     seed
         Of the crops.
+    whole
+        Whether the first stage, `KEPT`, is taught too.
 
     """
     random = np.random.default_rng(seed)
     network = TaughtNetwork(detector)
-    for name in list(network.weights)[:KEPT]:
+    for name in [] if whole else list(network.weights)[:KEPT]:
         network.weights[name].requires_grad_(False)
     taught = [one for one in network.parameters() if one.requires_grad]
     optimiser = torch.optim.AdamW(taught, RATE, weight_decay=1e-4)
@@ -139,14 +147,14 @@ def draw_crop(
     """Cut a random crop out of a random picture, mostly around a hand, in other colours."""
     picture = pictures[int(random.integers(len(pictures)))]
     height, width = picture.image.shape[:2]
-    if len(picture.hands) and random.random() < 0.75:
+    if len(picture.hands) and random.random() < AROUND_HANDS:
         box = picture.hands[random.integers(len(picture.hands)), :4]
         hand = max(box[2] - box[0], box[3] - box[1])
         side = hand * np.exp(random.uniform(np.log(1.5), np.log(9)))
         side = min(side, 1.1 * max(height, width))
         middle = (box[:2] + box[2:]) / 2 + random.uniform(-0.4, 0.4, 2) * side
     else:
-        side = max(height, width) * random.uniform(0.3, 1)
+        side = max(height, width) * np.exp(random.uniform(*np.log(ANYWHERE)))
         middle = random.uniform(0, [width, height])
     angle, scale = random.uniform(-0.4, 0.4), SIDE / side
     cosine, sine = np.cos(angle), np.sin(angle)

@@ -120,9 +120,9 @@ class OnnxPoseEstimator:
         check_image(image)
         return _with_hands(self._hands.examine(image, self._body.examine(image).bodies))
 
-    def adopt(self, image: Image) -> None:
-        """Follow from now on the hands that are found when the last frame is searched."""
-        self._hands.adopt(image)
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what a search in it finds, and follow that from now on."""
+        return _with_hands(self._hands.adopt(image))
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands that move or hang once a second, on a machine too slow for its camera."""

@@ -39,8 +39,8 @@ class Sparing(Protocol):
 class Adopter(Protocol):
     """Interface of estimators that can search the last frame for further hands."""
 
-    def adopt(self, image: Image) -> None:
-        """Follow from now on what examinations of the last frame, and a search in it, find."""
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what examinations of it, and a search in it, have found."""
         ...
 
 
@@ -96,5 +96,5 @@ class WaterSight:
             estimator.reset()
             found = estimator.estimate(apply_correction(image, choice.correction), time)
         if isinstance(estimator, Adopter):
-            estimator.adopt(apply_correction(image, choice.correction))
+            return estimator.adopt(apply_correction(image, choice.correction))
         return found

@@ -84,6 +84,10 @@ FAR: Final = 2.0
 """Largest distance between a wrong wrist of the pose and the hand, in body sizes: in dark water, of
 near divers, the pose misses by up to 1.6 in three of four photographs."""
 
+DOUBTED: Final = 0.7
+"""Visibility of a wrist below which a hand without fingers may be elsewhere: of wrists in clear
+water that are right nine in ten have more, in dark water most are wrong and have less."""
+
 STEER_SECONDS: Final = 0.2
 """Time in which a wrist goes over from the pose's to its hand's, or back: no jump looks like a
 stroke."""
@@ -310,6 +314,11 @@ def find_far_arm(hand: Hand, arms: Sequence[Arm]) -> int | None:
     # The comparison is False for NaN.
     near = np.flatnonzero(far <= FAR)
     return int(near[far[near].argmin()]) if len(near) else None
+
+
+def is_doubtful(body: Body, side: Side) -> bool:
+    """Return whether the pose itself is not sure of an arm's wrist."""
+    return bool(body.visibility[POSE_LANDMARKS.index(f"{side}_wrist")] < DOUBTED)
 
 
 def find_owner(hand: Hand, bodies: Sequence[Body]) -> int | None:

@@ -15,10 +15,10 @@ import numpy as np
 
 from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.hand_regions import KNUCKLES, WRIST
+from app.recognition.estimation.landmark_models.hand_regions import KNUCKLES, WRIST, up_of
 from app.recognition.estimation.landmark_models.region import Region, upright
 from app.recognition.estimation.landmark_models.suppression import Detection
-from app.recognition.poses.frame import Body, Hand, Image, Side
+from app.recognition.poses.frame import Body, Hand, Image
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 
 PART: Final = 0.62
@@ -28,8 +28,17 @@ distant diver is too small in the whole."""
 CENTRES: Final = (0.3, 0.7)
 """Centres of these parts, across and down, as shares of the image."""
 
-AT_WRIST: Final = 1.5
-"""Side of the region around a wrist of the pose, in body sizes."""
+PALM: Final = 0.35
+"""Distance from the wrist to the knuckles, over the side of a place; the finder tells the way from
+one to the other, not the distance."""
+
+LARGEST: Final = 2.5
+"""Side of the largest hand, in body sizes: in dark water, of near divers, the pose is too small."""
+
+HEAD: Final = 0.4
+"""Distance of the nose from the middle of a place that is a head in its hood, over its side."""
+
+_NOSE: Final = POSE_LANDMARKS.index("nose")
 
 AROUND: Final = 3.5
 """Side of the region in which a place is looked for again, over the side of its box."""
@@ -53,6 +62,12 @@ class HandPlace:
 
     hand: Hand
     box: Region
+
+    def fits(self, body: Body) -> bool:
+        """Return whether it is no head, and not too large for a hand of a body in the image."""
+        far = float(np.linalg.norm(body.xy[_NOSE] - (self.box.x, self.box.y)))
+        is_head = far < HEAD * self.box.side
+        return not is_head and not self.box.side > LARGEST * measure_body(body)
 
 
 class HandFinder:
@@ -99,18 +114,13 @@ def parts_of(image: Image) -> tuple[Region, ...]:
     return (whole, *parts)
 
 
-def region_at_wrist(body: Body, side: Side) -> Region:
-    """Return the region around an arm's wrist in which its hand is large enough."""
-    x, y = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
-    return Region(float(x), float(y), AT_WRIST * measure_body(body))
-
-
 def _place(found: Detection) -> HandPlace:
-    xy = np.full((len(HAND_LANDMARKS), 2), np.nan)
-    xy[WRIST], xy[list(KNUCKLES)] = found.keypoints[0], found.keypoints[2]
     x, y = found.box.mean(axis=0)
     side = float((found.box[1] - found.box[0]).max())
     rotation = upright(found.keypoints[0], found.keypoints[2])
+    xy = np.full((len(HAND_LANDMARKS), 2), np.nan)
+    xy[WRIST] = found.keypoints[0]
+    xy[list(KNUCKLES)] = found.keypoints[0] + PALM * side * up_of(rotation)
     return HandPlace(Hand(xy, "right", found.score), Region(float(x), float(y), side, rotation))
 
 

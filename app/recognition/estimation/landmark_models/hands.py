@@ -17,6 +17,7 @@ from app.recognition.estimation.landmark_models.arms import (
     ArmPace,
     ArmPaces,
     find_far_arm,
+    is_doubtful,
     region_of_wrist,
     regions_of_forearm,
     wrist_distance,
@@ -26,7 +27,6 @@ from app.recognition.estimation.landmark_models.hand_finder import (
     HandFinder,
     HandPlace,
     parts_of,
-    region_at_wrist,
 )
 from app.recognition.estimation.landmark_models.hand_model import (
     HandModel,
@@ -51,12 +51,16 @@ detection costs as much as the body model."""
 FOREARM_SECONDS: Final = 0.4
 """Seconds between searches at the end of a forearm, which cost up to four looks."""
 
+LONG_LOST, LOST_FACTOR = 8, 2
+"""Searches in vain after which the forearm is searched less often by this factor: the time goes
+to the finder."""
+
 SURE: Final = 0.8
 """Presence from which a hand is certain. Below it, most results at the end of a forearm, or of the
 palm detector away from the body's arms, are no hands. While a tracked hand is below it, palms are
 detected even with two tracked hands, because one of them may be false."""
 
-PLACE_SCORE: Final = 0.7
+PLACE_SCORE: Final = 0.5
 """Least score of a place of a hand that is new."""
 
 KEPT_SCORE: Final = 0.3
@@ -78,8 +82,12 @@ FINGERS_SECONDS: Final = 0.3
 FINGERS_PRESENCE: Final = 0.8
 """Least presence of a hand whose fingers are seen at a place."""
 
-FINGERS_SCALES: Final = (1.1, 1.5)
-"""Sides of the regions in which fingers are looked for, over the side of the place's box."""
+FINGERS_SCALE: Final = 1.1
+"""Side of the region in which fingers are looked for, over the side of the place's box."""
+
+QUARTERS: Final = 4
+"""Quarter turns in which fingers are looked for, another one at each look: a glove does not show
+which way it points."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -154,8 +162,11 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
-        self._turn = 0
+        self._turn = self._quarter = 0
+        self._bodies: tuple[Body, ...] = ()
         self._free: list[Arm] = []
+        self._arms: list[ArmPace] = []
+        self._time = 0.0
         self._paces = ArmPaces(spares=self._spares)
 
     def spare(self, *, spares: bool) -> None:
@@ -173,8 +184,10 @@ class HandTracker:
         self._noted.extend(alone._tracked)
         return found
 
-    def adopt(self, image: Image) -> None:
-        """Follow from now on what examinations of the last frame, and the finder in it, find.
+    def adopt(self, image: Image) -> HandsInFrame:
+        """Return the last frame with what examinations of it, and the finder in it, have found.
+
+        It is followed from now on.
 
         Parameters
         ----------
@@ -182,13 +195,12 @@ class HandTracker:
             The last frame, corrected as the next ones will be.
 
         """
-        regions = *parts_of(image), *(region_at_wrist(*arm) for arm in self._free)
         tracked = list(self._tracked)
-        for one in (*_by_belief(self._noted), *self._search_places(image, regions)):
+        for one in (*_by_belief(self._noted), *self._search_places(image, parts_of(image))):
             if not _known(one, tracked):
                 tracked.append(replace(one, arm=None, fresh=False))
         self._noted.clear()
-        self._tracked = tuple(tracked)
+        return self._finish(None, tuple(tracked))
 
     def follow(self, image: Image, time: float = 0.0) -> tuple[SeenHand, ...]:
         """Return the hands in `image`, taken at `time` seconds, by tracking and palm detection.
@@ -226,21 +238,29 @@ class HandTracker:
 
     def _look_for_fingers(self, image: Image, place: HandPlace) -> SeenHand | None:
         """Return the hand at a place with its landmarks, None where they are not seen."""
-        for scale in FINGERS_SCALES:
-            region = replace(place.box, side=scale * place.box.side)
-            seen = self._model.look_twice(image, region)
-            if seen is not None and seen.hand.score >= FINGERS_PRESENCE:
-                seen = replace(seen, box=place.box)
-                if _known(seen, [SeenHand.at(place)]):
-                    return seen
-        return None
+        box = place.box
+        self._quarter = (self._quarter + 1) % QUARTERS
+        rotation = box.rotation + self._quarter * np.pi / 2
+        region = replace(box, side=FINGERS_SCALE * box.side, rotation=rotation)
+        seen = self._model.look_twice(image, region)
+        if seen is None or seen.hand.score < FINGERS_PRESENCE:
+            return None
+        return replace(seen, box=box) if _known(seen, [SeenHand.at(place)]) else None
 
     def _search_places(self, image: Image, regions: Iterable[Region]) -> list[SeenHand]:
         """Return the hands, with or without fingers, that the finder finds in regions."""
         if self._finder is None:
             return []
-        places = self._finder.search(image, regions, PLACE_SCORE)[:MOST_PLACES]
-        return [self._look_for_fingers(image, place) or SeenHand.at(place) for place in places]
+        bodies = [body for body, _ in self._free[:: len(SIDES)]]
+        places = [
+            place
+            for place in self._finder.search(image, regions, PLACE_SCORE)
+            if all(place.fits(body) for body in bodies)
+        ]
+        return [
+            self._look_for_fingers(image, place) or SeenHand.at(place)
+            for place in places[:MOST_PLACES]
+        ]
 
     def _detect(self, image: Image) -> Iterator[SeenHand]:
         """Yield untracked hands: every few frames, by the palm detector or the finder in turn."""
@@ -278,13 +298,18 @@ class HandTracker:
 
         """
         self._most = MOST_HANDS * max(1, len(bodies))
-        paces: list[ArmPace] = []
-        if self._search == "pose" and bodies:
-            self._free = [(body, side) for body in bodies for side in SIDES]
-            paces = self._paces.update(self._free, time)
-            seen = self._on_arms(image, followed, self._free, paces, time)
+        self._bodies, self._time = tuple(bodies), time
+        self._free = (
+            [(body, side) for body in bodies for side in SIDES] if self._search == "pose" else []
+        )
+        self._arms = self._paces.update(self._free, time) if self._free else []
+        return self._finish(image, followed)
+
+    def _finish(self, image: Image | None, followed: tuple[SeenHand, ...]) -> HandsInFrame:
+        """Assign hands to the arms of this frame; without an image nothing is searched."""
+        if self._free:
+            seen = self._on_arms(image, followed)
         else:
-            self._free = []
             alone = [replace(one, arm=None, carried=False) for one in followed]
             seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
@@ -293,8 +318,8 @@ class HandTracker:
             tuple(one.hand for one in hands if one.shows_fingers),
             tuple(one.hand for one in hands if not one.shows_fingers),
             tuple(
-                _move_wrists(body, paces[2 * place : 2 * place + 2])
-                for place, body in enumerate(bodies)
+                _move_wrists(body, self._arms[2 * place : 2 * place + 2])
+                for place, body in enumerate(self._bodies)
             ),
         )
 
@@ -319,20 +344,14 @@ class HandTracker:
             and not any(proposal.overlap(region) > SAME_REGION for region in tracked)
         ]
 
-    def _on_arms(
-        self,
-        image: Image,
-        followed: tuple[SeenHand, ...],
-        free: Sequence[Arm],
-        paces: Sequence[ArmPace],
-        time: float,
-    ) -> tuple[SeenHand, ...]:
+    def _on_arms(self, image: Image | None, followed: tuple[SeenHand, ...]) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
         Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
         people whose body is not seen, or where the pose is wrong) compete with those at the arms by
         score; such an arm's wrist goes to its hand.
         """
+        free, paces, time = self._free, self._arms, self._time
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
         far = _find_far_arms(elsewhere, free, arms, paces)
@@ -342,9 +361,10 @@ class HandTracker:
                 pace.misses = 0
             elif place in far:
                 pace.misses = 0
-            elif pace.is_due(time):
+            elif image is not None and pace.is_due(time):
                 pace.read = time
-                with_forearm = time - pace.forearm_searched >= FOREARM_SECONDS
+                rarer = LOST_FACTOR if pace.misses > LONG_LOST else 1
+                with_forearm = time - pace.forearm_searched >= rarer * FOREARM_SECONDS
                 if with_forearm:
                     pace.forearm_searched = time
                 seen = self._search_arm(image, body, side, with_forearm=with_forearm)
@@ -415,6 +435,8 @@ def _find_far_arms(
     far: dict[int, SeenHand] = {}
     for one in elsewhere:
         vacant = [place for place in range(len(free)) if place not in arms and place not in far]
+        if not one.shows_fingers:
+            vacant = [place for place in vacant if is_doubtful(*free[place])]
         kept = [place for place in vacant if paces[place].has(one.hand)]
         among = kept or vacant
         found = find_far_arm(one.hand, [free[place] for place in among])
