@@ -19,8 +19,10 @@ of a clip, one in which no hand is found is examined under every correction, and
 - runs: runs of the models a photograph takes.
 
 Every share has its number and Wilson's 95 % interval. ``--part even`` takes every second photograph
-of the sorted names, on which constants are chosen, ``--part odd`` the others. ``--by-size`` prints
-rows by the height of the diver's box, as a share of the picture's, instead of by water.
+of the sorted names, on which constants are chosen, ``--part odd`` the others; the finder's
+constants are chosen on ``--part chosen`` and measured on ``--part held``, with and
+``--without-finder``. ``--by-size`` prints rows by the height of the diver's box, as a share of the
+picture's, instead of by water.
 
     python -m benchmarks.accuracy.water_stills FOLDER --water off auto
 """
@@ -32,7 +34,7 @@ import csv
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Final, Literal, get_args
@@ -42,7 +44,7 @@ import cv2
 import numpy as np
 
 from app.evaluation.proportion import Share
-from app.recognition.estimation import FrameLandmarks, create_estimator
+from app.recognition.estimation import FrameLandmarks, create_estimator, onnx_estimator
 from app.recognition.estimation.landmark_models.arms import measure_body
 from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Tensor
 from app.recognition.estimation.water import WaterCorrection
@@ -51,12 +53,14 @@ from app.recognition.poses.frame import Body, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
-Part = Literal["all", "even", "odd"]
+Part = Literal["all", "even", "odd", "chosen", "held"]
 
 PARTS: Final[dict[Part, slice]] = {
     "all": slice(None),
     "even": slice(0, None, 2),
     "odd": slice(1, None, 2),
+    "chosen": slice(0, None, 5),
+    "held": slice(2, None, 5),
 }
 
 NOTHING: Final = Share(0, 0)
@@ -243,13 +247,18 @@ def main() -> None:
     parser.add_argument("--water", nargs="+", default=get_args(WaterCorrection))
     parser.add_argument("--part", choices=get_args(Part), default="all")
     parser.add_argument("--by-size", action="store_true", help="rows by size instead of by water")
+    parser.add_argument("--without-finder", action="store_true", help="as where it is missing")
     arguments = parser.parse_args()
     stills = read_stills(arguments.folder, arguments.part)
     print(
         "correction | photographs of | body | head | hand | hands off any box | place | "
         "places off any box | wrist | wrong places a photograph"
     )
-    with closing(create_estimator()) as estimator, count_runs() as runs:
+    with ExitStack() as stack:
+        if arguments.without_finder:
+            stack.enter_context(patch.object(onnx_estimator, "finder_path", lambda: None))
+        estimator = stack.enter_context(closing(create_estimator()))
+        runs = stack.enter_context(count_runs())
         for water in arguments.water:
             rows: dict[str, Score] = defaultdict(Score)
             counts: Counter[str] = Counter()

@@ -74,7 +74,13 @@ _IS_FINE = np.arange(len(_ANCHORS)) < 2 * (SIDE // 8) ** 2
 
 
 def teach(
-    detector: Path, pictures: Sequence[Picture], output: Path, *, steps: int, seed: int = 0, whole: bool = False
+    detector: Path,
+    pictures: Sequence[Picture],
+    output: Path,
+    *,
+    steps: int,
+    seed: int = 0,
+    whole: bool = False,
 ) -> None:
     """Teach a finder, and write it as ONNX.
 
