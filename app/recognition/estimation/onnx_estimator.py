@@ -17,7 +17,6 @@ from app.recognition.estimation.landmark_models.hand_finder import HandFinder
 from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE, HandModel
 from app.recognition.estimation.landmark_models.hands import (
     HandSearch,
-    HandsInFrame,
     HandTracker,
 )
 from app.recognition.estimation.landmark_models.onnx_session import (
@@ -106,7 +105,7 @@ class OnnxPoseEstimator:
             followed = following.result()
         seen = self._hands.complete(image, followed, found.bodies, time)
         self._body.seek(find_stray_wrist(seen.hands, seen.bodies))
-        return _with_hands(seen)
+        return seen
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking.
@@ -118,11 +117,11 @@ class OnnxPoseEstimator:
 
         """
         check_image(image)
-        return _with_hands(self._hands.examine(image, self._body.examine(image).bodies))
+        return self._hands.examine(image, self._body.examine(image).bodies)
 
     def adopt(self, image: Image) -> FrameLandmarks:
         """Return the last frame with what a search in it finds, and follow that from now on."""
-        return _with_hands(self._hands.adopt(image))
+        return self._hands.adopt(image)
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands that move or hang once a second, on a machine too slow for its camera."""
@@ -138,13 +137,6 @@ class OnnxPoseEstimator:
         if self._helper is not None:
             self._helper.shutdown()
         del self._body, self._hands
-
-
-def _with_hands(seen: HandsInFrame) -> FrameLandmarks:
-    followed, *others = seen.bodies or (None,)
-    return FrameLandmarks(
-        followed, seen.hands, tuple(one for one in others if one is not None), seen.places
-    )
 
 
 def body_tracker(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final, Literal
 
 import numpy as np
@@ -35,7 +35,7 @@ from app.recognition.estimation.landmark_models.hand_model import (
 )
 from app.recognition.estimation.landmark_models.hand_regions import region_of_palm
 from app.recognition.estimation.landmark_models.region import Region
-from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
+from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 MOST_HANDS: Final = 2
@@ -92,26 +92,6 @@ which way it points."""
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
 detector; or with the palm detector alone, as MediaPipe's hand landmarker."""
-
-
-@dataclass(frozen=True, eq=False)
-class HandsInFrame:
-    """What the hand tracker says about a frame.
-
-    Attributes
-    ----------
-    hands
-        The hands whose landmarks are seen, larger first.
-    places
-        Those of which only the place is; see `FrameLandmarks.places`.
-    bodies
-        The bodies, each wrist where its hand is.
-
-    """
-
-    hands: tuple[Hand, ...]
-    places: tuple[Hand, ...]
-    bodies: tuple[Body, ...]
 
 
 class HandTracker:
@@ -177,14 +157,14 @@ class HandTracker:
         """Return a tracker with the same models that has seen nothing yet."""
         return type(self)(self._palms, self._model, self._search, self._finder)
 
-    def examine(self, image: Image, bodies: Sequence[Body]) -> HandsInFrame:
+    def examine(self, image: Image, bodies: Sequence[Body]) -> FrameLandmarks:
         """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
         alone = self.renew()
         found = alone.complete(image, alone.follow(image), bodies)
         self._noted.extend(alone._tracked)
         return found
 
-    def adopt(self, image: Image) -> HandsInFrame:
+    def adopt(self, image: Image) -> FrameLandmarks:
         """Return the last frame with what examinations of it, and the finder in it, have found.
 
         It is followed from now on.
@@ -251,15 +231,11 @@ class HandTracker:
         """Return the hands, with or without fingers, that the finder finds in regions."""
         if self._finder is None:
             return []
-        bodies = [body for body, _ in self._free[:: len(SIDES)]]
-        places = [
-            place
-            for place in self._finder.search(image, regions, PLACE_SCORE)
-            if all(place.fits(body) for body in bodies)
-        ]
+        places = self._finder.search(image, regions, PLACE_SCORE)
+        fitting = [one for one in places if all(one.fits(body) for body in self._bodies)]
         return [
             self._look_for_fingers(image, place) or SeenHand.at(place)
-            for place in places[:MOST_PLACES]
+            for place in fitting[:MOST_PLACES]
         ]
 
     def _detect(self, image: Image) -> Iterator[SeenHand]:
@@ -282,7 +258,7 @@ class HandTracker:
         followed: tuple[SeenHand, ...],
         bodies: Sequence[Body],
         time: float = 0.0,
-    ) -> HandsInFrame:
+    ) -> FrameLandmarks:
         """Return the hands in `image`, and the bodies with their wrists at these hands.
 
         Parameters
@@ -305,7 +281,7 @@ class HandTracker:
         self._arms = self._paces.update(self._free, time) if self._free else []
         return self._finish(image, followed)
 
-    def _finish(self, image: Image | None, followed: tuple[SeenHand, ...]) -> HandsInFrame:
+    def _finish(self, image: Image | None, followed: tuple[SeenHand, ...]) -> FrameLandmarks:
         """Assign hands to the arms of this frame; without an image nothing is searched."""
         if self._free:
             seen = self._on_arms(image, followed)
@@ -313,14 +289,16 @@ class HandTracker:
             alone = [replace(one, arm=None, carried=False) for one in followed]
             seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
+        bodies = [
+            _move_wrists(body, self._arms[2 * place : 2 * place + 2])
+            for place, body in enumerate(self._bodies)
+        ]
         hands = sorted(seen, key=lambda one: -one.hand.size)
-        return HandsInFrame(
+        return FrameLandmarks(
+            bodies[0] if bodies else None,
             tuple(one.hand for one in hands if one.shows_fingers),
+            tuple(bodies[1:]),
             tuple(one.hand for one in hands if not one.shows_fingers),
-            tuple(
-                _move_wrists(body, self._arms[2 * place : 2 * place + 2])
-                for place, body in enumerate(self._bodies)
-            ),
         )
 
     def _is_due(self) -> bool:
