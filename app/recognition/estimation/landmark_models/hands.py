@@ -332,12 +332,9 @@ class HandTracker:
         free, paces, time = self._free, self._arms, self._time
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
-        far = _find_far_arms(elsewhere, free, arms, paces)
         for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
             if place in arms:
                 pace.read = pace.read if arms[place].carried else time
-                pace.misses = 0
-            elif place in far:
                 pace.misses = 0
             elif image is not None and pace.is_due(time):
                 pace.read = time
@@ -351,6 +348,7 @@ class HandTracker:
                 pace.misses = 0 if place in arms else pace.misses + 1
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
         alone = [replace(one, arm=None, carried=False) for one in elsewhere]
+        far = _find_far_arms(elsewhere, free, arms, paces)
         for place, pace in enumerate(paces):
             one = arms.get(place) or far.get(place)
             pace.steer(one.hand if one else None, self._paces.seconds, parted=place in far)
