@@ -67,21 +67,50 @@ class View:
 
 
 class Scene:
-    """Everything that stays the same through a clip."""
+    """Everything that stays the same through a clip.
+
+    Parameters
+    ----------
+    diver, water, view, bubbles
+        Who is seen, and where.
+    seed
+        Of the backdrop.
+    body
+        The diver's body where it is known already; made from the diver's shape otherwise.
+    fineness
+        Rendered pixels per pixel along each axis.
+    light
+        Light on the diver, of which 1 is the usual one; less leaves a silhouette.
+
+    """
 
     def __init__(
-        self, diver: Diver, water: Water, view: View, bubbles: list[Bubble], seed: int
+        self,
+        diver: Diver,
+        water: Water,
+        view: View,
+        bubbles: list[Bubble],
+        seed: int,
+        *,
+        body: Body | None = None,
+        fineness: int = SUPERSAMPLING,
+        light: float = 1.0,
     ) -> None:
-        self.body = Body(diver.shape)
+        self.body = body or Body(diver.shape)
+        self.light = light
         self.suit, self.water, self.bubbles = diver.suit, water, bubbles
         self.skin = SkinMap(self.body)
         chest = (self.body.head_of("upperarm01.R") + self.body.head_of("upperarm01.L")) / 2
         self.camera = view.camera(chest, WIDTH, HEIGHT)
-        self._fine = view.camera(chest, WIDTH * SUPERSAMPLING, HEIGHT * SUPERSAMPLING)
+        self._fine = view.camera(chest, WIDTH * fineness, HEIGHT * fineness)
         self._backdrop = Backdrop(water, self.camera, seed)
         self._parts = kit_parts(self.body, self.skin, diver.kit)
         self._glass = mask_glass(self.skin)
         self._mouth = mouth(self.skin)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Take over colours that were given to vertices of `skin`."""
         self._triangles, self._colours = self._assemble()
 
     def _assemble(self) -> tuple[npt.NDArray[np.int64], Array]:
@@ -127,10 +156,7 @@ class Scene:
 
     def _diver_layer(self, joints: Joints, time: float) -> Array:
         """Draw the diver alone: RGB and coverage, supersampled, nothing where no diver is."""
-        points = np.concatenate(
-            [self.body.skin(joints)]
-            + [self._carry(joints, part.bone, part.vertices) for part in self._parts]
-        )
+        points = self._points(joints)
         fragments = rasterize(self._fine, points, self._triangles)
         layer = np.zeros((self._fine.height, self._fine.width, 4), np.float32)
         flat = layer.reshape(-1, 4)
@@ -142,6 +168,29 @@ class Scene:
     def pixels(self, points: Array) -> Array:
         """Give where points ``(N, 3)`` appear in the clip, ``(N, 2)`` pixels."""
         return self.camera.project(points)[0]
+
+    def measure_seen(self, joints: Joints, side: str) -> float:
+        """Return which share of a hand's pixels in the frame nothing hides, 0 to 1."""
+        points = self._points(joints)
+        prefixes = ("wrist", "finger", "metacarpal")
+        bones = [
+            number
+            for number, bone in enumerate(self.body.bones)
+            if bone.name.startswith(prefixes) and bone.name.endswith(side)
+        ]
+        on_hand = np.zeros(len(points), bool)
+        on_hand[: len(self.body.vertices)] = self.body.weights[:, bones].sum(axis=1) > 0.5
+        whole = self._triangles[on_hand[self._triangles].all(axis=1)]
+        seen = rasterize(self.camera, points, self._triangles).corners
+        alone = len(rasterize(self.camera, points, whole).pixel)
+        return float(on_hand[seen].all(axis=1).sum() / max(alone, 1))
+
+    def _points(self, joints: Joints) -> Array:
+        """Carry body and equipment into a pose, ``(V, 3)`` metres."""
+        return np.concatenate(
+            [self.body.skin(joints)]
+            + [self._carry(joints, part.bone, part.vertices) for part in self._parts]
+        )
 
     def _carry(self, joints: Joints, bone: str, vertices: Array) -> Array:
         number = self.body.index[bone]
@@ -162,7 +211,7 @@ class Scene:
         sun, fill = SUN.astype(np.float32), FILL.astype(np.float32)
         colour = _light(surface[:, :3], surface[:, 3:6], albedo, position, sun, fill, time)
         rise = (surface[:, 2] - position[2]) / fragments.depth
-        return self.water.haze(colour, fragments.depth, rise)
+        return self.water.haze(self.light * colour, fragments.depth, rise)
 
     def _add_glass(self, flat: Array, joints: Joints, fragments: Fragments) -> None:
         """Lay the mask's window over the face, with a slanting reflection."""

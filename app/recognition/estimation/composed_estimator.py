@@ -59,7 +59,7 @@ class TrackedHands:
 
     def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return up to two hands a person in `image`, larger first."""
-        return self._tracker.complete(image, self._tracker.follow(image), bodies)
+        return self._tracker.complete(image, self._tracker.follow(image), bodies).hands
 
     def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return up to two hands a person in `image` alone; tracking is left as it is."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Final
@@ -14,9 +13,9 @@ from app.recognition.estimation.landmark_models.arms import find_stray_wrist
 from app.recognition.estimation.landmark_models.body import BodyTracker
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE, BodyModel
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
+from app.recognition.estimation.landmark_models.hand_finder import HandFinder
+from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE, HandModel
 from app.recognition.estimation.landmark_models.hands import (
-    HAND_SIGNATURE,
-    HandModel,
     HandSearch,
     HandTracker,
 )
@@ -26,7 +25,7 @@ from app.recognition.estimation.landmark_models.onnx_session import (
     Signature,
     check_provider,
 )
-from app.recognition.models import ModelName, model_path
+from app.recognition.models import ModelName, finder_path, model_path
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2
@@ -104,9 +103,9 @@ class OnnxPoseEstimator:
             following = self._helper.submit(self._hands.follow, image, time)
             found = self._body.track(image, time)
             followed = following.result()
-        hands = self._hands.complete(image, followed, found.bodies, time)
-        self._body.seek(find_stray_wrist(hands, found.bodies))
-        return replace(found, hands=hands)
+        seen = self._hands.complete(image, followed, found.bodies, time)
+        self._body.seek(find_stray_wrist(seen.hands, seen.bodies))
+        return seen
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking.
@@ -118,8 +117,11 @@ class OnnxPoseEstimator:
 
         """
         check_image(image)
-        found, hands = self._body.examine(image), self._hands.renew()
-        return replace(found, hands=hands.complete(image, hands.follow(image), found.bodies))
+        return self._hands.examine(image, self._body.examine(image).bodies)
+
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what a search in it finds, and follow that from now on."""
+        return self._hands.adopt(image)
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands that move or hang once a second, on a machine too slow for its camera."""
@@ -154,7 +156,12 @@ def hand_tracker(
     """Load MediaPipe's hand models; see `OnnxPoseEstimator` for parameters and errors."""
     load = partial(_session, models, threads, provider)
     palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
-    return HandTracker(palms, HandModel(load("hand_landmark_full", HAND_SIGNATURE)), search)
+    model = HandModel(load("hand_landmark_full", HAND_SIGNATURE))
+    taught = finder_path() if search == "pose" else None
+    if taught is None:
+        return HandTracker(palms, model, search)
+    session = ModelSession(taught, PALM_LAYOUT.signature, threads=threads, provider=provider)
+    return HandTracker(palms, model, search, HandFinder(Detector(session, PALM_LAYOUT)))
 
 
 def _session(

@@ -35,6 +35,15 @@ class Sparing(Protocol):
         ...
 
 
+@runtime_checkable
+class Adopter(Protocol):
+    """Interface of estimators that can search the last frame for further hands."""
+
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what examinations of it, and a search in it, have found."""
+        ...
+
+
 class WaterSight:
     """Corrects the water in frames, in order, and lets an estimator find the landmarks in them.
 
@@ -83,7 +92,9 @@ class WaterSight:
         if not choice.needs_examination(found):
             return found
         examined = {one: estimator.examine(apply_correction(image, one)) for one in CORRECTIONS}
-        if not choice.choose(examined):
-            return found
-        estimator.reset()
-        return estimator.estimate(apply_correction(image, choice.correction), time)
+        if choice.choose(examined):
+            estimator.reset()
+            found = estimator.estimate(apply_correction(image, choice.correction), time)
+        if isinstance(estimator, Adopter):
+            return estimator.adopt(apply_correction(image, choice.correction))
+        return found

@@ -107,7 +107,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "too_small": "The movement is too small for {label}{also}. Show it larger.",
     "keypoints_jumped": "Keypoints jumped in {frames}. Film nearer, or in better light.",
     "mixed": "Left and right were mixed in {frames}. Film it in better light.",
-    "no_hand": "No hand is seen, but its shape counts. Show the hand nearer.",
+    "no_hand": "No fingers are seen, but their shape counts. Gloves? Show the hand nearer.",
     "other_person": "Another person's body was read in {frames}. Film one diver alone.",
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",
     "not_seen": "The arm is not seen in {frames}. Film all of it.",

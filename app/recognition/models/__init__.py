@@ -8,6 +8,7 @@ from app.recognition.models.catalogue import ModelName, TaskBundleName
 from app.recognition.models.storage import (
     InstalledModel,
     export_models,
+    finder_path,
     install_models,
     installed_models,
     model_path,
@@ -20,6 +21,7 @@ __all__ = [
     "ModelName",
     "TaskBundleName",
     "export_models",
+    "finder_path",
     "install_models",
     "installed_models",
     "model_path",

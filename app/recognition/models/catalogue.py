@@ -58,6 +58,13 @@ MODELS: Final[dict[ModelName, InstalledFile]] = {
 }
 """The ONNX models, part of every release; their conversion is deterministic (`release.models`)."""
 
+HAND_FINDER: Final = InstalledFile(
+    "hand_finder",
+    "hand_finder.onnx",
+    "afbc627d2c9fbc06768863b63f497810b3caf5ff2de205402f32f20899c735aa",
+)
+"""The finder of divers' hands, part of the package itself; its card lies beside it."""
+
 TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = {
     "pose_landmarker_full": InstalledFile(
         "pose_landmarker_full",

@@ -15,6 +15,7 @@ from typing import Final, Literal
 
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
+    HAND_FINDER,
     INSTALLED_FILES,
     MODELS,
     PACKAGED_FILES,
@@ -33,6 +34,9 @@ DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 
 PACKAGED: Final = Path(__file__).parent / "files"
 """The package's own folder: a wheel has the models there, a checkout after `make models`."""
+
+TAUGHT: Final = Path(__file__).parent / "taught"
+"""Folder of the model that is the project's own; git has it."""
 
 Progress = Callable[[str, int, int], None]
 """Called with a file's name, the files done and their number; may raise to cancel."""
@@ -103,17 +107,39 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
     return verify_models(TASK_BUNDLES[name], directory or models_dir())
 
 
+def finder_path() -> Path | None:
+    """Return the path of the finder of divers' hands; None where there is none.
+
+    One in the models folder, taught by a team itself, comes before the package's own.
+
+    Raises
+    ------
+    ModelError
+        When the package's own is truncated or altered.
+
+    """
+    own = models_dir() / HAND_FINDER.filename
+    if own.exists():
+        return own
+    if file_state(HAND_FINDER, TAUGHT) == "missing":
+        return None
+    return verify_models(HAND_FINDER, TAUGHT)
+
+
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
     """Return every file of a models folder with its state; damaged files raise no error.
 
-    The bundles, which few need, are listed where they are present.
+    The bundles, which few need, are listed where they are present. Without a folder the finder of
+    hands, which lies in the package, is listed too.
     """
+    finder = () if directory else ((HAND_FINDER, TAUGHT),)
     directory = directory or models_dir()
+    files = *((file, directory) for file in INSTALLED_FILES), *finder
     return tuple(
-        InstalledModel(file.name, path, _size(path), file_state(file, directory))
-        for file in INSTALLED_FILES
-        for path in [directory / file.filename]
-        if file in PACKAGED_FILES or path.exists()
+        InstalledModel(file.name, path, _size(path), file_state(file, place))
+        for file, place in files
+        for path in [place / file.filename]
+        if file not in TASK_BUNDLES.values() or path.exists()
     )
 
 

@@ -51,7 +51,8 @@ class Hand:
     Attributes
     ----------
     xy
-        ``(21, 2)`` pixels, x right, y down, in the order of `HAND_LANDMARKS`.
+        ``(21, 2)`` pixels, x right, y down, in the order of `HAND_LANDMARKS`. NaN: not known, as
+        the fingers in `FrameLandmarks.places`.
     side
         The person's left or right hand, as the model sees it.
     score
@@ -66,7 +67,7 @@ class Hand:
     @property
     def size(self) -> float:
         """Diagonal of the landmarks' bounding box in pixels."""
-        return float(np.linalg.norm(self.xy.max(axis=0) - self.xy.min(axis=0)))
+        return float(np.linalg.norm(np.nanmax(self.xy, axis=0) - np.nanmin(self.xy, axis=0)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +82,16 @@ class FrameLandmarks:
         Up to two hands of each person seen, the larger first.
     others
         The bodies of other people in the frame.
+    places
+        Hands that are seen without their fingers, in gloves for instance: only the wrist and, at
+        the middle finger's, the knuckles are known. They show no salute and no hand shape.
 
     """
 
     body: Body | None
     hands: tuple[Hand, ...]
     others: tuple[Body, ...] = ()
+    places: tuple[Hand, ...] = ()
 
     @property
     def bodies(self) -> tuple[Body, ...]:

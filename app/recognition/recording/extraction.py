@@ -244,6 +244,7 @@ class _Collector:
         self._landmarks, self._hands_sought = list_landmarks(estimator), finds_hands(estimator)
         self._moments: list[PoseSequence] = []
         self._hands: list[tuple[Hand, ...]] = []
+        self._with_place = 0
         self._crowded: dict[int, FrameLandmarks] = {}
         self._times: list[float] = []
         self._people = People()
@@ -256,6 +257,7 @@ class _Collector:
         self._times.append(time)
         self._moments.append(self._build_moment(time, found))
         self._hands.append(_sort_hands(found))
+        self._with_place += bool(found.places and not found.hands)
 
     def recording(self, warnings: tuple[str, ...]) -> Recording:
         """Return the recording of the person whose body counts, chosen over all frames so far."""
@@ -281,7 +283,9 @@ class _Collector:
             ),
             people=choice.count,
             salute_warnings=tuple(
-                explain_missing_salutes(poses, choice.salute, hands) if self._hands_sought else ()
+                explain_missing_salutes(poses, choice.salute, hands, self._with_place)
+                if self._hands_sought
+                else ()
             ),
         )
 

@@ -373,7 +373,10 @@ def _check_shape(hand_xy: FloatArray) -> FloatArray:
 
 
 def explain_missing_salutes(
-    poses: PoseSequence, scores: FloatArray, hands: Sequence[Sequence[Hand]]
+    poses: PoseSequence,
+    scores: FloatArray,
+    hands: Sequence[Sequence[Hand]],
+    without_fingers: int = 0,
 ) -> Iterator[str]:
     """Yield why a take has no salutes around it, with a remedy; nothing where both were held.
 
@@ -385,9 +388,12 @@ def explain_missing_salutes(
         ``(T,)`` scores of the best hand in each frame.
     hands
         Per frame the hands that were found.
+    without_fingers
+        Number of the other frames in which the place of a hand was found.
 
     """
     frames, with_hand = len(hands), sum(map(bool, hands))
+    seen = with_hand + without_fingers
     facing = Trajectory.from_poses(poses).facing if poses.seen.any() else None
     if scores.max(initial=0.0) > ENTER_SCORE:
         yield from describe_missed_salute(poses.time, scores, hands)
@@ -395,6 +401,11 @@ def explain_missing_salutes(
         yield (
             f"no salute in any of {frames} frames: the diver is turned {abs(facing):.0f} degrees "
             "away; face the camera"
+        )
+    elif with_hand < FEW_HANDS * frames <= seen:
+        yield (
+            f"hands seen in {seen / frames:.0%} of {frames} frames, their fingers in "
+            f"{with_hand / frames:.0%}: gloves? Choose a trigger of the arms"
         )
     elif not with_hand:
         yield (

@@ -55,6 +55,24 @@ def test_what_lies_in_its_box_is_found() -> None:
     assert (score.off.correct, score.off.asked) == (1, 2)
 
 
+def test_a_hand_without_fingers_has_a_place_only() -> None:
+    xy = np.full((21, 2), np.nan)
+    xy[[0, 5, 9]] = (44, 42), (46, 48), (46, 48)
+    found = FrameLandmarks(None, (hand_at(80, 80),), places=(Hand(xy, "left", 0.8),))
+    score = score_still({"Hand": HANDS}, found)
+    assert (score.hand.correct, score.place.correct, score.place.asked) == (0, 1, 2)
+    assert (score.wrong.correct, score.wrong.asked) == (1, 2)
+
+
+def test_a_wrist_is_right_near_its_hand_in_body_sizes() -> None:
+    xy = np.full((33, 2), 15.0)
+    xy[[11, 12, 23, 24]] = (10, 0), (20, 0), (10, 100), (20, 100)
+    body = Body(xy, np.ones(33), 1.0)
+    boxes = {"Hand": np.array([[[10.0, 35.0], [20.0, 45.0]], [[10.0, 60.0], [20.0, 70.0]]])}
+    score = score_still(boxes, FrameLandmarks(body, ()))
+    assert (score.wrist.correct, score.wrist.asked) == (1, 2)
+
+
 def test_what_nobody_drew_a_box_around_is_not_asked_for() -> None:
     assert score_still({}, FrameLandmarks(body_at(1, 1), ())) == Score()
     missed = score_still({"Diver": DIVER}, FrameLandmarks(None, ()))

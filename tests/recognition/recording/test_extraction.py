@@ -83,6 +83,15 @@ class SeeingEstimator(ScriptedEstimator):
         return super().estimate(image, time)
 
 
+class GlovedEstimator(ScriptedEstimator):
+    """Sees a hand in every frame, without its fingers."""
+
+    def estimate(self, image: Image, time: float) -> FrameLandmarks:
+        xy = np.full((21, 2), np.nan)
+        xy[[0, 5, 9, 13, 17]] = FLAT_HAND[[0, 5, 9, 13, 17]]
+        return replace(super().estimate(image, time), places=(Hand(xy, "right", 0.9),))
+
+
 @pytest.fixture
 def murky_clip(tmp_path: Path) -> Path:
     """Return a clip of a slope from one grey to another a little lighter one."""
@@ -153,6 +162,15 @@ def test_a_clip_in_which_fingers_cannot_be_told_advises_a_trigger_of_the_arms(cl
     )
     many = record(clip, estimator=ScriptedEstimator(with_flat_hand=frozenset(range(20))))
     assert "no salute in any of 20 frames" in many.salute_warnings[0]
+
+
+def test_a_clip_of_gloves_tells_that_hands_are_seen_and_fingers_are_not(clip: Path) -> None:
+    gloved = record(clip, estimator=GlovedEstimator(with_flat_hand=frozenset({3})))
+    assert gloved.salute_warnings == (
+        "hands seen in 100% of 20 frames, their fingers in 5%: gloves? Choose a trigger of the "
+        "arms",
+    )
+    assert sum(map(bool, gloved.hands)) == 1
 
 
 @pytest.mark.withstands(row="H11")

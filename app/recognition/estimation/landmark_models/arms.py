@@ -80,6 +80,18 @@ RAISED: Final = 0.25
 SAME_ARM: Final = 1.0
 """Largest movement of a wrist between two frames, in body sizes, by which it is the same arm."""
 
+FAR: Final = 2.0
+"""Largest distance between a wrong wrist of the pose and the hand, in body sizes: in dark water, of
+near divers, the pose misses by up to 1.6 in three of four photographs."""
+
+DOUBTED: Final = 0.7
+"""Visibility of a wrist below which a hand without fingers may be elsewhere: of wrists in clear
+water that are right nine in ten have more, in dark water most are wrong and have less."""
+
+STEER_SECONDS: Final = 0.2
+"""Time in which a wrist goes over from the pose's to its hand's, or back: no jump looks like a
+stroke."""
+
 Arm = tuple[Body, Side]
 """An arm of one of the bodies in an image."""
 
@@ -104,6 +116,9 @@ class ArmPace:
         Searches in vain since its hand was seen last.
     slow
         Time at which the wrist was slow last.
+    lead, offset, belief
+        Share from 0 to 1 with which the hand's wrist counts instead of the pose's, how far it was
+        from it when it was seen last, ``(2,)`` pixels, and the hand's score; see `steer`.
 
     """
 
@@ -115,6 +130,41 @@ class ArmPace:
     forearm_searched: float = -np.inf
     slow: float = -np.inf
     misses: int = 0
+    lead: float | None = None
+    offset: FloatArray = field(default_factory=lambda: np.zeros(2))
+    belief: float = 0.0
+
+    @property
+    def steered(self) -> FloatArray:
+        """``(2,)`` the wrist that counts: the pose's, the hand's, or on the way between them."""
+        return self.wrist + self.lead * self.offset if self.lead else self.wrist
+
+    def has(self, hand: Hand) -> bool:
+        """Return whether a hand is where the arm's hand was seen last, to a palm."""
+        was = self.wrist - self.shift + self.offset
+        far = float(np.linalg.norm(hand.xy[0] - was))
+        return bool(self.lead) and far <= palm_size(hand.xy)
+
+    def steer(self, hand: Hand | None, seconds: float, *, parted: bool) -> None:
+        """Let the wrist go over to the hand while both are parted, and come back otherwise.
+
+        In the first frame with the arm it is there at once.
+
+        Parameters
+        ----------
+        hand
+            The hand that belongs to the arm; None: not seen.
+        seconds
+            Time since the last frame.
+        parted
+            Whether the hand is away from the pose's wrist.
+
+        """
+        if hand is not None:
+            self.offset, self.belief = hand.xy[0] - self.wrist, hand.score
+        step = 1.0 if self.lead is None else seconds / STEER_SECONDS
+        lead = self.lead or 0.0
+        self.lead = lead + float(np.clip(parted - lead, -step, step))
 
     def is_due(self, time: float) -> bool:
         """Return whether its hand should be looked at in a frame taken at `time` seconds."""
@@ -151,17 +201,20 @@ class ArmPaces:
     spares
         Whether the machine is too slow for a camera: a hand that moves or hangs is then looked at
         once a second. One that is held up may salute.
+    seconds
+        Time between the last two frames.
 
     """
 
     def __init__(self, *, spares: bool = False) -> None:
         self.spares = spares
+        self.seconds = np.inf
         self._arms: list[ArmPace] = []
         self._time = -np.inf
 
     def update(self, arms: Sequence[Arm], time: float) -> list[ArmPace]:
         """Return the pace of each arm in a frame taken at `time` seconds."""
-        seconds = time - self._time
+        seconds = self.seconds = time - self._time
         known = self._arms if seconds > 0 else []
         self._time, self._arms = time, []
         for body, side in arms:
@@ -247,6 +300,25 @@ def wrist_distance(hand: Hand, body: Body, side: Side) -> float:
     """Return the distance between the hand's wrist and the arm's, in sizes of the hand's palm."""
     wrist = body.xy[POSE_LANDMARKS.index(f"{side}_wrist")]
     return float(np.linalg.norm(hand.xy[0] - wrist)) / max(palm_size(hand.xy), 1e-9)
+
+
+def find_far_arm(hand: Hand, arms: Sequence[Arm]) -> int | None:
+    """Return which of several arms a hand belongs to whose pose is wrong; None: none is near."""
+    far = np.array(
+        [
+            np.linalg.norm(hand.xy[0] - body.xy[POSE_LANDMARKS.index(f"{side}_wrist")])
+            / max(measure_body(body), 1e-9)
+            for body, side in arms
+        ]
+    )
+    # The comparison is False for NaN.
+    near = np.flatnonzero(far <= FAR)
+    return int(near[far[near].argmin()]) if len(near) else None
+
+
+def is_doubtful(body: Body, side: Side) -> bool:
+    """Return whether the pose itself is not sure of an arm's wrist."""
+    return bool(body.visibility[POSE_LANDMARKS.index(f"{side}_wrist")] < DOUBTED)
 
 
 def find_owner(hand: Hand, bodies: Sequence[Body]) -> int | None:

@@ -31,6 +31,7 @@ HAND_SHIFT: Final = 0.1
 """Side of the next frame's region over that of the box of a hand's landmarks, and its shift."""
 
 WRIST, INDEX_KNUCKLE, MIDDLE_KNUCKLE, RING_KNUCKLE, PINKY_KNUCKLE = 0, 5, 9, 13, 17
+KNUCKLES: Final = (INDEX_KNUCKLE, MIDDLE_KNUCKLE, RING_KNUCKLE, PINKY_KNUCKLE)
 
 STEADY: Final = (0, 1, 2, 3, 5, 6, 9, 10, 13, 14, 17, 18)
 """Landmarks that bound the region: the palm and the fingers' first joints, slower than the tips."""

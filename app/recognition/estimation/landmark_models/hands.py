@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections import deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final, Literal
 
 import numpy as np
@@ -15,41 +16,30 @@ from app.recognition.estimation.landmark_models.arms import (
     Arm,
     ArmPace,
     ArmPaces,
+    find_far_arm,
+    is_doubtful,
     region_of_wrist,
     regions_of_forearm,
     wrist_distance,
 )
 from app.recognition.estimation.landmark_models.detector import Detector
-from app.recognition.estimation.landmark_models.hand_regions import (
-    box_of,
-    palm_size,
-    region_of_hand,
-    region_of_palm,
+from app.recognition.estimation.landmark_models.hand_finder import (
+    HandFinder,
+    HandPlace,
+    parts_of,
 )
-from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
-from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
-from app.recognition.estimation.landmark_models.suppression import measure_overlaps
-from app.recognition.poses.frame import SIDES, Body, Hand, Image, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS
-
-INPUT_SIZE: Final = 224
-"""Side of the landmark model's input in pixels."""
-
-HAND_SIGNATURE: Final = Signature(
-    INPUT_SIZE, outputs=((1, 3 * len(HAND_LANDMARKS)), (1, 1), (1, 1))
+from app.recognition.estimation.landmark_models.hand_model import (
+    HandModel,
+    SeenHand,
+    find_duplicates,
 )
-"""Landmarks (x, y, z), probability of a hand, probability that it is a right one."""
+from app.recognition.estimation.landmark_models.hand_regions import region_of_palm
+from app.recognition.estimation.landmark_models.region import Region
+from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side
+from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 MOST_HANDS: Final = 2
 """Most hands of one person; each costs a run of the landmark model per frame."""
-
-LEAST_PRESENCE: Final = 0.5
-"""Least probability of a hand; MediaPipe's default minimum presence confidence."""
-
-WORTH_A_SECOND_LOOK: Final = 0.1
-"""Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
-hand that is off centre scores between this and 0.5, no hand below 0.01. Replaces the re-crop model
-of MediaPipe Holistic."""
 
 SAME_REGION: Final = 0.5
 """Overlap above which a candidate is a hand that is tracked already (MediaPipe's default)."""
@@ -61,97 +51,47 @@ detection costs as much as the body model."""
 FOREARM_SECONDS: Final = 0.4
 """Seconds between searches at the end of a forearm, which cost up to four looks."""
 
+LONG_LOST, LOST_FACTOR = 8, 2
+"""Searches in vain after which the forearm is searched less often by this factor: the time goes
+to the finder."""
+
 SURE: Final = 0.8
 """Presence from which a hand is certain. Below it, most results at the end of a forearm, or of the
 palm detector away from the body's arms, are no hands. While a tracked hand is below it, palms are
 detected even with two tracked hands, because one of them may be false."""
 
-DUPLICATE_DISTANCE: Final = 0.2
-DUPLICATE_LANDMARKS: Final = 10
-DUPLICATE_OVERLAP: Final = 0.2
-"""Two hands are one if at least this number of landmarks lies within this share of the palm's size
-of each other and their boxes overlap by more than this; MediaPipe found the three values by
-experiment."""
+PLACE_SCORE: Final = 0.5
+"""Least score of a place of a hand that is new."""
+
+KEPT_SCORE: Final = 0.3
+"""Least score of a place at which a hand was in the frame before."""
+
+MOST_PLACES: Final = 3
+"""Places at which fingers are looked for in a search."""
+
+MOST_NOTED: Final = 8
+"""Hands of examinations that are kept until they are followed."""
+
+SAME_PLACE: Final = 0.5
+"""Distance of the middles of two hands, over the larger one's size, below which they are one; for
+hands of which only the place is seen."""
+
+FINGERS_SECONDS: Final = 0.3
+"""Seconds between two looks for the fingers of a hand of which only the place is seen."""
+
+FINGERS_PRESENCE: Final = 0.8
+"""Least presence of a hand whose fingers are seen at a place."""
+
+FINGERS_SCALE: Final = 1.1
+"""Side of the region in which fingers are looked for, over the side of the place's box."""
+
+QUARTERS: Final = 4
+"""Quarter turns in which fingers are looked for, another one at each look: a glove does not show
+which way it points."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
 detector; or with the palm detector alone, as MediaPipe's hand landmarker."""
-
-
-@dataclass(frozen=True, eq=False)
-class SeenHand:
-    """A hand of this frame.
-
-    Attributes
-    ----------
-    hand
-        Its landmarks.
-    following
-        Its region in the next frame.
-    fresh
-        Whether it was not tracked from the frame before.
-    arm
-        The arm that it is at the end of; None: none, or not known yet.
-    carried
-        Whether it was not looked at in this frame, but is where its arm carried it.
-
-    """
-
-    hand: Hand
-    following: Region
-    fresh: bool = False
-    arm: ArmPace | None = None
-    carried: bool = False
-
-    def carry(self) -> SeenHand:
-        """Return the hand where the movement of its arm in the last frame has carried it."""
-        if self.arm is None:
-            return self
-        dx, dy = self.arm.shift
-        moved = replace(self.hand, xy=self.hand.xy + self.arm.shift)
-        region = self.following
-        return replace(
-            self, hand=moved, following=replace(region, x=region.x + dx, y=region.y + dy)
-        )
-
-
-class HandModel:
-    """The hand landmark model (Zhang et al. 2020, MediaPipe Hands).
-
-    Parameters
-    ----------
-    session
-        The model, loaded with `HAND_SIGNATURE`.
-
-    """
-
-    def __init__(self, session: ModelSession) -> None:
-        self._session = session
-
-    def look(self, image: Image, region: Region) -> SeenHand | None:
-        """Return the hand in a usable `region` of `image`, or None where the model finds none."""
-        seen = self._landmarks(image, region)
-        return seen if seen.hand.score >= LEAST_PRESENCE else None
-
-    def look_twice(self, image: Image, region: Region) -> SeenHand | None:
-        """Return the hand near a `region`, which need not fit it well.
-
-        If the first run finds something, a second one at the region of its landmarks decides.
-        """
-        first = self._landmarks(image, region)
-        if not first.hand.score >= WORTH_A_SECOND_LOOK or not first.following.usable:
-            return None
-        return self.look(image, first.following)
-
-    def _landmarks(self, image: Image, region: Region) -> SeenHand:
-        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._session.pixels)
-        raw, presence, right = self._session.run()
-        points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
-        xy = region.to_image(points, INPUT_SIZE)
-        # The model was trained on mirrored selfies and renamed since: in an unmirrored image
-        # this output is the probability of the person's own right hand.
-        side: Side = "right" if right[0, 0] > 0.5 else "left"
-        return SeenHand(Hand(xy, side, min(float(presence[0, 0]), 1.0)), region_of_hand(xy))
 
 
 class HandTracker:
@@ -176,14 +116,25 @@ class HandTracker:
         The hand landmark model.
     search
         How to find untracked hands.
+    finder
+        Finds hands whose fingers need not be seen; None: only hands with fingers are found. It
+        looks where an image is examined, and in turn with the palm detector.
 
     """
 
-    def __init__(self, palms: Detector, model: HandModel, search: HandSearch) -> None:
+    def __init__(
+        self,
+        palms: Detector,
+        model: HandModel,
+        search: HandSearch,
+        finder: HandFinder | None = None,
+    ) -> None:
         self._palms = palms
         self._model = model
         self._search = search
+        self._finder = finder
         self._spares = False
+        self._noted: deque[SeenHand] = deque(maxlen=MOST_NOTED)
         self.reset()
 
     def reset(self) -> None:
@@ -191,6 +142,11 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
+        self._turn = self._quarter = 0
+        self._bodies: tuple[Body, ...] = ()
+        self._free: list[Arm] = []
+        self._arms: list[ArmPace] = []
+        self._time = 0.0
         self._paces = ArmPaces(spares=self._spares)
 
     def spare(self, *, spares: bool) -> None:
@@ -199,7 +155,32 @@ class HandTracker:
 
     def renew(self) -> Self:
         """Return a tracker with the same models that has seen nothing yet."""
-        return type(self)(self._palms, self._model, self._search)
+        return type(self)(self._palms, self._model, self._search, self._finder)
+
+    def examine(self, image: Image, bodies: Sequence[Body]) -> FrameLandmarks:
+        """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
+        alone = self.renew()
+        found = alone.complete(image, alone.follow(image), bodies)
+        self._noted.extend(alone._tracked)
+        return found
+
+    def adopt(self, image: Image) -> FrameLandmarks:
+        """Return the last frame with what examinations of it, and the finder in it, have found.
+
+        It is followed from now on.
+
+        Parameters
+        ----------
+        image
+            The last frame, corrected as the next ones will be.
+
+        """
+        tracked = list(self._tracked)
+        for one in (*_by_belief(self._noted), *self._search_places(image, parts_of(image))):
+            if not _known(one, tracked):
+                tracked.append(replace(one, arm=None, fresh=False))
+        self._noted.clear()
+        return self._finish(None, tuple(tracked))
 
     def follow(self, image: Image, time: float = 0.0) -> tuple[SeenHand, ...]:
         """Return the hands in `image`, taken at `time` seconds, by tracking and palm detection.
@@ -211,14 +192,65 @@ class HandTracker:
             if tracked.arm is not None and not tracked.arm.is_due(time):
                 kept.append(replace(tracked, carried=True, fresh=False))
                 continue
-            seen = self._model.look(image, tracked.following)
+            seen = self._look_again(image, tracked, time)
             if seen is not None and not _known(seen, kept):
                 kept.append(seen)
-        for region in self._detect_palms(image):
-            seen = self._model.look(image, region)
-            if seen is not None and not _known(seen, kept):
+        for seen in self._detect(image):
+            if not _known(seen, kept):
                 kept.append(replace(seen, fresh=True))
         return tuple(kept)
+
+    def _look_again(self, image: Image, tracked: SeenHand, time: float) -> SeenHand | None:
+        """Return a tracked hand in the next frame; without its fingers where these are lost."""
+        if tracked.shows_fingers:
+            seen = self._model.look(image, tracked.following)
+            if seen is not None:
+                return replace(seen, box=tracked.box)
+        if tracked.box is None or self._finder is None:
+            return None
+        box = replace(tracked.box, x=tracked.following.x, y=tracked.following.y)
+        place = self._finder.look(image, box, KEPT_SCORE)
+        if place is None:
+            return None
+        if time - tracked.looked < FINGERS_SECONDS:
+            return SeenHand.at(place, tracked.looked)
+        return self._look_for_fingers(image, place) or SeenHand.at(place, time)
+
+    def _look_for_fingers(self, image: Image, place: HandPlace) -> SeenHand | None:
+        """Return the hand at a place with its landmarks, None where they are not seen."""
+        box = place.box
+        self._quarter = (self._quarter + 1) % QUARTERS
+        rotation = box.rotation + self._quarter * np.pi / 2
+        region = replace(box, side=FINGERS_SCALE * box.side, rotation=rotation)
+        seen = self._model.look_twice(image, region)
+        if seen is None or seen.hand.score < FINGERS_PRESENCE:
+            return None
+        return replace(seen, box=box) if _known(seen, [SeenHand.at(place)]) else None
+
+    def _search_places(self, image: Image, regions: Iterable[Region]) -> list[SeenHand]:
+        """Return the hands, with or without fingers, that the finder finds in regions."""
+        if self._finder is None:
+            return []
+        places = self._finder.search(image, regions, PLACE_SCORE)
+        fitting = [one for one in places if all(one.fits(body) for body in self._bodies)]
+        return [
+            self._look_for_fingers(image, place) or SeenHand.at(place)
+            for place in fitting[:MOST_PLACES]
+        ]
+
+    def _detect(self, image: Image) -> Iterator[SeenHand]:
+        """Yield untracked hands: every few frames, by the palm detector or the finder in turn."""
+        if not self._is_due():
+            return
+        self._turn += 1
+        if self._finder is not None and not self._tracked and self._turn % 2 == 0:
+            parts = parts_of(image)
+            yield from self._search_places(image, [parts[self._turn // 2 % len(parts)]])
+            return
+        for region in self._detect_palms(image):
+            seen = self._model.look(image, region)
+            if seen is not None:
+                yield seen
 
     def complete(
         self,
@@ -226,8 +258,8 @@ class HandTracker:
         followed: tuple[SeenHand, ...],
         bodies: Sequence[Body],
         time: float = 0.0,
-    ) -> tuple[Hand, ...]:
-        """Return the hands in `image`, larger first.
+    ) -> FrameLandmarks:
+        """Return the hands in `image`, and the bodies with their wrists at these hands.
 
         Parameters
         ----------
@@ -242,23 +274,46 @@ class HandTracker:
 
         """
         self._most = MOST_HANDS * max(1, len(bodies))
-        if self._search == "pose" and bodies:
-            seen = self._on_arms(image, followed, bodies, time)
+        self._bodies, self._time = tuple(bodies), time
+        self._free = (
+            [(body, side) for body in bodies for side in SIDES] if self._search == "pose" else []
+        )
+        self._arms = self._paces.update(self._free, time) if self._free else []
+        return self._finish(image, followed)
+
+    def _finish(self, image: Image | None, followed: tuple[SeenHand, ...]) -> FrameLandmarks:
+        """Assign hands to the arms of this frame; without an image nothing is searched."""
+        if self._free:
+            seen = self._on_arms(image, followed)
         else:
             alone = [replace(one, arm=None, carried=False) for one in followed]
             seen, self._until_palms = self._most_believed(alone), 0
         self._tracked = tuple(one for one in seen if one.following.usable)
-        return tuple(sorted((one.hand for one in seen), key=lambda hand: -hand.size))
+        bodies = [
+            _move_wrists(body, self._arms[2 * place : 2 * place + 2])
+            for place, body in enumerate(self._bodies)
+        ]
+        hands = sorted(seen, key=lambda one: -one.hand.size)
+        return FrameLandmarks(
+            bodies[0] if bodies else None,
+            tuple(one.hand for one in hands if one.shows_fingers),
+            tuple(bodies[1:]),
+            tuple(one.hand for one in hands if not one.shows_fingers),
+        )
+
+    def _is_due(self) -> bool:
+        """Return whether untracked hands are looked for in this frame, where some may be."""
+        if sum(one.hand.score >= SURE for one in self._tracked) >= self._most:
+            return False
+        self._until_palms -= 1
+        if self._until_palms >= 0:
+            return False
+        self._until_palms = PALM_PAUSE - 1
+        return True
 
     def _detect_palms(self, image: Image) -> list[Region]:
-        """Return the regions of palms that are not tracked yet, where some may be."""
+        """Return the regions of palms that are not tracked yet."""
         tracked = [one.following for one in self._tracked]
-        if sum(one.hand.score >= SURE for one in self._tracked) >= self._most:
-            return []
-        if self._until_palms > 0:
-            self._until_palms -= 1
-            return []
-        self._until_palms = PALM_PAUSE - 1
         proposals = [region_of_palm(palm) for palm in self._palms.detect(image)[: self._most]]
         return [
             proposal
@@ -267,26 +322,24 @@ class HandTracker:
             and not any(proposal.overlap(region) > SAME_REGION for region in tracked)
         ]
 
-    def _on_arms(
-        self, image: Image, followed: tuple[SeenHand, ...], bodies: Sequence[Body], time: float
-    ) -> tuple[SeenHand, ...]:
+    def _on_arms(self, image: Image | None, followed: tuple[SeenHand, ...]) -> tuple[SeenHand, ...]:
         """Assign each arm the hand at its end, searching there if none was followed.
 
         Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
         people whose body is not seen, or where the pose is wrong) compete with those at the arms by
-        score.
+        score; such an arm's wrist goes to its hand.
         """
-        free = [(body, side) for body in bodies for side in SIDES]
-        paces = self._paces.update(free, time)
+        free, paces, time = self._free, self._arms, self._time
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
         for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
             if place in arms:
                 pace.read = pace.read if arms[place].carried else time
                 pace.misses = 0
-            elif pace.is_due(time):
+            elif image is not None and pace.is_due(time):
                 pace.read = time
-                with_forearm = time - pace.forearm_searched >= FOREARM_SECONDS
+                rarer = LOST_FACTOR if pace.misses > LONG_LOST else 1
+                with_forearm = time - pace.forearm_searched >= rarer * FOREARM_SECONDS
                 if with_forearm:
                     pace.forearm_searched = time
                 seen = self._search_arm(image, body, side, with_forearm=with_forearm)
@@ -295,6 +348,10 @@ class HandTracker:
                 pace.misses = 0 if place in arms else pace.misses + 1
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
         alone = [replace(one, arm=None, carried=False) for one in elsewhere]
+        far = _find_far_arms(elsewhere, free, arms, paces)
+        for place, pace in enumerate(paces):
+            one = arms.get(place) or far.get(place)
+            pace.steer(one.hand if one else None, self._paces.seconds, parted=place in far)
         return self._most_believed((*at_arms, *alone))
 
     def _most_believed(self, seen: Iterable[SeenHand]) -> tuple[SeenHand, ...]:
@@ -340,18 +397,53 @@ def _sort_by_arm(
     return arms, elsewhere
 
 
+def _find_far_arms(
+    elsewhere: Iterable[SeenHand],
+    free: Sequence[Arm],
+    arms: Mapping[int, SeenHand],
+    paces: Sequence[ArmPace],
+) -> dict[int, SeenHand]:
+    """Assign hands that are away from all arms to arms without a hand, whose pose is then wrong.
+
+    An arm keeps the hand that it had in the frame before, where that one is still the nearest to
+    its wrist as it was.
+    """
+    far: dict[int, SeenHand] = {}
+    for one in elsewhere:
+        vacant = [place for place in range(len(free)) if place not in arms and place not in far]
+        if not one.shows_fingers:
+            vacant = [place for place in vacant if is_doubtful(*free[place])]
+        kept = [place for place in vacant if paces[place].has(one.hand)]
+        among = kept or vacant
+        found = find_far_arm(one.hand, [free[place] for place in among])
+        if found is not None:
+            far[among[found]] = one
+    return far
+
+
+def _move_wrists(body: Body, paces: Sequence[ArmPace]) -> Body:
+    """Return a body with its wrists where its hands are; see `ArmPace.steer`."""
+    if not any(pace.lead for pace in paces):
+        return body
+    xy, visibility = body.xy.copy(), body.visibility.copy()
+    for pace in paces:
+        row = POSE_LANDMARKS.index(f"{pace.side}_wrist")
+        xy[row] = pace.steered
+        visibility[row] = max(visibility[row], (pace.lead or 0.0) * pace.belief)
+    return replace(body, xy=xy, visibility=visibility)
+
+
 def _by_belief(seen: Iterable[SeenHand]) -> list[SeenHand]:
-    return sorted(seen, key=lambda one: -one.hand.score)
+    """Return hands with their fingers before those without, and each by score."""
+    return sorted(seen, key=lambda one: (not one.shows_fingers, -one.hand.score))
 
 
 def _known(seen: SeenHand, others: Iterable[SeenHand]) -> bool:
-    return any(find_duplicates(seen.hand, one.hand) for one in others)
+    return any(_is_same(seen, one) for one in others)
 
 
-def find_duplicates(one: Hand, other: Hand) -> bool:
-    """Return whether two results show the same hand."""
-    near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
-    distances = np.linalg.norm(one.xy - other.xy, axis=1)
-    if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:
-        return False
-    return bool(measure_overlaps(box_of(one.xy), box_of(other.xy)[None])[0] > DUPLICATE_OVERLAP)
+def _is_same(one: SeenHand, other: SeenHand) -> bool:
+    if one.shows_fingers and other.shows_fingers:
+        return find_duplicates(one.hand, other.hand)
+    apart = np.nanmean(one.hand.xy, axis=0) - np.nanmean(other.hand.xy, axis=0)
+    return bool(np.linalg.norm(apart) < SAME_PLACE * max(one.hand.size, other.hand.size))

@@ -10,9 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.recognition.estimation.landmark_models.arms import (
+    FAR,
     MOST_MISSES,
     REACH,
+    STEER_SECONDS,
+    ArmPace,
     ArmPaces,
+    find_far_arm,
     measure_body,
     region_of_wrist,
     regions_of_forearm,
@@ -185,3 +189,57 @@ def test_arms_of_several_people_keep_their_pace_whatever_their_order() -> None:
     first, second = paces.update([(near, "right"), (far, "right")], 0.0)
     assert paces.update([(far, "right"), (near, "right")], 0.04) == [second, first]
     assert paces.update([(near, "right")], 0.0)[0] not in (first, second)  # another clip
+
+
+def hand_at(x: float, y: float) -> Hand:
+    return Hand(flat_hand(size=60) + (x, y), "right", 0.9)
+
+
+def test_a_wrist_goes_over_to_its_hand_and_comes_back_without_a_jump() -> None:
+    pace = ArmPace("right", np.array([100.0, 100.0]))
+    pace.steer(None, 0.04, parted=False)
+    ways = []
+    for parted in (True, False):
+        steps = []
+        for _ in range(10):
+            pace.steer(hand_at(300, 100), 0.04, parted=parted)
+            steps.append(pace.steered)
+        ways.append(np.array(steps))
+    wrist = hand_at(300, 100).xy[0]
+    assert ways[0][-1] == pytest.approx(wrist)
+    assert ways[1][-1] == pytest.approx(pace.wrist)
+    steps = np.linalg.norm(np.diff(np.concatenate(ways), axis=0), axis=1)
+    assert steps.max() <= np.linalg.norm(wrist - pace.wrist) * 0.04 / STEER_SECONDS + 1e-9
+
+
+def test_in_the_first_frame_a_wrist_is_at_its_hand_at_once() -> None:
+    pace = ArmPace("right", np.array([100.0, 100.0]))
+    pace.steer(hand_at(300, 100), np.inf, parted=True)
+    assert pace.steered == pytest.approx(hand_at(300, 100).xy[0])
+
+
+def test_a_hand_that_is_lost_takes_its_wrist_along_for_a_moment_only() -> None:
+    pace = ArmPace("right", np.array([100.0, 100.0]))
+    pace.steer(hand_at(300, 100), np.inf, parted=True)
+    for _ in range(10):
+        pace.steer(None, 0.04, parted=False)
+    assert pace.steered.tolist() == [100, 100]
+
+
+def test_a_hand_away_from_all_arms_belongs_to_the_nearest_one_within_reach() -> None:
+    xy = np.zeros((len(POSE_LANDMARKS), 2))
+    for name, place in (
+        ("left_shoulder", (150, 100)),
+        ("right_shoulder", (50, 100)),
+        ("left_hip", (150, 200)),
+        ("right_hip", (50, 200)),
+        ("left_wrist", (180, 200)),
+        ("right_wrist", (20, 200)),
+    ):
+        xy[POSE_LANDMARKS.index(name)] = place
+    body = Body(xy, np.ones(len(POSE_LANDMARKS)), 1.0)
+    arms = [(body, side) for side in SIDES]
+    near, far = hand_at(300, 200), hand_at(180 + (FAR + 1) * measure_body(body), 200)
+    assert find_far_arm(near, arms) == SIDES.index("left")
+    assert find_far_arm(far, arms) is None
+    assert find_far_arm(near, []) is None

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.arms import wrist_distance
+from app.recognition.estimation.landmark_models.hand_model import SeenHand, find_duplicates
 from app.recognition.estimation.landmark_models.hand_regions import region_of_hand
-from app.recognition.estimation.landmark_models.hands import SeenHand, find_duplicates
 from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -122,7 +122,7 @@ def test_a_hand_never_loses_its_place_to_one_believed_less(installed_models: Non
         for one in (*(Hand(xy, "left", 0.6) for xy in phantoms.values()), true)
     )
     tracker = hand_tracker(search="pose", threads=1, provider="cpu")
-    kept = tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, (body,))
+    kept = tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, (body,)).hands
     assert kept[0] is true
     assert len(kept) == 2
 
@@ -135,7 +135,8 @@ def test_of_two_hands_at_one_arm_the_one_believed_more_is_kept(installed_models:
     surer = Hand(turned(flat_hand(), 1.0) + (330, 300), "left", 0.9)
     followed = tuple(SeenHand(one, region_of_hand(one.xy)) for one in (nearer, surer))
     tracker = hand_tracker(search="pose", threads=1, provider="cpu")
-    assert tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, (body,)) == (surer,)
+    kept = tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, (body,))
+    assert kept.hands == (surer,)
 
 
 def test_no_arm_has_two_hands(

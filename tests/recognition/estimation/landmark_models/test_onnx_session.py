@@ -12,7 +12,7 @@ from app.recognition.errors import EstimatorError, ModelError
 from app.recognition.estimation import available_providers
 from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT
-from app.recognition.estimation.landmark_models.hands import HAND_SIGNATURE
+from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE
 from app.recognition.estimation.landmark_models.onnx_session import (
     ModelSession,
     Provider,

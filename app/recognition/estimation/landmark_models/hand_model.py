@@ -1,0 +1,147 @@
+"""Hand model: the landmarks of one hand in a region of an image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from typing_extensions import Self
+
+from app.recognition.estimation.landmark_models.arms import ArmPace
+from app.recognition.estimation.landmark_models.hand_finder import HandPlace
+from app.recognition.estimation.landmark_models.hand_regions import (
+    box_of,
+    palm_size,
+    region_of_hand,
+)
+from app.recognition.estimation.landmark_models.onnx_session import ModelSession, Signature
+from app.recognition.estimation.landmark_models.region import REPLICATED_BORDER, Region
+from app.recognition.estimation.landmark_models.suppression import measure_overlaps
+from app.recognition.poses.frame import Hand, Image, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+
+INPUT_SIZE: Final = 224
+"""Side of the landmark model's input in pixels."""
+
+HAND_SIGNATURE: Final = Signature(
+    INPUT_SIZE, outputs=((1, 3 * len(HAND_LANDMARKS)), (1, 1), (1, 1))
+)
+"""Landmarks (x, y, z), probability of a hand, probability that it is a right one."""
+
+LEAST_PRESENCE: Final = 0.5
+"""Least probability of a hand; MediaPipe's default minimum presence confidence."""
+
+WORTH_A_SECOND_LOOK: Final = 0.1
+"""Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
+hand that is off centre scores between this and 0.5, no hand below 0.01. Replaces the re-crop model
+of MediaPipe Holistic."""
+
+DUPLICATE_DISTANCE: Final = 0.2
+DUPLICATE_LANDMARKS: Final = 10
+DUPLICATE_OVERLAP: Final = 0.2
+"""Two hands are one if at least this number of landmarks lies within this share of the palm's size
+of each other and their boxes overlap by more than this; MediaPipe found the three values by
+experiment."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeenHand:
+    """A hand of this frame.
+
+    Attributes
+    ----------
+    hand
+        Its landmarks.
+    following
+        Its region in the next frame.
+    fresh
+        Whether it was not tracked from the frame before.
+    arm
+        The arm that it is at the end of; None: none, or not known yet.
+    carried
+        Whether it was not looked at in this frame, but is where its arm carried it.
+    box
+        The box of a hand that the finder found; it is looked for there when its landmarks are
+        lost.
+    looked
+        Time of the last look for the fingers of a hand of which only the place is seen.
+
+    """
+
+    hand: Hand
+    following: Region
+    fresh: bool = False
+    arm: ArmPace | None = None
+    carried: bool = False
+    box: Region | None = None
+    looked: float = -np.inf
+
+    @classmethod
+    def at(cls, place: HandPlace, looked: float = -np.inf) -> Self:
+        """Return a hand of which only the place is seen."""
+        return cls(place.hand, place.box, box=place.box, looked=looked)
+
+    @property
+    def shows_fingers(self) -> bool:
+        """Whether its landmarks are seen, and not its place alone."""
+        return bool(np.isfinite(self.hand.xy).all())
+
+    def carry(self) -> SeenHand:
+        """Return the hand where the movement of its arm in the last frame has carried it."""
+        if self.arm is None:
+            return self
+        dx, dy = self.arm.shift
+        moved = replace(self.hand, xy=self.hand.xy + self.arm.shift)
+        region = self.following
+        return replace(
+            self, hand=moved, following=replace(region, x=region.x + dx, y=region.y + dy)
+        )
+
+
+class HandModel:
+    """The hand landmark model (Zhang et al. 2020, MediaPipe Hands).
+
+    Parameters
+    ----------
+    session
+        The model, loaded with `HAND_SIGNATURE`.
+
+    """
+
+    def __init__(self, session: ModelSession) -> None:
+        self._session = session
+
+    def look(self, image: Image, region: Region) -> SeenHand | None:
+        """Return the hand in a usable `region` of `image`, or None where the model finds none."""
+        seen = self._landmarks(image, region)
+        return seen if seen.hand.score >= LEAST_PRESENCE else None
+
+    def look_twice(self, image: Image, region: Region) -> SeenHand | None:
+        """Return the hand near a `region`, which need not fit it well.
+
+        If the first run finds something, a second one at the region of its landmarks decides.
+        """
+        first = self._landmarks(image, region)
+        if not first.hand.score >= WORTH_A_SECOND_LOOK or not first.following.usable:
+            return None
+        return self.look(image, first.following)
+
+    def _landmarks(self, image: Image, region: Region) -> SeenHand:
+        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._session.pixels)
+        raw, presence, right = self._session.run()
+        points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
+        xy = region.to_image(points, INPUT_SIZE)
+        # The model was trained on mirrored selfies and renamed since: in an unmirrored image
+        # this output is the probability of the person's own right hand.
+        side: Side = "right" if right[0, 0] > 0.5 else "left"
+        return SeenHand(Hand(xy, side, min(float(presence[0, 0]), 1.0)), region_of_hand(xy))
+
+
+def find_duplicates(one: Hand, other: Hand) -> bool:
+    """Return whether two results show the same hand."""
+    near = DUPLICATE_DISTANCE * max(palm_size(one.xy), palm_size(other.xy))
+    distances = np.linalg.norm(one.xy - other.xy, axis=1)
+    if np.count_nonzero(distances < near) < DUPLICATE_LANDMARKS:
+        return False
+    return bool(measure_overlaps(box_of(one.xy), box_of(other.xy)[None])[0] > DUPLICATE_OVERLAP)

@@ -1,0 +1,55 @@
+"""Makes the finder of divers' hands: ``python -m release.hand_finder draw`` and ``teach``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from release.hand_finder.pictures import read_pictures, write_pictures
+
+
+def main() -> None:
+    """Run the step that the command line names."""
+    parser = argparse.ArgumentParser(prog="python -m release.hand_finder", description=__doc__)
+    steps = parser.add_subparsers(dest="step", required=True)
+    draw = steps.add_parser("draw", help="draw random stills of divers and box their hands")
+    draw.add_argument("folder", type=Path)
+    draw.add_argument("--divers", type=int, default=1500, help="two stills each")
+    draw.add_argument("--seed", type=int, default=0, help="of the first diver")
+    teach = steps.add_parser("teach", help="teach the palm detector, or a finder, further")
+    teach.add_argument("detector", type=Path, help="the ONNX file to begin with")
+    teach.add_argument("folders", type=Path, nargs="+", help="pictures with boxes.csv")
+    teach.add_argument("--without", nargs="*", default=[], help="beginnings of names to leave out")
+    teach.add_argument("--steps", type=int, default=800, help="of 16 crops each")
+    teach.add_argument("--seed", type=int, default=0, help="of the crops")
+    teach.add_argument("--whole", action="store_true", help="teach the first stage too")
+    teach.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
+    arguments = parser.parse_args()
+    if arguments.step == "draw":
+        write_pictures(arguments.folder, range(arguments.seed, arguments.seed + arguments.divers))
+    else:
+        _teach(arguments)
+
+
+def _teach(arguments: argparse.Namespace) -> None:
+    """Import PyTorch only now: drawing needs none."""
+    from release.hand_finder.teaching import teach
+
+    pictures = [
+        picture
+        for folder in arguments.folders
+        for picture in read_pictures(folder, arguments.without)
+    ]
+    print(f"{len(pictures)} pictures, {sum(len(one.hands) for one in pictures)} hands", flush=True)
+    teach(
+        arguments.detector,
+        pictures,
+        arguments.output,
+        steps=arguments.steps,
+        seed=arguments.seed,
+        whole=arguments.whole,
+    )
+
+
+if __name__ == "__main__":
+    main()

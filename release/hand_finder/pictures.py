@@ -1,0 +1,89 @@
+"""Pictures with boxed hands: a folder with `images/` and `boxes.csv`.
+
+Rows of `boxes.csv`: image, what, x0, y0, x1, y1 and, where they are known, x and y of the wrist and
+of the middle finger's knuckle, all in pixels. What is ``Hand``, or ``Unclear`` where nothing is
+taught; other rows only say that the picture is there. Any tool that boxes photographs can write it.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+import numpy.typing as npt
+
+from release.hand_finder.stills import draw_stills
+
+EDGES = ("x0", "y0", "x1", "y1")
+JOINTS = ("wrist_x", "wrist_y", "knuckle_x", "knuckle_y")
+LONGEST_SIDE = 640
+"""Pixels to which a picture is made smaller before it teaches."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture and what is boxed in it.
+
+    Attributes
+    ----------
+    image
+        ``(height, width, 3)`` RGB, its longer side `LONGEST_SIDE` at most.
+    hands, unclear
+        ``(N, 8)`` left, top, right, bottom, wrist and knuckle in pixels; NaN where not known.
+
+    """
+
+    image: npt.NDArray[np.uint8]
+    hands: npt.NDArray[np.float64]
+    unclear: npt.NDArray[np.float64]
+
+
+def write_pictures(folder: Path, seeds: Iterable[int]) -> None:
+    """Draw the stills of each seed into a folder; its table grows with every picture."""
+    (folder / "images").mkdir(parents=True, exist_ok=True)
+    with (folder / "boxes.csv").open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(("image", "what", *EDGES, *JOINTS))
+        for seed in seeds:
+            for number, still in enumerate(draw_stills(seed)):
+                name = f"diver{seed:05}_{number}.jpg"
+                bgr = cv2.cvtColor(still.image, cv2.COLOR_RGB2BGR)
+                cv2.imwrite(str(folder / "images" / name), bgr, [cv2.IMWRITE_JPEG_QUALITY, 92])
+                table.writerow((name, "Picture", 0, 0, 0, 0))
+                for what, boxes in (("Hand", still.hands), ("Unclear", still.unclear)):
+                    table.writerows((name, what, *box.round(1).tolist()) for box in boxes)
+            file.flush()
+
+
+def read_pictures(folder: Path, without: Sequence[str] = ()) -> list[Picture]:
+    """Return the pictures of a folder, without those whose names begin with one of `without`."""
+    boxes: dict[str, dict[str, list[list[float]]]] = {}
+    with (folder / "boxes.csv").open(newline="") as file:
+        for row in csv.DictReader(file):
+            kinds = boxes.setdefault(row["image"], {"Hand": [], "Unclear": []})
+            if row["what"] in kinds:
+                kinds[row["what"]].append(
+                    [float(row.get(edge) or "nan") for edge in (*EDGES, *JOINTS)]
+                )
+    return [
+        _read(folder / "images" / name, kinds["Hand"], kinds["Unclear"])
+        for name, kinds in sorted(boxes.items())
+        if not name.startswith(tuple(without))
+    ]
+
+
+def _read(path: Path, hands: list[list[float]], unclear: list[list[float]]) -> Picture:
+    bgr = cv2.imread(str(path))
+    if bgr is None:
+        raise FileNotFoundError(f"{path} is no picture")
+    scale = min(LONGEST_SIDE / max(bgr.shape[:2]), 1.0)
+    small = cv2.resize(bgr, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return Picture(
+        np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2RGB), np.uint8),
+        np.array(hands).reshape(-1, 8) * scale,
+        np.array(unclear).reshape(-1, 8) * scale,
+    )
