@@ -28,6 +28,8 @@ MEANINGS = {
     "gesture_unusable": "the take cannot become a gesture, for instance because nothing moves",
     "idempotency_key_reused": "this `Idempotency-Key` came with another file before",
     "internal": "unexpected error; the server's log has the details",
+    "take_not_held": "an invited take was returned, or is looked at still: reload the list",
+    "take_unusable": "an invited take cannot be a demonstration, for the reason that is given",
     "too_many_invitations": "a language has as many open invitations as are listed: withdraw one",
     "invitation_closed": "the invitation is withdrawn, over, or its limit is reached (`reason`)",
     "invitation_unknown": "no invitation has this token",

@@ -16,8 +16,6 @@ import cv2
 import numpy as np
 import numpy.typing as npt
 
-from release.hand_finder.stills import draw_stills
-
 EDGES = ("x0", "y0", "x1", "y1")
 JOINTS = ("wrist_x", "wrist_y", "knuckle_x", "knuckle_y")
 LONGEST_SIDE = 640
@@ -44,6 +42,9 @@ class Picture:
 
 def write_pictures(folder: Path, seeds: Iterable[int]) -> None:
     """Draw the stills of each seed into a folder; its table grows with every picture."""
+    # Only who draws stills needs the renderer.
+    from release.hand_finder.stills import draw_stills
+
     (folder / "images").mkdir(parents=True, exist_ok=True)
     with (folder / "boxes.csv").open("w", newline="") as file:
         table = csv.writer(file)

@@ -116,6 +116,9 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
     ("PATCH", "/api/v1/languages/{language_id}/test-set/{take_id}"): {"expected": "x"},
     ("POST", "/api/v1/languages/{language_id}/take-table"): {"id": "x", "clip_ids": ["missing"]},
     ("POST", "/api/v1/languages/{language_id}/invitations"): {},
+    ("PUT", "/api/v1/languages/{language_id}/invitations/{invitation_id}/takes/{take_id}"): {
+        "status": "added"
+    },
     ("POST", "/api/v1/languages/{language_id}/practice"): {
         "clip_id": "missing",
         "expected": "x",
@@ -148,7 +151,8 @@ def test_a_body_that_is_no_json_is_a_problem_on_every_route(client: httpx.Client
     bodies = [
         (method, path)
         for method, path in operations(app)
-        if "application/json"
+        if "/invited/" not in path  # These ask for an invitation first.
+        and "application/json"
         in described[path][method.lower()].get("requestBody", {}).get("content", {})
     ]
     assert len(bodies) > 7
