@@ -2,12 +2,15 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
 from app.settings import Settings
+from tests.api.invitations import client_with, invite, token_of
+from tests.api.languages import add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, client_of, running
 from tests.recognition.damaged_clips import write_clip
@@ -59,3 +62,23 @@ def language_id(client: httpx.Client) -> str:
 def small_clip(tmp_path: Path) -> Path:
     """Return a clip of twelve frames without a person."""
     return write_clip(tmp_path / "small.mp4")
+
+
+@pytest.fixture
+def pool(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
+    """Return the id of a language of a circle and a line, shown by one person."""
+    for clip, label in ((circle_clip, "circle"), (line_clip, "line")):
+        assert add_gesture(client, language_id, clip, label).status_code == 201
+    return language_id
+
+
+@pytest.fixture
+def made(client: httpx.Client, pool: str) -> dict[str, Any]:
+    return invite(client, pool)
+
+
+@pytest.fixture
+def guest(server: Running, made: dict[str, Any]) -> Iterator[httpx.Client]:
+    """Return the client of somebody who was invited."""
+    with client_with(server, token_of(made)) as guest:
+        yield guest

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import httpx
@@ -14,30 +13,11 @@ from app.api.services.running_studio import Studio
 from app.store import InvitedTake, NotFound
 from app.store.models import ANSWER_TIME, now
 from tests.api.invitations import INVITED, client_with, divers_of, invite, show, token_of
-from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem
 
 QUESTION = "This looks like 'line'. Is it 'circle'?"
-
-
-@pytest.fixture
-def pool(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
-    """Return the id of a language of a circle and a line, shown by one person."""
-    for clip, label in ((circle_clip, "circle"), (line_clip, "line")):
-        assert add_gesture(client, language_id, clip, label).status_code == 201
-    return language_id
-
-
-@pytest.fixture
-def made(client: httpx.Client, pool: str) -> dict[str, Any]:
-    return invite(client, pool)
-
-
-@pytest.fixture
-def guest(server: Running, made: dict[str, Any]) -> Iterator[httpx.Client]:
-    with client_with(server, token_of(made)) as guest:
-        yield guest
 
 
 @pytest.fixture

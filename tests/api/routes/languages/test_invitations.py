@@ -27,7 +27,7 @@ from app.store.invitations import MOST_LISTED
 from app.store.models import now
 from app.ui.qr_code import draw_qr_code
 from tests.api.invitations import INVITED, client_with, divers_of, invite, show, token_of
-from tests.api.languages import LANGUAGES, add_gesture
+from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, client_of, running, until
 
@@ -57,26 +57,6 @@ def editor(tokens: TokenFile) -> str:
 def client(server: Running, editor: str) -> Iterator[httpx.Client]:
     with client_with(server, editor) as client:
         yield client
-
-
-@pytest.fixture
-def pool(client: httpx.Client, language_id: str, circle_clip: str, line_clip: str) -> str:
-    """Return the id of a language of a circle and a line, shown by one person."""
-    for clip, label in ((circle_clip, "circle"), (line_clip, "line")):
-        assert add_gesture(client, language_id, clip, label).status_code == 201
-    return language_id
-
-
-@pytest.fixture
-def made(client: httpx.Client, pool: str) -> dict[str, Any]:
-    return invite(client, pool)
-
-
-@pytest.fixture
-def guest(server: Running, made: dict[str, Any]) -> Iterator[httpx.Client]:
-    """Return the client of somebody who was invited."""
-    with client_with(server, token_of(made)) as guest:
-        yield guest
 
 
 def send(
