@@ -142,6 +142,7 @@ def find_blame(
     takes: Sequence[KnownTake],
     labels: Sequence[str] | None = None,
     least: float = LEAST_EVIDENCE,
+    readings: Sequence[str | None] | None = None,
 ) -> tuple[Blame, ...]:
     """Find the demonstrations that are at fault for known takes, the surest one first.
 
@@ -159,6 +160,8 @@ def find_blame(
         The gestures whose demonstrations are judged; all when not given.
     least
         Least evidence against a demonstration, see `Evidence.weigh`.
+    readings
+        What each take is read as by profile ``full``; None: not known, so they are read here.
 
     Returns
     -------
@@ -166,10 +169,11 @@ def find_blame(
 
     """
     recognizer = full_recognizer(recognizer)
-    known = [take for take in takes if take.label in recognizer.language.labels]
+    kept = [row for row, take in enumerate(takes) if take.label in recognizer.language.labels]
+    known = [takes[row] for row in kept]
     if not known:
         return ()
-    before = read_all(recognizer, known)
+    before = read_all(recognizer, known) if readings is None else [readings[row] for row in kept]
     found: list[Blame] = []
     for gesture in recognizer.language.gestures:
         if labels is not None and gesture.label not in labels:

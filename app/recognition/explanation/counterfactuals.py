@@ -318,17 +318,14 @@ def find_counterfactuals(
         Better ranges of demonstrations at fault.
 
     """
-    known = [
-        *(
-            KnownTake(gesture.label, each.trajectory)
-            for gesture in context.language.gestures
-            for each in gesture.single_demonstrations()
-            if each.trajectory is not None
-        ),
-        *context.known,
+    shown = [
+        KnownTake(gesture.label, each.trajectory)
+        for gesture in context.language.gestures
+        for each in gesture.single_demonstrations()
+        if each.trajectory is not None
     ]
-    before = [*read_all(context.recognizer, known[: len(known) - len(context.known)])]
-    before += context.readings
+    known = [*shown, *context.known]
+    before = [*read_all(context.recognizer, shown), *context.readings]
     best: dict[str, Counterfactual] = {}
     tried = 0
     for series in list_interventions(context, expected, cuts):

@@ -38,7 +38,11 @@ from app.recognition.explanation.transcript import (
     transcribe,
     transcribe_gesture,
 )
-from app.recognition.explanation.undoing import compare_with, find_better_range
+from app.recognition.explanation.undoing import (
+    compare_with,
+    find_better_range,
+    full_recognizer,
+)
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.motion import build_movement
 from app.recognition.features.traversals import AS_SHOWN
@@ -234,8 +238,13 @@ def explain(
     pairings = _Pairings(context)
     gesture = table.find_nearest_demonstration(context.language.gestures, at)
     wanted = with_counterfactuals and result.label != expected
-    blame = find_blame(context.recognizer, context.known, [expected]) if wanted else ()
-    causes = find_causes(context, expected, context.readings if wanted else (), blame)
+    readings: Sequence[str | None] = context.readings if wanted else ()
+    blame: tuple[Blame, ...] = ()
+    if wanted:
+        is_full = full_recognizer(context.recognizer) is context.recognizer
+        read = readings if is_full else None
+        blame = find_blame(context.recognizer, context.known, [expected], readings=read)
+    causes = find_causes(context, expected, readings, blame)
     found = NONE_NEEDED
     if wanted:
         found = find_counterfactuals(context, expected, _list_cuts(context, at, causes, blame))
@@ -285,10 +294,11 @@ def _list_cuts(
         for each in blame
         if each.start is not None and each.end is not None
     ]
-    faulty = [each for each in causes if each.kind is CauseKind.demonstration]
-    comparison = compare_with(context.recognizer, context.trajectory, context.score_table, at)
-    if faulty and comparison is not None and (span := find_better_range([comparison])):
-        cuts.append((context.score_table.nearest_demonstration(at), *span))
+    table = context.score_table
+    if any(each.kind is CauseKind.demonstration for each in causes):
+        comparison = compare_with(context.recognizer, context.trajectory, table, at)
+        if comparison is not None and (span := find_better_range([comparison])):
+            cuts.append((table.nearest_demonstration(at), *span))
     return cuts
 
 

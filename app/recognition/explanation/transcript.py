@@ -11,7 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Final, Literal
 
 import numpy as np
@@ -24,7 +24,13 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.landmarks import TORSO
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.recording.trimming import GRID_STEP, Motion, measure_motion, split_pieces
+from app.recognition.recording.trimming import (
+    GRID_STEP,
+    Motion,
+    measure_extent,
+    measure_motion,
+    split_pieces,
+)
 from app.recognition.text.wording import join_words
 
 DIRECTIONS: Final = (
@@ -249,7 +255,7 @@ def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) 
     chosen = [name for name in wrists if parse_body_part(name).partition("_")[0] in arms] or [
         name for name in names if name != TORSO
     ]
-    extents = {name: _measure_extent(_path_of(trajectory, name)) for name in chosen}
+    extents = {name: measure_extent(_path_of(trajectory, name)) for name in chosen}
     most = max(extents.values(), default=0.0)
     if most <= LEAST_MOVING:
         return ()
@@ -262,17 +268,12 @@ def _path_of(trajectory: Trajectory, name: str) -> FloatArray:
     return trajectory.xy[:, trajectory.landmarks.index(name)]
 
 
-def _measure_extent(path: FloatArray) -> float:
-    seen = path[np.isfinite(path).all(axis=1)]
-    return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
-
-
 def _follow(trajectory: Trajectory, name: str, start: float) -> Iterator[Piece]:
     """Yield the pieces of one landmark's path."""
     count = min(MOST_MOMENTS, math.ceil(float(trajectory.time[-1]) / GRID_STEP) + 1)
     even = trajectory.select([name]).resample_in_time(max(count, 16))
     # In extents, so that a small movement is split as a large one.
-    path = even.xy[:, 0] / max(_measure_extent(even.xy[:, 0]), 1e-12)
+    path = even.xy[:, 0] / max(measure_extent(even.xy[:, 0]), 1e-12)
     motion = measure_motion([path], even.time)
     if motion is None:
         return
@@ -289,7 +290,7 @@ def _follow(trajectory: Trajectory, name: str, start: float) -> Iterator[Piece]:
             yield pause
             last = None
         if last is not None and last.kind == here.kind == "line" and last.words == here.words:
-            here = Piece(**{**vars(here), "start": last.start})
+            here = replace(here, start=last.start)
         elif last is not None:
             yield last
         last = here

@@ -181,7 +181,7 @@ def find_stroke(
         piece
         for piece in pieces
         if (motion.time[piece.last] > whole.start and motion.time[piece.first] < whole.end)
-        or not (posed or _extent(motion.xy[piece.first : piece.last + 1]) < UNREST)
+        or not (posed or measure_extent(motion.xy[piece.first : piece.last + 1]) < UNREST)
     ]
     if len(pieces) < 2:
         return whole
@@ -211,7 +211,9 @@ def _hand_motion(poses: PoseSequence) -> Motion | None:
     if count < 3 or not any(np.isfinite(poses.column(name)).any() for name in wrists):
         return None
     trajectory = Trajectory.from_poses(poses).select(wrists).fill_gaps().resample_in_time(count)
-    moving = [path for path in np.moveaxis(trajectory.xy, 1, 0) if _extent(path) >= MOVING_HAND]
+    moving = [
+        path for path in np.moveaxis(trajectory.xy, 1, 0) if measure_extent(path) >= MOVING_HAND
+    ]
     return measure_motion(moving, trajectory.time + poses.time[0])
 
 
@@ -244,7 +246,7 @@ def measure_motion(paths: Sequence[FloatArray], time: FloatArray) -> Motion | No
     return Motion(time=time, xy=smooth, speed=speed, known=known)
 
 
-def _extent(path: FloatArray) -> float:
+def measure_extent(path: FloatArray) -> float:
     """Return the diagonal of a path's bounding box; 0 where nothing is seen."""
     seen = path[np.isfinite(path).all(axis=1)]
     return float(np.linalg.norm(np.ptp(seen, axis=0))) if len(seen) else 0.0
@@ -283,7 +285,11 @@ def split_pieces(motion: Motion) -> list[Piece]:
         _drop_pauses(speed, cuts[i], cuts[i + 1], max(resting, PAUSE * float(speed[peak])))
         for i, peak in enumerate(peaks)
     ]
-    return [piece for piece in pieces if _extent(motion.xy[piece.first : piece.last + 1]) > TREMOR]
+    return [
+        piece
+        for piece in pieces
+        if measure_extent(motion.xy[piece.first : piece.last + 1]) > TREMOR
+    ]
 
 
 def _find_limit(motion: Motion, valley: int) -> float:
