@@ -31,7 +31,7 @@ from app.recognition.explanation.blame import (
     Blame,
     find_blame,
 )
-from app.recognition.explanation.context import KnownTake, read_all
+from app.recognition.explanation.context import KnownTake, KnownTakes
 from benchmarks.accuracy.known_faults import (
     Fault,
     at_rate_of,
@@ -218,7 +218,8 @@ def keep_good(taught: Taught) -> Taught | None:
 
 def find_suspects(recognizer: Recognizer, taught: Taught) -> tuple[Blame, ...]:
     """Find all demonstrations that might be blamed, whatever the constants."""
-    return find_blame(recognizer, query_all(recognizer, taught.known), least=-np.inf)
+    known = KnownTakes(recognizer, query_all(recognizer, taught.known))
+    return find_blame(known, least=-np.inf)
 
 
 def query_all(recognizer: Recognizer, takes: Sequence[tuple[str, PoseSequence]]) -> list[KnownTake]:
@@ -242,10 +243,9 @@ def spoil_each(taught: Taught, random: np.random.Generator) -> Iterator[Case]:
             continue
         recognizer = Recognizer(language, "full")
         takes = [each for each in taught.known if each[0] == label]
-        before = read_all(taught.recognizer, query_all(taught.recognizer, takes))
-        after = read_all(recognizer, query_all(recognizer, takes))
-        harm = sum(was == label != now for was, now in zip(before, after, strict=True))
-        if harm >= LEAST_HARM * len(takes):
+        known = KnownTakes(taught.recognizer, query_all(taught.recognizer, takes))
+        _, broken = known.try_change(recognizer)
+        if len(broken) >= LEAST_HARM * len(takes):
             yield Case(fault, label, taught.poor, find_suspects(recognizer, taught))
     yield Case(NONE, None, taught.poor, find_suspects(taught.recognizer, taught))
 

@@ -32,7 +32,7 @@ import numpy as np
 from app.evaluation.labelled_takes import ClipRecorder
 from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer, Recording
-from app.recognition.explanation.context import KnownTake, RecognitionContext, read_all
+from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import find_demonstration
@@ -174,7 +174,7 @@ class Takes:
         unseen = [(label, recorded.recordings[each]) for each in own if each not in drawn][:40]
 
         def count(recognizer: Recognizer) -> int:
-            return sum(read == label for read in read_all(recognizer, queries))
+            return sum(read == label for read in KnownTakes(recognizer, queries).readings)
 
         queries = list(_list_queries(shown.recognizer, unseen))
         before, after = count(shown.recognizer), []

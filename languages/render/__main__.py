@@ -28,6 +28,7 @@ from languages.render.cast import (
 )
 from languages.render.encode import encode_within_limit
 from languages.render.gestures import DRAWINGS
+from languages.render.hard_cast import HARD_CLIPS
 from languages.render.performance import Performance, move_about, perform, perform_sign, stand_by
 from languages.render.posture import hand_points, pose_body
 from languages.render.scene import WIDTH, Scene
@@ -177,7 +178,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="folder for the clips")
     parser.add_argument("--truth", type=Path, help="folder for where the hands truly are, as JSON")
     arguments = parser.parse_args()
-    every = (*CLIPS, *POSED_CLIPS, *SIGN_CLIPS, *TESTS_OF_SIGNS, *SHAPED_CLIPS, *PAIR_CLIPS)
+    signed = (*SIGN_CLIPS, *TESTS_OF_SIGNS)
+    every = (*CLIPS, *POSED_CLIPS, *signed, *SHAPED_CLIPS, *PAIR_CLIPS, *HARD_CLIPS)
     known = {clip.name: clip for clip in every}
     if unknown := set(arguments.names) - known.keys():
         parser.error(

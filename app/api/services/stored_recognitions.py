@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from app.api.http.problems import ProblemError
@@ -17,10 +17,7 @@ from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import KnownTake, RecognitionContext
-from app.recognition.explanation.counterfactuals import (
-    Counterfactual,
-    DemonstrationCut,
-)
+from app.recognition.explanation.counterfactuals import Counterfactual
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
@@ -165,8 +162,10 @@ def load_known(
     }
     count = 0
     for take in reversed(list_known(studio, language_id)):
-        if take.clip_id in shown or take.clip_id == but or count == MOST_KNOWN:
+        if take.clip_id in {*shown, but} or take.expected not in language.labels:
             continue
+        if count == MOST_KNOWN:
+            return
         end = take.end if isinstance(take, LabelledTake) else None
         try:
             recording = studio.recording(take.clip_id)
@@ -177,26 +176,10 @@ def load_known(
         count += 1
 
 
-@dataclass(frozen=True, kw_only=True)
-class LocatedCut(DemonstrationCut):
-    """A cut of a demonstration whose clip is known.
-
-    Attributes
-    ----------
-    clip_id, clip_start, clip_end
-        The clip, and the seconds of its own clock between which the demonstration is kept.
-
-    """
-
-    clip_id: str
-    clip_start: float
-    clip_end: float
-
-
 def locate_cuts(
     studio: Studio, language: Language, counterfactuals: Iterable[Counterfactual]
 ) -> Iterator[Counterfactual]:
-    """Yield the counterfactuals with the clip's range of every cut demonstration.
+    """Yield the counterfactuals, of every cut demonstration with its clip and the range of it.
 
     A cut is left out where the clip of the demonstration is not known, or where it is not the
     gesture's first one, which alone can be replaced.
@@ -204,10 +187,11 @@ def locate_cuts(
     sources = find_sources(studio, language)
     for found in counterfactuals:
         change = found.change
-        if not isinstance(change, DemonstrationCut):
+        if change.kind != "demonstration_cut":
             yield found
             continue
-        source = sources[change.label][0] if change.demonstration == 0 else None
+        values = change.values
+        source = sources[values["label"]][0] if values["demonstration"] == 0 else None
         if source is None:
             continue
         begin = demonstration_in(
@@ -217,13 +201,12 @@ def locate_cuts(
             keep_transit=source.keep_transit,
             trigger=language.trigger,
         ).start
-        located = LocatedCut(
-            **asdict(change),
-            clip_id=source.clip_id,
-            clip_start=begin + change.start,
-            clip_end=begin + change.end,
-        )
-        yield replace(found, change=located)
+        located = {
+            "clip_id": source.clip_id,
+            "clip_start": begin + values["start"],
+            "clip_end": begin + values["end"],
+        }
+        yield replace(found, change=replace(change, values={**values, **located}))
 
 
 def make_recognizer(

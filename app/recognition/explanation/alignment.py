@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, InstanceOf, PlainSerializer
+from pydantic import Field, InstanceOf, PlainSerializer, computed_field
 
+from app.recognition.decision.result import WRITTEN
 from app.recognition.features.motion import (
     Movement,
     build_movement,
@@ -82,55 +83,41 @@ class Example:
 
 
 def _round(values: Any) -> Any:
-    """Round for JSON; of a place that is not seen, ``(x, y)`` of NaN, None remains."""
-    if isinstance(values, np.ndarray):
-        values = np.round(values, DIGITS).tolist()
-    if isinstance(values, float):
-        return round(values, DIGITS)
-    if isinstance(values, list) and values and isinstance(values[0], float):
-        return values if np.isfinite(values).all() else None
-    return [_round(each) for each in values] if isinstance(values, list) else values
+    """Round for JSON."""
+    return np.round(values, DIGITS).tolist()
+
+
+def _pair(values: FloatArray | npt.NDArray[np.intp]) -> Any:
+    """Round the pairs in the last axis; of a place that is not seen, ``(x, y)`` of NaN, None."""
+    if values.ndim > 1:
+        return [_pair(each) for each in values]
+    return tuple(_round(values)) if np.isfinite(values).all() else None
 
 
 Places = Annotated[
-    list[list[tuple[float, float] | None]],
-    BeforeValidator(_round),
+    FloatArray,
+    InstanceOf(),
+    PlainSerializer(_pair, list[list[tuple[float, float] | None]]),
     Field(description="Step by step and part by part, x right and y down; null: not seen."),
 ]
-Times = Annotated[list[float], BeforeValidator(_round)]
-
-
-class AlignmentEntry(BaseModel):
-    """An alignment in JSON, rounded; see `Alignment`."""
-
-    model_config = ConfigDict(from_attributes=True)
-
-    label: str
-    voter: str
-    distance: Annotated[float, BeforeValidator(_round)]
-    backward: bool
-    mirrored: bool
-    demonstration: int
-    parts: list[str]
-    pairs: Annotated[
-        list[tuple[int, int]],
-        BeforeValidator(_round),
-        Field(description="Corresponding steps of the take and of the gesture."),
-    ]
-    time: Times
-    gesture_time: Times
-    query: Places
-    gesture: Places
-    costs: Annotated[
-        list[list[float]],
-        BeforeValidator(_round),
-        Field(description="Per pair and part; their sum is `distance`."),
-    ]
+Times = Annotated[FloatArray, InstanceOf(), PlainSerializer(_round, list[float])]
+Steps = Annotated[
+    npt.NDArray[np.intp],
+    InstanceOf(),
+    PlainSerializer(_pair, list[tuple[int, int]]),
+    Field(description="Corresponding steps of the take and of the gesture."),
+]
+Costs = Annotated[
+    FloatArray,
+    InstanceOf(),
+    PlainSerializer(_round, list[list[float]]),
+    Field(description="Per pair and part; their sum is `distance`."),
+]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Alignment:
-    """The best DTW alignment of a query with a gesture, by one voter.
+    """The best DTW alignment of a query with a gesture, by one voter; rounded in JSON.
 
     Attributes
     ----------
@@ -161,21 +148,24 @@ class Alignment:
 
     """
 
+    __pydantic_config__ = WRITTEN
+
     label: str
     voter: str
     parts: tuple[str, ...]
-    pairs: npt.NDArray[np.intp]
-    time: FloatArray
-    gesture_time: FloatArray
-    query: FloatArray
-    gesture: FloatArray
-    costs: FloatArray
+    pairs: Steps
+    time: Times
+    gesture_time: Times
+    query: Places
+    gesture: Places
+    costs: Costs
     backward: bool
     mirrored: bool
     demonstration: int = 0
 
+    @computed_field  # type: ignore[prop-decorator]
     @property
-    def distance(self) -> float:
+    def distance(self) -> Annotated[float, PlainSerializer(_round, float)]:
         """The voter's distance, in its unit."""
         return float(self.costs.sum())
 
@@ -185,12 +175,6 @@ class Alignment:
         gathered = np.zeros((len(self.time), len(self.parts)))
         np.add.at(gathered, self.pairs[:, 0], self.costs)
         return gathered
-
-
-AlignmentInJson = Annotated[
-    InstanceOf[Alignment], PlainSerializer(AlignmentEntry.model_validate, AlignmentEntry)
-]
-"""An alignment that is an `AlignmentEntry` in JSON."""
 
 
 def align(

@@ -19,13 +19,12 @@ from pydantic import computed_field
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import WRITTEN
 from app.recognition.errors import OsgError
-from app.recognition.explanation.context import KnownTake, count_effect, read_all
+from app.recognition.explanation.context import KnownTake, KnownTakes
 from app.recognition.explanation.demonstration_faults import SENTENCES, FaultKind
 from app.recognition.explanation.undoing import (
     Comparison,
     compare_with,
     find_better_range,
-    full_recognizer,
 )
 from app.recognition.gestures.demonstration import MIN_FRAMES
 from app.recognition.gestures.gesture import Gesture
@@ -138,11 +137,7 @@ class Blame:
 
 
 def find_blame(
-    recognizer: Recognizer,
-    takes: Sequence[KnownTake],
-    labels: Sequence[str] | None = None,
-    least: float = LEAST_EVIDENCE,
-    readings: Sequence[str | None] | None = None,
+    known: KnownTakes, labels: Sequence[str] | None = None, least: float = LEAST_EVIDENCE
 ) -> tuple[Blame, ...]:
     """Find the demonstrations that are at fault for known takes, the surest one first.
 
@@ -152,106 +147,73 @@ def find_blame(
 
     Parameters
     ----------
-    recognizer
-        Of the language.
-    takes
-        The known takes; those whose label the language lacks are ignored.
+    known
+        The known takes, and their recogniser of profile ``full``.
     labels
         The gestures whose demonstrations are judged; all when not given.
     least
         Least evidence against a demonstration, see `Evidence.weigh`.
-    readings
-        What each take is read as by profile ``full``; None: not known, so they are read here.
 
     Returns
     -------
     At most one change a demonstration; empty where no demonstration is at fault.
 
     """
-    recognizer = full_recognizer(recognizer)
-    kept = [row for row, take in enumerate(takes) if take.label in recognizer.language.labels]
-    known = [takes[row] for row in kept]
-    if not known:
-        return ()
-    before = read_all(recognizer, known) if readings is None else [readings[row] for row in kept]
     found: list[Blame] = []
-    for gesture in recognizer.language.gestures:
+    for gesture in known.recognizer.language.gestures if known.takes else ():
         if labels is not None and gesture.label not in labels:
             continue
-        own = [index for index, take in enumerate(known) if take.label == gesture.label]
-        failing = sum(before[index] != gesture.label for index in own)
-        if len(own) < FEWEST_TAKES or failing < max(FEWEST_FAILING, LEAST_FAILING * len(own)):
+        own = [index for index, take in enumerate(known.takes) if take.label == gesture.label]
+        if len(own) < FEWEST_TAKES:
             continue
-        tested = _Tested(recognizer, known, before, own[:MOST_TAKES], len(own), failing, least)
+        failing = sum(known.readings[index] != gesture.label for index in own)
+        if failing < max(FEWEST_FAILING, LEAST_FAILING * len(own)):
+            continue
         for number, shown in enumerate(gesture.single_demonstrations()):
             if shown.trajectory is not None and not shown.is_held:
-                found += tested.judge(gesture, number)
+                found += _judge_demonstration(known, gesture, number, own, failing, least)
     sure = [each for each in found if each.evidence.weigh() >= least]
     return tuple(sorted(sure, key=lambda each: -each.evidence.weigh()))
 
 
-@dataclass(frozen=True, eq=False)
-class _Tested:
-    """Known takes, how they are read, and those of the gesture in question.
+def _judge_demonstration(
+    known: KnownTakes, gesture: Gesture, number: int, own: list[int], failing: int, least: float
+) -> Iterator[Blame]:
+    """Yield the blame of one demonstration of a gesture, if there may be evidence enough.
 
-    Attributes
-    ----------
-    recognizer
-        Of the language.
-    known, before
-        All takes, and what each is read as.
-    takes
-        Indices of the takes of the gesture that are compared with each other.
-    count, failing
-        How many takes of the gesture there are, and how many of them are not read as it.
-    least
-        Least evidence.
-
+    `own` are the indices of the gesture's takes, of which `failing` fail.
     """
-
-    recognizer: Recognizer
-    known: Sequence[KnownTake]
-    before: Sequence[str | None]
-    takes: Sequence[int]
-    count: int
-    failing: int
-    least: float
-
-    def judge(self, gesture: Gesture, number: int) -> Iterator[Blame]:
-        """Yield the blame of one demonstration of the gesture, if there may be evidence enough."""
-        takes = [self.known[index] for index in self.takes]
-        shown = gesture.single_demonstrations()[number]
-        medoid, own, among = _compare_takes(self.recognizer, shown, takes)
-        evidence = Evidence(
-            unlike=own / max(among, 1e-9), failing=self.failing / self.count, gain=MOST_GAIN
-        )
-        if evidence.weigh() < self.least:
-            return
-        tried: list[Blame] = []
-        gains: list[float] = []
-        for change, changed, span in _list_changes(self.recognizer, gesture, number, takes, medoid):
-            left_out = self.takes[medoid] if change == "show_again" else None
-            repaired, broken = _judge(self.recognizer, changed, self.known, self.before, left_out)
-            gains.append((repaired - broken) / (self.count - (left_out is not None)))
-            tried.append(
-                Blame(
-                    label=gesture.label,
-                    demonstration=number,
-                    change=change,
-                    start=None if span is None else span[0],
-                    end=None if span is None else span[1],
-                    takes=len(self.known),
-                    failing=self.failing,
-                    repaired=repaired,
-                    broken=broken,
-                    evidence=evidence,
-                )
+    takes = [known.takes[index] for index in own[:MOST_TAKES]]
+    shown = gesture.single_demonstrations()[number]
+    medoid, apart, among = _compare_takes(known.recognizer, shown, takes)
+    evidence = Evidence(unlike=apart / max(among, 1e-9), failing=failing / len(own), gain=MOST_GAIN)
+    if evidence.weigh() < least:
+        return
+    tried: list[Blame] = []
+    gains: list[float] = []
+    for change, changed, span in _list_changes(known.recognizer, gesture, number, takes, medoid):
+        left_out = own[medoid] if change == "show_again" else None
+        repaired, broken = _count_effect(known, changed, left_out)
+        gains.append((repaired - broken) / (len(own) - (left_out is not None)))
+        tried.append(
+            Blame(
+                label=gesture.label,
+                demonstration=number,
+                change=change,
+                start=None if span is None else span[0],
+                end=None if span is None else span[1],
+                takes=len(known.takes),
+                failing=failing,
+                repaired=repaired,
+                broken=broken,
+                evidence=evidence,
             )
-        if tried:
-            first = tried[0]
-            half = max(FEWEST_FAILING, self.failing / 2)
-            chosen = first if not first.broken and first.repaired >= half else tried[-1]
-            yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
+        )
+    if tried:
+        first = tried[0]
+        half = max(FEWEST_FAILING, failing / 2)
+        chosen = first if not first.broken and first.repaired >= half else tried[-1]
+        yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
 
 
 def _list_changes(
@@ -318,19 +280,13 @@ def _show_again(shown: Gesture, take: Trajectory) -> Gesture | None:
     return replace(shown, trajectory=trajectory).redraw()
 
 
-def _judge(
-    recognizer: Recognizer,
-    changed: Gesture,
-    known: Sequence[KnownTake],
-    before: Sequence[str | None],
-    left_out: int | None,
-) -> tuple[int, int]:
+def _count_effect(known: KnownTakes, changed: Gesture, left_out: int | None) -> tuple[int, int]:
     """Return how many known takes a changed gesture repairs and breaks."""
-    language = recognizer.language.with_changed(changed)
+    recognizer = known.recognizer
     try:
-        after = read_all(Recognizer(language, "full", tuning=recognizer.tuning), known)
+        language = recognizer.language.with_changed(changed)
+        effect = known.try_change(Recognizer(language, "full", tuning=recognizer.tuning))
     except OsgError:
-        return 0, len(known)
-    if left_out is not None:
-        after[left_out] = before[left_out]
-    return count_effect(known, before, after)
+        return 0, len(known.takes)
+    repaired, broken = (sum(index != left_out for index in rows) for rows in effect)
+    return repaired, broken

@@ -31,7 +31,6 @@ from app.recognition.explanation.undoing import (
     Comparison,
     Undone,
     compare_with,
-    full_recognizer,
 )
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
@@ -166,8 +165,7 @@ class Cause:
 def find_causes(
     context: RecognitionContext,
     expected: str,
-    readings: Sequence[str | None] = (),
-    blame: Sequence[Blame] = (),
+    blame: Sequence[Blame] | None = None,
     *,
     explained: float = EXPLAINED,
     following: float = NEXT,
@@ -180,10 +178,9 @@ def find_causes(
         The take and the recogniser.
     expected
         A label of its language.
-    readings
-        What each of `RecognitionContext.known` is read as; empty: not known.
     blame
-        Demonstrations of the gesture that are at fault for the known takes.
+        Demonstrations of the gesture that are at fault for the known takes; None: these are not
+        read.
     explained, following
         See `EXPLAINED` and `NEXT`.
 
@@ -195,14 +192,14 @@ def find_causes(
     """
     if context.result.label == expected:
         return ()
-    recognizer = full_recognizer(context.recognizer)
+    recognizer = context.full_recognizer
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
     found = list(_list_seen(context, recognizer, table, gesture))
-    if near := _find_near_gesture(context, recognizer, table, at, readings):
+    if near := _find_near_gesture(context, table, at, with_known=blame is not None):
         found.append(near)
-    if bad := _find_bad_demonstration(context, table, at, blame):
+    if bad := _find_bad_demonstration(context, table, at, blame or ()):
         found.append(bad)
     comparison = compare_with(recognizer, context.trace.query, table, at)
     if comparison is not None and (proven := prove_change(comparison, explained, following)):
@@ -370,27 +367,22 @@ def _is_by_hand(table: ScoreTable, at: int) -> bool:
 
 
 def _find_near_gesture(
-    context: RecognitionContext,
-    recognizer: Recognizer,
-    table: ScoreTable,
-    at: int,
-    readings: Sequence[str | None],
+    context: RecognitionContext, table: ScoreTable, at: int, *, with_known: bool
 ) -> Cause | None:
     """Return the gesture that the take is read as, or asked back with, if the two are alike.
 
     They are if one's demonstration is as near as a take to the other, or if known takes of one are
     read as the other.
     """
-    labels, result = recognizer.language.labels, context.result
+    labels, result = context.language.labels, context.result
     others = [label for label in (result.nearest, *result.between) if label != labels[at]]
     if not others or is_rejected(float(table.novelty[at])):
         return None
     pair = {labels[at], others[0]}
-    confused = sum(
-        take.label != read and {take.label, read} == pair
-        for take, read in zip(context.known, readings, strict=False)
-    )
-    if confused < CONFUSED and not _are_alike(recognizer, at, labels.index(others[0])):
+    known = zip(context.known, context.known_takes.readings, strict=True) if with_known else ()
+    confused = sum(take.label != read and {take.label, read} == pair for take, read in known)
+    one, other = at, labels.index(others[0])
+    if confused < CONFUSED and not _are_alike(context.full_recognizer, one, other):
         return None
     names = {"label": repr(labels[at]), "other": repr(others[0])}
     sentence = SENTENCES["near_gesture"].format(**names)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable, Trace
 from app.recognition.errors import OsgError
@@ -36,24 +37,45 @@ class KnownTake:
     query: Trajectory
 
 
-def read_all(recognizer: Recognizer, takes: Sequence[KnownTake]) -> list[str | None]:
-    """Return the label that each take is read as; None where it is not read as one gesture."""
-    found: list[str | None] = []
-    for take in takes:
-        try:
-            found.append(recognizer.recognize_trajectory(take.query).label)
-        except OsgError:
-            found.append(None)
-    return found
+@dataclass(frozen=True, eq=False)
+class KnownTakes:
+    """Known takes, and how a recogniser reads them.
 
+    Attributes
+    ----------
+    recognizer
+        The recogniser.
+    takes
+        The takes.
 
-def count_effect(
-    takes: Sequence[KnownTake], before: Sequence[str | None], after: Sequence[str | None]
-) -> tuple[int, int]:
-    """Return how many takes a change repairs and breaks: right with it only, and without only."""
-    rows = list(zip(takes, before, after, strict=True))
-    repaired = sum(was != take.label == now for take, was, now in rows)
-    return repaired, sum(was == take.label != now for take, was, now in rows)
+    """
+
+    recognizer: Recognizer
+    takes: Sequence[KnownTake]
+
+    @cached_property
+    def readings(self) -> list[str | None]:
+        """The label that each take is read as; None where it is not read as one gesture."""
+        found: list[str | None] = []
+        for take in self.takes:
+            try:
+                found.append(self.recognizer.recognize_trajectory(take.query).label)
+            except OsgError:
+                found.append(None)
+        return found
+
+    def try_change(self, changed: Recognizer) -> tuple[list[int], list[int]]:
+        """Return the indices of the takes that a change repairs, and of those that it breaks.
+
+        Repaired takes are read right by the changed recogniser only, broken ones by this one only.
+        """
+        after = KnownTakes(changed, self.takes).readings
+        rows = [
+            (was == take.label, now == take.label)
+            for take, was, now in zip(self.takes, self.readings, after, strict=True)
+        ]
+        repaired = [index for index, (was, now) in enumerate(rows) if now and not was]
+        return repaired, [index for index, (was, now) in enumerate(rows) if was and not now]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -117,9 +139,16 @@ class RecognitionContext:
         return self.recognizer.examine(self.poses)
 
     @cached_property
-    def readings(self) -> list[str | None]:
-        """What each of the known takes is read as."""
-        return read_all(self.recognizer, self.known)
+    def known_takes(self) -> KnownTakes:
+        """The known takes, as the recogniser reads them."""
+        return KnownTakes(self.recognizer, self.known)
+
+    @cached_property
+    def full_recognizer(self) -> Recognizer:
+        """The recogniser of profile ``full``, by whose vote causes are sought."""
+        if isinstance(self.recognizer.vote, FusedVote):
+            return self.recognizer
+        return Recognizer(self.language, "full")
 
     @property
     def trajectory(self) -> Trajectory:

@@ -8,10 +8,9 @@ known takes at hand.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Annotated, Any, ClassVar, Final, Literal
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Final, Literal
 
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
@@ -19,12 +18,7 @@ from pydantic import InstanceOf, PlainSerializer
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
-from app.recognition.explanation.context import (
-    KnownTake,
-    RecognitionContext,
-    count_effect,
-    read_all,
-)
+from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
@@ -63,153 +57,118 @@ Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Intervention(ABC):
-    """Base of interventions.
+InterventionKind = Literal[
+    "demonstration_cut", "keypoint_repair", "trim", "switch", "further_demonstration"
+]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Intervention:
+    """A change of the take, of a gesture or of the language that is tried.
 
     Attributes
     ----------
+    kind, reach
+        What is changed, and its scope.
     size
-        In [0, 1]: share of its object that it changes; see each kind.
+        In [0, 1]: share of its object that it changes; see the function that makes it.
+    words
+        The intervention as a clause after "it would have been recognised".
+    values
+        What the kind needs to be applied elsewhere, in plain JSON types.
+    apply
+        Returns a context with this intervention; raises `OsgError` where it cannot be applied.
 
     """
 
-    kind: ClassVar[str]
-    reach: ClassVar[Reach]
+    kind: InterventionKind
+    reach: Reach
     size: float
-
-    @property
-    @abstractmethod
-    def words(self) -> str:
-        """The intervention as a clause after "it would have been recognised"."""
-
-    @abstractmethod
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """Return the context with this intervention.
-
-        Raises
-        ------
-        OsgError
-            When it cannot be applied.
-
-        """
+    words: str
+    values: Mapping[str, Any]
+    apply: Callable[[RecognitionContext], RecognitionContext]
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types: the kind, the scope, and the values to apply."""
-        values = {name: list(v) if isinstance(v, tuple) else v for name, v in asdict(self).items()}
-        return {"kind": self.kind, "reach": self.reach, **values, "words": self.words}
+        told = {"kind": self.kind, "reach": self.reach, "size": self.size, **self.values}
+        return {**told, "words": self.words}
 
 
-@dataclass(frozen=True, kw_only=True)
-class DemonstrationCut(Intervention):
-    """Another range of a demonstration; its size is the share of its time that is cut off."""
-
-    kind = "demonstration_cut"
-    reach = "gesture"
-    label: str
-    demonstration: int
-    start: float
-    end: float
-
-    @property
-    def words(self) -> str:
-        """See `Intervention`."""
-        return f"with the demonstration of {self.label!r} cut to {self.start:.2f}-{self.end:.2f} s"
-
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Intervention`."""
-        gesture = context.language.gesture(self.label)
-        return context.with_gesture(gesture.with_cut(self.demonstration, self.start, self.end))
+def cut_demonstration(
+    label: str, demonstration: int, start: float, end: float, *, size: float
+) -> Intervention:
+    """Keep another range of a demonstration; `size` is the share of its time that is cut off."""
+    return Intervention(
+        kind="demonstration_cut",
+        reach="gesture",
+        size=size,
+        words=f"with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s",
+        values={"label": label, "demonstration": demonstration, "start": start, "end": end},
+        apply=lambda context: context.with_gesture(
+            context.language.gesture(label).with_cut(demonstration, start, end)
+        ),
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Trim(Intervention):
-    """Another stretch of the clip; its size is the share of the stroke added or removed.
+def trim_take(start: float, end: float, *, size: float, longer: bool = False) -> Intervention:
+    """Keep another stretch of the clip; `size` is the share of the stroke added or removed.
 
-    Attributes
-    ----------
-    longer
-        Whether it holds more than the stroke.
-
+    `longer` is whether it holds more than the stroke.
     """
-
-    kind = "trim"
-    reach = "take"
-    start: float
-    end: float
-    longer: bool = False
-
-    @property
-    def words(self) -> str:
-        """See `Intervention`."""
-        span = f"{self.start:.2f}-{self.end:.2f} s"
-        return (
-            f"with more of the clip, {span}" if self.longer else f"with the take trimmed to {span}"
-        )
-
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Intervention`."""
+    span = f"{start:.2f}-{end:.2f} s"
+    return Intervention(
+        kind="trim",
+        reach="take",
+        size=size,
+        words=f"with more of the clip, {span}" if longer else f"with the take trimmed to {span}",
+        values={"start": start, "end": end, "longer": longer},
         # The ends are times of frames; a rounding error must not drop these.
-        return context.with_poses(context.whole.between(self.start - 1e-6, self.end + 1e-6))
+        apply=lambda context: context.with_poses(context.whole.between(start - 1e-6, end + 1e-6)),
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
-class KeypointRepair(Intervention):
-    """Keypoints repaired or not; its size is the share of moments that a repair changes."""
-
-    kind = "keypoint_repair"
-    reach = "language"
-    on: bool
-
-    @property
-    def words(self) -> str:
-        """See `Intervention`."""
-        return describe_repair(self.on)
-
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Intervention`."""
-        return context.with_tuning(replace(context.tuning, keypoints_repaired=self.on))
+def repair_keypoints(*, on: bool, size: float) -> Intervention:
+    """Repair keypoints or not; `size` is the share of moments that a repair changes."""
+    return Intervention(
+        kind="keypoint_repair",
+        reach="language",
+        size=size,
+        words=describe_repair(on),
+        values={"on": on},
+        apply=lambda context: context.with_tuning(replace(context.tuning, keypoints_repaired=on)),
+    )
 
 
-@dataclass(frozen=True, kw_only=True)
-class SwitchPosition(Intervention):
-    """Another position of one of a gesture's switches; its size is a third."""
+def set_switch(label: str, switch: SwitchName, position: Switch) -> Intervention:
+    """Set one of a gesture's switches to another position, a third of all that it can be."""
 
-    kind = "switch"
-    reach = "gesture"
-    label: str
-    switch: SwitchName
-    position: Switch
-
-    @property
-    def words(self) -> str:
-        """See `Intervention`."""
-        return f"with the switch {humanize(self.switch)} of {self.label!r} {self.position}"
-
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Intervention`."""
-        gesture = context.language.gesture(self.label)
-        switches = replace(gesture.switches, **{self.switch: self.position})
+    def apply(context: RecognitionContext) -> RecognitionContext:
+        gesture = context.language.gesture(label)
+        switches = replace(gesture.switches, **{switch: position})
         return context.with_gesture(replace(gesture, switches=switches))
 
+    return Intervention(
+        kind="switch",
+        reach="gesture",
+        size=1 / 3,
+        words=f"with the switch {humanize(switch)} of {label!r} {position}",
+        values={"label": label, "switch": switch, "position": position},
+        apply=apply,
+    )
 
-@dataclass(frozen=True, kw_only=True)
-class FurtherDemonstration(Intervention):
-    """The take as one more demonstration of a gesture; its size is its share of them."""
 
-    kind = "further_demonstration"
-    reach = "gesture"
-    label: str
-
-    @property
-    def words(self) -> str:
-        """See `Intervention`."""
-        return f"with this take as another demonstration of {self.label!r}"
-
-    def apply(self, context: RecognitionContext) -> RecognitionContext:
-        """See `Intervention`."""
-        gesture = context.language.gesture(self.label)
-        return context.with_gesture(gesture.with_demonstration(context.poses))
+def demonstrate_take(label: str, *, size: float) -> Intervention:
+    """Make the take one more demonstration of a gesture; `size` is its share of them."""
+    return Intervention(
+        kind="further_demonstration",
+        reach="gesture",
+        size=size,
+        words=f"with this take as another demonstration of {label!r}",
+        values={"label": label},
+        apply=lambda context: context.with_gesture(
+            context.language.gesture(label).with_demonstration(context.poses)
+        ),
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,7 +226,7 @@ class Counterfactual:
         kind, gained = self.change.kind, 0
         if self.effect is not None:
             gained = self.effect.repaired - self.effect.broken
-        last = kind == FurtherDemonstration.kind or gained < 0
+        last = kind == "further_demonstration" or gained < 0
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
@@ -324,14 +283,13 @@ def find_counterfactuals(
         for each in gesture.single_demonstrations()
         if each.trajectory is not None
     ]
-    known = [*shown, *context.known]
-    before = [*read_all(context.recognizer, shown), *context.readings]
+    demonstrations = KnownTakes(context.recognizer, shown)
     best: dict[str, Counterfactual] = {}
     tried = 0
     for series in list_interventions(context, expected, cuts):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
-            found = _verify(context, change, expected, known, before)
+            found = _verify(context, change, expected, demonstrations)
             if found is None:
                 continue
             if change.kind not in best or found.rank < best[change.kind].rank:
@@ -343,11 +301,7 @@ def find_counterfactuals(
 
 
 def _verify(
-    context: RecognitionContext,
-    change: Intervention,
-    expected: str,
-    known: Sequence[KnownTake],
-    before: Sequence[str | None],
+    context: RecognitionContext, change: Intervention, expected: str, demonstrations: KnownTakes
 ) -> Counterfactual | None:
     """Run the recogniser with an intervention; None if it fails or cannot be applied."""
     try:
@@ -358,15 +312,15 @@ def _verify(
         return None
     effect = None
     if change.reach != "take":
-        shown = len(known) - len(context.known)
-        now_read = read_all(after.recognizer, known)
-        pairs = zip(known[:shown], before[:shown], now_read[:shown], strict=True)
+        _, lost = demonstrations.try_change(after.recognizer)
         # The demonstration that is cut is no take of its gesture any more.
-        own = change.label if isinstance(change, DemonstrationCut) else None
-        lost = {take.label for take, was, now in pairs if was == take.label != now} - {own}
-        repaired, broken = count_effect(known[shown:], before[shown:], now_read[shown:])
+        own = change.values["label"] if change.kind == "demonstration_cut" else None
+        repaired, broken = context.known_takes.try_change(after.recognizer)
         effect = LanguageEffect(
-            lost=tuple(sorted(lost)), takes=len(context.known), repaired=repaired, broken=broken
+            lost=tuple(sorted({demonstrations.takes[index].label for index in lost} - {own})),
+            takes=len(context.known),
+            repaired=len(repaired),
+            broken=len(broken),
         )
     at = after.result.gestures.index(expected)
     return Counterfactual(
@@ -406,12 +360,12 @@ def _cuts(context: RecognitionContext, expected: str, cuts: Sequence[KeptRange])
     """Cut the demonstrations that are at fault."""
     shown = context.language.gesture(expected).trajectories
     return [
-        DemonstrationCut(
+        cut_demonstration(
+            expected,
+            number,
+            start,
+            end,
             size=min(1.0, max(0.0, 1.0 - (end - start) / float(shown[number].time[-1]))),
-            label=expected,
-            demonstration=number,
-            start=start,
-            end=end,
         )
         for number, start, end in cuts
     ]
@@ -435,10 +389,10 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
         inside = {(max(a, float(whole[0])), min(b, float(whole[-1]))) for a, b in series}
         inside -= {(start, end)}
         yield [
-            Trim(
+            trim_take(
+                a,
+                b,
                 size=min(1.0, (abs(a - start) + abs(b - end)) / duration),
-                start=a,
-                end=b,
                 longer=bool(a < start or b > end),
             )
             for a, b in inside
@@ -450,7 +404,7 @@ def _repairs(context: RecognitionContext) -> Iterator[Series]:
     """Switch the repair of keypoints on or off, if it changes any."""
     share = float(repair_poses(context.poses).touched.mean())
     if share > 0:
-        yield [KeypointRepair(size=share, on=not context.recognizer.repairs)]
+        yield [repair_keypoints(on=not context.recognizer.repairs, size=share)]
 
 
 def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
@@ -461,7 +415,7 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
     if len(shown) < MAX_DEMONSTRATIONS:
-        yield [FurtherDemonstration(size=1 / (len(shown) + 1), label=expected)]
+        yield [demonstrate_take(expected, size=1 / (len(shown) + 1))]
 
 
 def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
@@ -484,4 +438,4 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
     }
     for switch, (position, matters) in positions.items():
         if matters and getattr(gesture.switches, switch) != position:
-            yield [SwitchPosition(size=1 / 3, label=label, switch=switch, position=position)]
+            yield [set_switch(label, switch, position)]

@@ -17,14 +17,13 @@ from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import (
     AlignedBy,
     Alignment,
-    AlignmentInJson,
     Example,
     align,
     find_nearest_example,
 )
 from app.recognition.explanation.blame import Blame, find_blame
 from app.recognition.explanation.causes import Cause, CauseKind, find_causes
-from app.recognition.explanation.context import RecognitionContext
+from app.recognition.explanation.context import KnownTakes, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     NONE_NEEDED,
     Counterfactual,
@@ -41,7 +40,6 @@ from app.recognition.explanation.transcript import (
 from app.recognition.explanation.undoing import (
     compare_with,
     find_better_range,
-    full_recognizer,
 )
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.motion import build_movement
@@ -119,7 +117,7 @@ class Explanation(BaseModel):
     breakdown: tuple[VoterBreakdown, ...]
     facing: float | None
     turned: Distance
-    alignments: tuple[AlignmentInJson, ...]
+    alignments: tuple[Alignment, ...]
     causes: tuple[Cause, ...]
     blame: tuple[Blame, ...]
     transcript: Transcript
@@ -237,14 +235,13 @@ def explain(
     other = _find_other(result, expected)
     pairings = _Pairings(context)
     gesture = table.find_nearest_demonstration(context.language.gestures, at)
-    wanted = with_counterfactuals and result.label != expected
-    readings: Sequence[str | None] = context.readings if wanted else ()
     blame: tuple[Blame, ...] = ()
-    if wanted:
-        is_full = full_recognizer(context.recognizer) is context.recognizer
-        read = readings if is_full else None
-        blame = find_blame(context.recognizer, context.known, [expected], readings=read)
-    causes = find_causes(context, expected, readings, blame)
+    if wanted := with_counterfactuals and result.label != expected:
+        full = context.full_recognizer
+        is_full = full is context.recognizer
+        known = context.known_takes if is_full else KnownTakes(full, context.known)
+        blame = find_blame(known, [expected])
+    causes = find_causes(context, expected, blame if wanted else None)
     found = NONE_NEEDED
     if wanted:
         found = find_counterfactuals(context, expected, _list_cuts(context, at, causes, blame))

@@ -273,13 +273,6 @@ class Comparison:
         return float(reached[at]), float(reached[at])
 
 
-def full_recognizer(recognizer: Recognizer) -> Recognizer:
-    """Return the recogniser of profile ``full`` for a language; causes are sought by its vote."""
-    if isinstance(recognizer.vote, FusedVote):
-        return recognizer
-    return Recognizer(recognizer.language, "full")
-
-
 def compare_with(
     recognizer: Recognizer, query: Trajectory, table: ScoreTable, at: int
 ) -> Comparison | None:

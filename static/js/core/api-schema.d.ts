@@ -8,22 +8,41 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
-         * AlignmentEntry
-         * @description An alignment in JSON, rounded; see `Alignment`.
+         * Alignment
+         * @description The best DTW alignment of a query with a gesture, by one voter; rounded in JSON.
+         *
+         *     Attributes
+         *     ----------
+         *     label
+         *         The gesture's.
+         *     voter
+         *         ``path``, the voter, or ``posture``: where the arms' bones point.
+         *     parts
+         *         P landmarks; of postures the limbs' outer ends.
+         *     pairs
+         *         ``(S, 2)``: corresponding steps of the query and of the gesture.
+         *     time
+         *         ``(N,)`` seconds in the query's clock of each of its steps.
+         *     gesture_time
+         *         ``(N,)`` seconds in the demonstration of each of the gesture's steps.
+         *     query, gesture
+         *         ``(N, P, 2)``: the voter's descriptors, step by step and part by part, x right and y down,
+         *         in its own unit; NaN where not seen. For `Path` each landmark's position relative to its
+         *         mean, in sizes of the gesture: the costs are the distances between corresponding positions,
+         *         divided by N.
+         *     costs
+         *         ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
+         *         their sum.
+         *     backward, mirrored
+         *         Whether the gesture is traversed backwards, and whether it is its mirror image.
+         *     demonstration
+         *         Which of the gesture's demonstrations it is, from 0.
          */
-        AlignmentEntry: {
+        Alignment: {
             /** Label */
             label: string;
             /** Voter */
             voter: string;
-            /** Distance */
-            distance: number;
-            /** Backward */
-            backward: boolean;
-            /** Mirrored */
-            mirrored: boolean;
-            /** Demonstration */
-            demonstration: number;
             /** Parts */
             parts: string[];
             /**
@@ -59,6 +78,20 @@ export interface components {
              * @description Per pair and part; their sum is `distance`.
              */
             costs: number[][];
+            /** Backward */
+            backward: boolean;
+            /** Mirrored */
+            mirrored: boolean;
+            /**
+             * Demonstration
+             * @default 0
+             */
+            demonstration: number;
+            /**
+             * Distance
+             * @description The voter's distance, in its unit.
+             */
+            readonly distance: number;
         };
         /**
          * AmbiguityView
@@ -369,7 +402,7 @@ export interface components {
                 string | null
             ];
             /** @description Which moment of the first corresponds to which of the second */
-            alignment: components["schemas"]["AlignmentEntry"] | null;
+            alignment: components["schemas"]["Alignment"] | null;
         };
         /**
          * Counterfactual
@@ -575,7 +608,7 @@ export interface components {
             /** Turned */
             turned: number | null;
             /** Alignments */
-            alignments: components["schemas"]["AlignmentEntry"][];
+            alignments: components["schemas"]["Alignment"][];
             /** Causes */
             causes: components["schemas"]["Cause"][];
             /** Blame */
@@ -1036,19 +1069,6 @@ export interface components {
              * @description Null: of the clip
              */
             end?: number | null;
-        };
-        /**
-         * Intervention
-         * @description Base of interventions.
-         *
-         *     Attributes
-         *     ----------
-         *     size
-         *         In [0, 1]: share of its object that it changes; see each kind.
-         */
-        Intervention: {
-            /** Size */
-            size: number;
         };
         /**
          * InvitationDraft

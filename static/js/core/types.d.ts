@@ -90,7 +90,7 @@ export type Outlook = Schemas["OutlookView"];
 export type Place = [number, number] | null;
 
 /** How dynamic time warping pairs the steps of a take with those of a gesture. */
-export type Alignment = Schemas["AlignmentEntry"];
+export type Alignment = Schemas["Alignment"];
 
 /** Why a take is not read as the gesture meant; `start` is null if it lasts throughout. */
 export type Cause = Schemas["Cause"];

@@ -8,7 +8,7 @@ import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.explanation.blame import Evidence, find_blame
-from app.recognition.explanation.context import KnownTake
+from app.recognition.explanation.context import KnownTake, KnownTakes
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.explanation.test_causes import HOOK, corners, hook
 from tests.recognition.strategies import Shape, circle, line, recording, wedge
@@ -28,14 +28,14 @@ def _resize(shape: Shape, size: float, share: FloatArray) -> FloatArray:
     return np.asarray(shape(share) * size)
 
 
-def known(recognizer: Recognizer) -> list[KnownTake]:
+def known(recognizer: Recognizer) -> KnownTakes:
     """Return three takes of each gesture, as large as their divers' arms."""
     takes = []
     for label, shape in SHAPES.items():
         for seed, size in enumerate((0.9, 1.0, 1.1)):
             poses = recording(partial(_resize, shape, size), jitter=0.01, seed=seed)
             takes.append(KnownTake(label, recognizer.query(poses)))
-    return takes
+    return KnownTakes(recognizer, takes)
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def known(recognizer: Recognizer) -> list[KnownTake]:
 )
 def test_a_bad_demonstration_is_blamed(bad: PoseSequence, change: str) -> None:
     recognizer = Recognizer(language_of(bad), "full")
-    blamed = find_blame(recognizer, known(recognizer))
+    blamed = find_blame(known(recognizer))
     assert [(each.label, each.demonstration) for each in blamed] == [("hook", 0)]
     assert blamed[0].change == change
     assert blamed[0].failing == 3
@@ -58,8 +58,8 @@ def test_a_bad_demonstration_is_blamed(bad: PoseSequence, change: str) -> None:
 
 def test_a_good_language_has_no_demonstration_to_blame() -> None:
     recognizer = Recognizer(language_of(), "full")
-    assert find_blame(recognizer, known(recognizer)) == ()
-    assert find_blame(recognizer, []) == ()
+    assert find_blame(known(recognizer)) == ()
+    assert find_blame(KnownTakes(recognizer, [])) == ()
 
 
 def test_the_one_bad_demonstration_of_several_is_left_out() -> None:
@@ -69,13 +69,13 @@ def test_the_one_bad_demonstration_of_several_is_left_out() -> None:
     recognizer = Recognizer(good.with_changed(both), "full")
     takes = [KnownTake("hook", recognizer.query(recording(hook)))]
     # The takes are read by the good demonstration: none fails.
-    assert find_blame(recognizer, takes) == ()
+    assert find_blame(KnownTakes(recognizer, takes)) == ()
 
 
 def test_a_cut_says_what_it_keeps() -> None:
     bad = recording(corners(SALUTE, *HOOK, SALUTE), frames=90)
     recognizer = Recognizer(language_of(bad), "full")
-    (blamed,) = find_blame(recognizer, known(recognizer), ["hook"])
+    (blamed,) = find_blame(known(recognizer), ["hook"])
     assert blamed.start is not None
     assert blamed.end is not None
     assert 0.1 < blamed.start < blamed.end < bad.time[-1] - 0.1
@@ -88,9 +88,9 @@ def test_a_cut_says_what_it_keeps() -> None:
 def test_less_evidence_lets_a_good_demonstration_be_suspected_only_if_takes_fail() -> None:
     bad = recording(corners((-0.3, 0.8), (-1.2, 0.1), (-0.2, 0.1), (-1.2, 0.8)))
     recognizer = Recognizer(language_of(bad), "full")
-    (suspected,) = find_blame(recognizer, known(recognizer), least=-np.inf)
+    (suspected,) = find_blame(known(recognizer), least=-np.inf)
     assert suspected.evidence.failing == 1
-    assert find_blame(recognizer, known(recognizer), least=suspected.evidence.weigh() + 0.01) == ()
+    assert find_blame(known(recognizer), least=suspected.evidence.weigh() + 0.01) == ()
 
 
 def test_each_kind_of_evidence_weighs() -> None:

@@ -24,6 +24,7 @@ from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
 from app.recognition import Language, Recognizer
 from app.recognition.explanation.blame import find_blame
+from app.recognition.explanation.context import KnownTakes
 from app.recognition.health.finding import Finding
 from app.store import LanguageState
 
@@ -125,7 +126,8 @@ def _blame(studio: Studio, state: LanguageState, language: Language) -> list[tup
     key = state.record.id, state.revision.revision, ranges
     if key not in _blamed:
         recognizer = Recognizer(language, "full")
-        found = find_blame(recognizer, list(load_known(studio, state.record.id, recognizer)))
+        known = list(load_known(studio, state.record.id, recognizer))
+        found = find_blame(KnownTakes(recognizer, known))
         _blamed[key] = [(each.label, each.sentence) for each in found]
         while len(_blamed) > CACHED_BLAME:
             _blamed.popitem(last=False)

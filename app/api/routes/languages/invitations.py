@@ -22,7 +22,7 @@ from app.api.services.gesture_edits import add_demonstration_to, demonstration_a
 from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Recognizer
-from app.recognition.explanation.context import count_effect, read_all
+from app.recognition.explanation.context import KnownTakes
 from app.store import InvitationState, InvitedTake, NotFound
 from app.ui.charts import data_url
 from app.ui.direction_marks import mark_gesture
@@ -95,16 +95,16 @@ def get_received_take(
     shown = demonstration_at(studio, draft, language.trigger)
     changed = add_demonstration_to(language, draft, shown)
     recognizer = studio.recognizer(state)
-    known = list(load_known(studio, language_id, recognizer, but=take.clip_id))
+    takes = list(load_known(studio, language_id, recognizer, but=take.clip_id))
     with_it = Recognizer(changed, recognizer.profile, tuning=recognizer.tuning)
-    repaired, broken = count_effect(known, read_all(recognizer, known), read_all(with_it, known))
+    repaired, broken = KnownTakes(recognizer, takes).try_change(with_it)
     return ReceivedTakeOutlook(
         start=shown.start,
         end=shown.end,
         image=data_url(mark_gesture(changed.gesture(take.label).single_demonstrations()[-1])),
-        known=len(known),
-        repaired=repaired,
-        broken=broken,
+        known=len(takes),
+        repaired=len(repaired),
+        broken=len(broken),
     )
 
 

@@ -15,7 +15,7 @@ from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label
 from app.api.services.running_studio import CurrentStudio
 from app.recognition import Recognizer
-from app.recognition.explanation.alignment import AlignmentEntry
+from app.recognition.explanation.alignment import Alignment
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
 
@@ -45,7 +45,7 @@ class ContrastView(BaseModel):
         description="In what the first differs from the second, and the second from the first; "
         "null where they cannot be compared"
     )
-    alignment: AlignmentEntry | None = Field(
+    alignment: Alignment | None = Field(
         description="Which moment of the first corresponds to which of the second"
     )
 
@@ -88,7 +88,7 @@ def _contrast(
     return ContrastView(
         gestures=(_paths(gestures[first]), _paths(gestures[second])),
         differs=(_words(forth), _words(back)),
-        alignment=None if forth is None else AlignmentEntry.model_validate(forth.alignment),
+        alignment=None if forth is None else forth.alignment,
     )
 
 
