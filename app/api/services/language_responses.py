@@ -14,6 +14,7 @@ from app.api.http.schemas.gestures import DemonstrationView, GestureView, Source
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
 from app.api.services.running_studio import DocumentCache, Studio
+from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal, short_code
 from app.recognition.language.grammar_entry import grammar_to_entry
@@ -128,6 +129,7 @@ def view_demonstrations(
             salient=list(shown.salient),
             held_shapes=len(shown.held_shapes),
             seconds=None if shown.trajectory is None else float(shown.trajectory.time[-1]),
+            strokes=describe_strokes(transcribe_gesture(shown)),
             thumbnail=f"{place}/{index}/image?{query}",
             source=source,
         )

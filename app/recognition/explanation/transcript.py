@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Final, Literal
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from pydantic import Field, computed_field
@@ -198,11 +199,16 @@ def transcribe(
     return tuple(pieces)
 
 
+_transcribed: WeakKeyDictionary[Gesture, tuple[Piece, ...]] = WeakKeyDictionary()
+
+
 def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
     """Return the strokes of a gesture's first demonstration; empty for held hand shapes."""
     if gesture.is_held or gesture.trajectory is None or len(gesture.trajectory) < 2:
         return ()
-    return transcribe(gesture.trajectory, gesture.salient)
+    if gesture not in _transcribed:
+        _transcribed[gesture] = transcribe(gesture.trajectory, gesture.salient)
+    return _transcribed[gesture]
 
 
 def describe_strokes(pieces: Sequence[Piece]) -> str:

@@ -523,6 +523,11 @@ export interface components {
              */
             seconds: number | null;
             /**
+             * Strokes
+             * @description Its strokes in words; empty: a held hand shape, or only its image is known
+             */
+            strokes: string;
+            /**
              * Thumbnail
              * @description Path of its trajectory image, a PNG
              */
@@ -2137,6 +2142,11 @@ export interface components {
              * @description How long the demonstration lasts
              */
             seconds: number | null;
+            /**
+             * Strokes
+             * @description Its strokes in words; empty: a held hand shape, or only its image is known
+             */
+            strokes: string;
             /**
              * Faults
              * @description Why its range of the clip is a bad demonstration, the gravest fault first

@@ -233,7 +233,10 @@ function build(section, about) {
       const more = further();
       const now = await save(about.language, gesture, draft(), saved());
       abandon();
-      showDone(more ? "Demonstration added" : "Gesture saved", `${label}, in ${now.name}`);
+      const shown = now.gestures.find((each) => each.label === (more || label));
+      const strokes = shown?.demonstrations.at(more ? -1 : 0)?.strokes;
+      const what = strokes ? `${label}: ${strokes}` : `${label}, in ${now.name}`;
+      showDone(more ? "Demonstration added" : "Gesture saved", what);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.

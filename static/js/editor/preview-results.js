@@ -61,6 +61,7 @@ export function image() {
     list,
   );
   const length = h("small", { className: "dim num" });
+  const strokes = h("p", { className: "strokes", hidden: true });
   /** @param {Preview | null} preview */
   function draw(preview) {
     if (!preview) return;
@@ -70,6 +71,8 @@ export function image() {
       : "";
     drawing.classList.toggle("stale", Boolean(preview.problem));
     length.textContent = preview.seconds === null ? "" : `${preview.seconds.toFixed(2)} s`;
+    strokes.textContent = `Strokes: ${preview.strokes}`;
+    strokes.hidden = !preview.strokes;
     if (preview.image) {
       Object.assign(drawing, { src: preview.image, hidden: false });
       nothing.hidden = true;
@@ -83,6 +86,7 @@ export function image() {
       { className: "panel image-panel", "aria-label": "Trajectory image" },
       h("div", { className: "panel-head" }, h("h2", {}, "Trajectory image"), length),
       h("div", { className: "image-box" }, nothing, drawing),
+      strokes,
       problem,
       described,
     ),

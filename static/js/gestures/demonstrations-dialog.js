@@ -175,6 +175,7 @@ function figure(gesture, demonstration) {
     h("b", {}, diver || name),
     h("span", { className: "num" }, seconds === null ? "only its image is known" : moment(seconds)),
     h("span", { className: "dim" }, listFollowed(demonstration)),
+    h("span", { className: "dim" }, demonstration.strokes),
     origin(source),
     faultNote(gesture.label, index, source),
     h(

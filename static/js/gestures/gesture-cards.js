@@ -66,6 +66,7 @@ function draw(gesture, element) {
   const signature = JSON.stringify([gesture, tag]);
   if (element?.dataset.signature === signature) return element;
   const image = withMarks(gesture.thumbnail);
+  const { strokes } = gesture.demonstrations[0];
   const card = h(
     "li",
     { className: `card${mark ? ` ${mark}` : ""}` },
@@ -83,6 +84,7 @@ function draw(gesture, element) {
       { className: "card-text" },
       h("b", { title: gesture.label }, gesture.label),
       h("span", {}, gesture.description || listFollowed(gesture)),
+      strokes ? h("span", { title: `Strokes: ${strokes}` }, strokes) : null,
       h(
         "button",
         {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -18,7 +19,7 @@ def library(server: Running, request: pytest.FixtureRequest) -> Iterator[Library
         yield library_of(server, client, request.node.name.removeprefix("test_")[:40])
 
 
-def gesture(library: Library, label: str) -> dict[str, object]:
+def gesture(library: Library, label: str) -> dict[str, Any]:
     members = library.client.get(f"/api/v1/languages/{library.language}").json()["gestures"]
     return next(member for member in members if member["label"] == label)
 
@@ -45,6 +46,7 @@ def test_a_take_becomes_a_gesture_seen_before_it_is_saved(
     page.get_by_role("button", name="Save as gesture").click()
     expect(page.get_by_label("Label")).to_be_focused()
     expect(page.get_by_role("list", name="Nearest gestures")).to_contain_text("circle")
+    expect(page.get_by_role("region", name="Trajectory image")).to_contain_text("Strokes: ")
     page.keyboard.type("ring")
     page.get_by_label("Command").fill('{"move": ')
     page.get_by_role("button", name="Save gesture").click()
@@ -54,6 +56,10 @@ def test_a_take_becomes_a_gesture_seen_before_it_is_saved(
     page.get_by_role("button", name="Save gesture").click()
     expect(page.get_by_text("Gesture saved")).to_be_visible()
     saved = gesture(library, "ring")
+    strokes = saved["demonstrations"][0]["strokes"]
+    assert "loop" in strokes
+    expect(page.get_by_text(f"ring: {strokes}")).to_be_visible()
+    expect(page.get_by_role("listitem").filter(has_text="ring")).to_contain_text(strokes)
     assert saved["command"] == {"move": [1, 0]}
     assert saved["mirror"] == "on"
     page.keyboard.press("Control+z")

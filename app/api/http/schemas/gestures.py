@@ -21,6 +21,7 @@ from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
 
 SwitchPosition = Literal["auto", "on", "off"]
 
+STROKES = "Its strokes in words; empty: a held hand shape, or only its image is known"
 HELD_SHAPES = "Hand shapes that are held: 0 in a movement, 2 in a sequence of two"
 
 
@@ -127,6 +128,7 @@ class DemonstrationView(BaseModel):
     salient: list[str]
     held_shapes: int = Field(description=HELD_SHAPES)
     seconds: float | None = Field(description="How long it lasts; null: only its image is known")
+    strokes: str = Field(description=STROKES)
     thumbnail: str = Field(description="Path of its trajectory image, a PNG")
     source: SourceView | None = Field(
         default=None, description="Its clip; null: not known, or deleted"

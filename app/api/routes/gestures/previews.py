@@ -13,6 +13,7 @@ from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.schemas.gestures import (
     HELD_SHAPES,
+    STROKES,
     DemonstrationFaultView,
     GestureChange,
     SwitchPosition,
@@ -26,6 +27,7 @@ from app.api.services.gesture_edits import (
 )
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Gesture, GestureError, Language, Recognizer
+from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
 from app.recognition.features.motion import find_hands
 from app.recognition.features.png import encode_png
 from app.recognition.gestures.demonstration import condense
@@ -95,6 +97,7 @@ class PreviewView(BaseModel):
     start: float | None = Field(description="Seconds of the clip; null without one")
     end: float | None
     seconds: float | None = Field(description="How long the demonstration lasts")
+    strokes: str = Field(description=STROKES)
     faults: list[DemonstrationFaultView] = Field(
         description="Why its range of the clip is a bad demonstration, the gravest fault first"
     )
@@ -231,6 +234,7 @@ def _view(
         start=None if shown is None else shown.start,
         end=None if shown is None else shown.end,
         seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
+        strokes="" if gesture is None else describe_strokes(transcribe_gesture(gesture)),
         faults=list(faults),
     )
 

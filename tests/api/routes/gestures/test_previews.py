@@ -43,6 +43,8 @@ def test_a_preview_is_what_saving_gives_and_writes_nothing(
     assert shown["image"] == again["image"]
     assert shown["salient"] == saved["salient"] == ["right_wrist"]
     assert shown["descriptors"] == again["descriptors"]
+    assert "loop" in shown["strokes"]
+    assert shown["strokes"] == again["strokes"] == saved["demonstrations"][0]["strokes"]
 
 
 def test_for_people_the_previews_image_has_a_start_dot_and_an_arrow(
