@@ -1,5 +1,6 @@
 // The table of all takes of clips: recognised at once, sorted, filtered, and saved as CSV.
 
+import { demonstratedBy } from "../clips/demonstration-ranges.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { saveFile } from "../clips/mcap-export.js";
 import { select } from "../clips/clip-store.js";
@@ -72,7 +73,8 @@ function verdictOf({ take, label, pair, expected }) {
 function cellsOf(row) {
   const name = row.take === null ? row.clip : `${row.clip}, take ${row.take}`;
   const answer = row.pair ? `${row.pair}?` : `rejected, nearest ${row.nearest}`;
-  const result = row.take === null ? "" : (row.label ?? answer);
+  const own = demonstratedBy(state.gestures?.gestures ?? [], row);
+  const result = row.take === null ? "" : (row.label ?? answer) + (own ? " (demonstration)" : "");
   return [
     h(
       "button",

@@ -1,5 +1,6 @@
 // The studio view: the clip on display, its takes, and the outcome of its recognition.
 
+import { demonstratedBy } from "../clips/demonstration-ranges.js";
 import { listWarnings, takesLanguage } from "../clips/salutes.js";
 import { reloadClip } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
@@ -201,6 +202,9 @@ const supportWords = (result) =>
     `voters with ${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the weight`,
     result.pair && result.votes.second_opinion === result.pair[1]
       ? "the two ways of comparing disagree"
+      : "",
+    demonstratedBy(state.gestures?.gestures ?? [], result)
+      ? "tested on a demonstration of the language itself"
       : "",
     result.trial ? "on trial, not saved" : "",
   ]

@@ -41,7 +41,7 @@ def test_all_takes_are_in_one_table(
     dialog.get_by_role("button", name="Label").click()
     assert [text.strip() for text in rows.locator("td:nth-child(4)").all_inner_texts()] == [
         "circle",
-        "circle",
+        "circle (demonstration)",
         "line",
     ]
     expect(dialog.get_by_role("columnheader", name="Label")).to_have_attribute(
@@ -74,7 +74,7 @@ def test_takes_between_two_gestures_and_rejected_ones_are_filtered(
     # Clips of other tests are recognised too, which takes a while.
     expect(rows.first).to_be_visible(timeout=30_000)
     dialog.get_by_label("Show", exact=True).select_option("Asked back")
-    expect(rows.first.locator("td").nth(3)).to_have_text("circle or ring?")
+    expect(rows.first.locator("td").nth(3)).to_have_text("circle or ring? (demonstration)")
     dialog.get_by_label("Show", exact=True).select_option("Rejected")
     shown = rows.locator("td:nth-child(4)").all_inner_texts()
     assert [text for text in shown if not text.startswith("rejected")] == []

@@ -1,0 +1,19 @@
+// The ranges of clips that demonstrate a language's gestures.
+
+/** @typedef {{ clip_id: string, start: number, end: number }} Span */
+
+/**
+ * The gesture that a range of a clip demonstrates: a recognition of it tests it on itself.
+ *
+ * @param {{ label: string, demonstrations: { source?: Span | null }[] }[]} gestures
+ * @param {{ clip_id: string, start: number | null, end: number | null }} range
+ */
+export function demonstratedBy(gestures, { clip_id: clip, start, end }) {
+  if (start === null || end === null) return null;
+  /** @param {Span | null} [source] */
+  const shares = (source) =>
+    source?.clip_id === clip &&
+    2 * (Math.min(end, source.end) - Math.max(start, source.start)) > source.end - source.start;
+  const found = gestures.find((each) => each.demonstrations.some(({ source }) => shares(source)));
+  return found?.label ?? null;
+}
