@@ -309,7 +309,9 @@ def _list_seen(
         yield Cause(kind=kind, share=1.0, sentence=sentence)
     here = context.trace.query.facing
     there = None if gesture.trajectory is None else gesture.trajectory.facing
-    if here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
+    # Where left and right are mixed, nobody knows which way the diver faces.
+    known = "mixed" not in dict(found)
+    if known and here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
         sentence = SENTENCES["turned_away"].format(degrees=abs(here - there))
         yield Cause(kind=CauseKind.turned_away, share=1.0, sentence=sentence)
     if shaped := _compare_hands(context, recognizer, table, gesture):

@@ -184,16 +184,17 @@ class Explanation(BaseModel):
         if self.causes and self.causes[0].share < 1:
             share = f"{self.causes[0].share:.0%}"
             yield f"Undoing the cause removes {share} of the distance beyond that of usual takes."
-        if self.blame:
+        if self.blame and self.cause and self.cause.kind is CauseKind.demonstration:
             first = self.blame[0]
             yield (
-                f"Of {first.takes} known takes this repairs {first.repaired} and breaks "
+                f"Of {first.takes} known takes the change repairs {first.repaired} and breaks "
                 f"{first.broken}."
             )
         if self.causes and self.transcript.shown:
             yield describe_transcript(self.transcript, self.expected)
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
-        if self.facing is not None:
+        jumped = any(each.kind is CauseKind.keypoints_jumped for each in self.causes)
+        if self.facing is not None and not jumped:
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
         yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."

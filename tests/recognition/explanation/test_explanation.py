@@ -8,6 +8,8 @@ import pytest
 from hypothesis import given, settings
 
 from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognizer
+from app.recognition.explanation.blame import Blame, Evidence
+from app.recognition.explanation.causes import Cause, CauseKind
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import Explanation, explain
 from app.recognition.gestures.profile import PROFILES
@@ -261,3 +263,34 @@ def test_the_take_is_aligned_with_the_demonstration_that_is_nearest() -> None:
         assert shown.demonstration == nearest
         assert shown.distance < 0.05
         assert explanation.causes == ()
+
+
+def test_the_numbers_tell_nothing_of_a_turn_that_mixed_sides_make_up() -> None:
+    mistaken = with_sides_exchanged(recording(wedge), [*range(20, 26), *range(34, 40)])
+    unrepaired = Recognizer(drawn_language(), "full", tuning=Tuning(keypoints_repaired=False))
+    jumped = explain(context(mistaken, unrepaired), "wedge", with_counterfactuals=False)
+    told = jumped.model_copy(update={"facing": 174.0}).details
+    assert not any("turned" in each for each in told)
+    right = why(recording(wedge), "wedge").model_copy(update={"facing": 24.0})
+    assert "The diver is turned 24 degrees to their left." in right.details
+
+
+def test_the_numbers_of_a_blamed_demonstration_stand_only_below_its_sentence() -> None:
+    evidence = Evidence(unlike=2.0, failing=1.0, gain=1.0)
+    blamed = Blame(
+        label="square",
+        demonstration=0,
+        change="leave_out",
+        takes=9,
+        failing=3,
+        repaired=2,
+        broken=0,
+        evidence=evidence,
+    )
+    told = why(recording(circle, jitter=0.01), "square").model_copy(update={"blame": (blamed,)})
+    numbers = "Of 9 known takes the change repairs 2 and breaks 0."
+    cause = Cause(kind=CauseKind.demonstration, share=1.0, sentence=blamed.sentence)
+    other = Cause(kind=CauseKind.near_gesture, share=1.0, sentence="They are nearly alike.")
+    assert numbers in told.model_copy(update={"causes": (cause,)}).details
+    assert numbers not in told.model_copy(update={"causes": (other, cause)}).details
+    assert numbers not in told.model_copy(update={"causes": ()}).details
