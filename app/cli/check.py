@@ -13,6 +13,7 @@ import typer
 from app.cli.terminal import progress_bar
 from app.recognition import Language
 from app.recognition.health.check import check_health
+from app.recognition.health.choice import describe_people, measure_confusions
 from app.recognition.health.forecast import Outcome
 from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
 from app.resources import known_signs_file
@@ -24,12 +25,19 @@ HAS_ERRORS = 1
 def check(
     file: Annotated[Path, typer.Argument(metavar="FILE.json", help="Language file.")],
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    keep: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="K", help="Name the K gestures that are told apart best."),
+    ] = None,
 ) -> None:
     """Check a language before the dive: what others will reach, and what is wrong.
 
     The exit code is 1 when the report has an error.
     """
     language = Language.load(file)
+    if keep is not None:
+        _show_choice(language, keep, as_json=as_json)
+        return
     with progress_bar("check") as advance:
         report = check_health(
             language,
@@ -42,6 +50,24 @@ def check(
         typer.echo(format_report(report), nl=False)
     if not report.ok:
         raise typer.Exit(HAS_ERRORS)
+
+
+def _show_choice(language: Language, keep: int, *, as_json: bool) -> None:
+    """Print the gestures that are told apart best, and how often the others are mixed up."""
+    confusions = measure_confusions(language)
+    kept = confusions.choose(keep)
+    labels = [confusions.labels[index] for index in kept]
+    left_out = [label for label in confusions.labels if label not in labels]
+    pairs = [pair for pair in confusions.list_pairs() if pair.is_alike or pair.mixed]
+    if as_json:
+        listed = [vars(pair) | {"words": pair.words} for pair in pairs]
+        typer.echo(json.dumps({"keep": labels, "leave_out": left_out, "pairs": listed}))
+        return
+    typer.echo(f"keep: {', '.join(labels)}")
+    typer.echo(f"leave out: {', '.join(left_out) or 'none'}")
+    for pair in pairs:
+        typer.echo(f"{' and '.join(pair.gestures)}: {pair.words}")
+    typer.echo(describe_people(confusions.people))
 
 
 OTHERWISE: Final[Mapping[Outcome, str]] = {

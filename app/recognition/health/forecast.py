@@ -15,11 +15,12 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from app.recognition.decision.result import Recognition
+from app.recognition.decision.score_table import ScoreTable
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, condense
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.rate import Rate
 from app.recognition.language.language import Language
-from app.recognition.poses.trajectory import Trajectory
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
 
 Outcome = Literal["right", "asked", "refused", "wrong"]
@@ -250,23 +251,52 @@ def _list_divers(language: Language) -> list[str]:
     )
 
 
+def compare_people(
+    language: Language, advance: Callable[[], None] = lambda: None
+) -> tuple[int, list[tuple[int, FloatArray]]]:
+    """Compare each person's demonstrations with those of the others.
+
+    Returns
+    -------
+    The number of people, and of each demonstration that others have shown too the index of its
+    gesture and its novelty ``(G,)`` for all gestures.
+
+    """
+    divers = _list_divers(language)
+    return len(divers), [
+        (own, table.novelty)
+        for diver in divers
+        for own, _, _, table in _compare_diver(language, diver, set(divers) - {diver}, advance)
+    ]
+
+
 def _read_diver(
     language: Language, diver: str, readers: Set[str], advance: Callable[[], None]
 ) -> Iterator[Reading]:
     """Yield the readings of the demonstrations by one diver, by those of the `readers`."""
+    for own, number, recognizer, table in _compare_diver(language, diver, readers, advance):
+        known = np.isfinite(table.scores).any()
+        label = language.labels[own]
+        result = recognizer.decide(table) if known else None
+        yield Reading(label, number, diver, *judge(result, label))
+
+
+def _compare_diver(
+    language: Language, diver: str, readers: Set[str], advance: Callable[[], None]
+) -> Iterator[tuple[int, int, Recognizer, ScoreTable]]:
+    """Yield gesture, number, reader and distances of each demonstration by one diver."""
     if not readers:
         return
     others = [_keep(gesture, readers) for gesture in language.gestures]
     # A gesture that no reader has shown stays as it is, so that it can still be confused.
     kept = [other or gesture for other, gesture in zip(others, language.gestures, strict=True)]
     recognizer = Recognizer(replace(language, gestures=kept), "full")
-    for gesture, other in zip(language.gestures, others, strict=True):
+    for index, (gesture, other) in enumerate(zip(language.gestures, others, strict=True)):
         if other is None or other.trajectory is None:
             continue
         for number, shown in enumerate(gesture.single_demonstrations()):
             if shown.diver == diver and shown.trajectory is not None:
-                result = _recognize(recognizer, shown.trajectory)
-                yield Reading(gesture.label, number, diver, *judge(result, gesture.label))
+                yield index, number, recognizer, recognizer.compare(condense(shown.trajectory))
                 advance()
 
 
@@ -279,12 +309,6 @@ def _keep(gesture: Gesture, divers: Set[str]) -> Gesture | None:
         if shown[number].diver not in divers:
             gesture = gesture.without_demonstration(number)
     return gesture
-
-
-def _recognize(recognizer: Recognizer, shown: Trajectory) -> Recognition | None:
-    """Recognise a demonstration; None where nothing is comparable."""
-    table = recognizer.compare(condense(shown))
-    return recognizer.decide(table) if np.isfinite(table.scores).any() else None
 
 
 def judge(result: Recognition | None, label: str) -> tuple[Outcome, tuple[str, ...]]:

@@ -1,0 +1,300 @@
+"""Choice: which gestures of a language, or of candidates, are told apart best.
+
+Each demonstration is compared with every gesture: with those of other people where several have
+shown the language, else with the other gestures alone. Its distance to its own gesture and to each
+other one gives how often two gestures are mixed up, and the sum of that over all pairs is the cost
+of a language. Nothing is simulated.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence, Set
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import Final
+
+import numpy as np
+
+from app.recognition.explanation.causes import ALIKE, USUAL
+from app.recognition.explanation.context import KnownTake
+from app.recognition.gestures.demonstration import condense
+from app.recognition.gestures.gesture import Gesture
+from app.recognition.health.forecast import compare_people
+from app.recognition.language.language import Language
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.recognizer import Recognizer
+
+SPREAD: Final = 0.4
+"""How far apart two novelties must be for one of two gestures to be read mostly: people's takes
+scatter as much. Chosen of four values with sets left out (`docs/results.md`, *Choosing*)."""
+
+MOST_TRIED: Final = 20_000
+"""Most choices of which every one is tried; of more, one gesture after the other is exchanged."""
+
+
+@dataclass(frozen=True)
+class ConfusedPair:
+    """Two gestures that are mixed up.
+
+    Attributes
+    ----------
+    gestures
+        Their labels.
+    rate
+        How sure their takes are to be read as the other one, in [0, 1]; for their order.
+    distance
+        Least novelty of a demonstration of one for the other.
+    mixed, compared
+        How many takes and demonstrations of both were nearer to the other one, and of how many.
+
+    """
+
+    gestures: tuple[str, str]
+    rate: float
+    distance: float
+    mixed: int
+    compared: int
+
+    @property
+    def is_alike(self) -> bool:
+        """Whether one's demonstration is as near to the other as a take of it."""
+        return self.distance < ALIKE
+
+    @property
+    def words(self) -> str:
+        """What is known of the pair, in words."""
+        alike = "nearly alike" if self.is_alike else "rather alike"
+        if not self.compared:
+            return f"{alike}, distance {self.distance:.2f}"
+        return f"{alike}, {self.mixed} of {self.compared} takes are nearer to the other one"
+
+
+@dataclass(frozen=True, eq=False)
+class Confusions:
+    """How often the gestures of a language are mixed up.
+
+    Attributes
+    ----------
+    labels
+        Of G gestures.
+    rates
+        ``(G, G)`` in [0, 1]: the share of takes of a row's gesture that is nearer to the column's;
+        on the diagonal the share that is refused.
+    nearest
+        ``(G, G)``: least novelty of a demonstration of the row's gesture for the column's.
+    mixed, compared
+        ``(G, G)`` and ``(G,)``: how many takes and demonstrations of the row's gesture were nearer
+        to the column's than to those of other people, and of how many.
+    people
+        Number of people who have shown them; by one person's only distances are known.
+
+    """
+
+    labels: tuple[str, ...]
+    rates: FloatArray
+    nearest: FloatArray
+    mixed: FloatArray
+    compared: FloatArray
+    people: int
+
+    def measure_cost(self, chosen: Sequence[int]) -> float:
+        """Return the mean over gestures of the share that is refused or mixed up with another."""
+        rows = np.array(chosen, dtype=np.intp)
+        return float(self.rates[np.ix_(rows, rows)].sum() / max(len(rows), 1))
+
+    def list_pairs(self, among: Sequence[int] | None = None) -> list[ConfusedPair]:
+        """Return the pairs of gestures, those that are mixed up most first."""
+        both = (self.rates + self.rates.T) / 2
+        least, mixed = np.fmin(self.nearest, self.nearest.T), self.mixed + self.mixed.T
+        found = [
+            ConfusedPair(
+                gestures=(self.labels[one], self.labels[other]),
+                rate=float(both[one, other]),
+                distance=float(least[one, other]),
+                mixed=int(mixed[one, other]),
+                compared=int(self.compared[one] + self.compared[other]),
+            )
+            for one, other in combinations(range(len(self.labels)) if among is None else among, 2)
+        ]
+        return sorted(found, key=lambda each: -each.rate)
+
+    def choose(self, count: int) -> list[int]:
+        """Return the `count` gestures of least cost, in their order.
+
+        All choices are tried where they are few; else gestures are added one by one and exchanged
+        as long as that helps.
+        """
+        size = len(self.labels)
+        if count >= size:
+            return list(range(size))
+        if math.comb(size, count) <= MOST_TRIED:
+            rows = np.array(list(combinations(range(size), count)))
+            costs = self.rates[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
+            return [int(each) for each in rows[int(costs.argmin())]]
+        both = self.rates + self.rates.T
+        np.fill_diagonal(both, np.diag(self.rates))
+        chosen: list[int] = []
+        for _ in range(count):
+            chosen.append(self._find_cheapest(both, chosen))
+        for _ in range(size):
+            before = self.measure_cost(chosen)
+            tried = [
+                [*rest, self._find_cheapest(both, rest)]
+                for rest in (chosen[:at] + chosen[at + 1 :] for at in range(count))
+            ]
+            best = min(tried, key=self.measure_cost)
+            if self.measure_cost(best) >= before - 1e-12:
+                break
+            chosen = best
+        return sorted(chosen)
+
+    def _find_cheapest(self, both: FloatArray, chosen: Sequence[int]) -> int:
+        """Return the gesture that adds least to the cost of those chosen."""
+        cost = both[:, chosen].sum(axis=1) + np.diag(both)
+        cost[list(chosen)] = np.inf
+        return int(cost.argmin())
+
+
+def describe_people(people: int) -> str:
+    """Return by whose demonstrations confusions are known, in one sentence."""
+    if people < 2:
+        return "By the distances of one person's demonstrations: other people may differ."
+    return f"By the demonstrations of {people} people, each read by the others'."
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """Another movement for a gesture, and what it would do to the language.
+
+    Attributes
+    ----------
+    candidate
+        Index among the candidates.
+    before, after
+        Estimated share of takes of all gestures that is not read right: now, and with it.
+    alike
+        Pairs of gestures that would be nearly alike, those that are mixed up most first.
+
+    """
+
+    candidate: int
+    before: float
+    after: float
+    alike: tuple[ConfusedPair, ...]
+
+
+def find_replacements(
+    language: Language,
+    label: str,
+    candidates: Sequence[Gesture],
+    known: Sequence[KnownTake] = (),
+    *,
+    advance: Callable[[], None] = lambda: None,
+) -> tuple[Replacement, ...]:
+    """Find the candidates that fit best in the place of a gesture.
+
+    Parameters
+    ----------
+    language, known, advance
+        As for `measure_confusions`.
+    label
+        Of the gesture.
+    candidates
+        Gestures with a demonstration; their labels do not matter.
+
+    Returns
+    -------
+    Those with which fewer takes are not read right than now, the best first.
+
+    """
+    size = len(language.gestures)
+    named = [replace(each, label=f"{at} of candidates") for at, each in enumerate(candidates)]
+    joined = replace(language, gestures=[*language.gestures, *named], grammar=None)
+    confusions = measure_confusions(joined, known, advance=advance)
+    own = list(range(size))
+    before = confusions.measure_cost(own)
+    others = [at for at in own if language.labels[at] != label]
+    names = dict(zip(joined.labels, joined.labels, strict=True)) | {
+        each.label: label for each in named
+    }
+    found = []
+    for at in range(len(candidates)):
+        chosen = [*others, size + at]
+        alike = [
+            replace(pair, gestures=(names.get(one, one), names.get(other, other)))
+            for pair in confusions.list_pairs(chosen)
+            for one, other in [pair.gestures]
+            if pair.is_alike
+        ]
+        found.append(Replacement(at, before, confusions.measure_cost(chosen), tuple(alike)))
+    return tuple(sorted((one for one in found if one.after < before), key=lambda one: one.after))
+
+
+def measure_confusions(
+    language: Language,
+    known: Sequence[KnownTake] = (),
+    *,
+    advance: Callable[[], None] = lambda: None,
+) -> Confusions:
+    """Measure how often the gestures of a language are mixed up.
+
+    Parameters
+    ----------
+    language
+        The gestures; those without a demonstration are mixed up with none.
+    known
+        Takes whose gesture is known.
+    advance
+        Called after each comparison; an exception that it raises ends the work.
+
+    """
+    size = len(language.gestures)
+    rates, shown = np.zeros((size, size)), np.zeros(size)
+    nearest, mixed = np.full((size, size), np.inf), np.zeros((size, size))
+    people, rows = compare_people(language, advance)
+    rows += _compare_takes(language, known, advance)
+    compared = np.bincount([own for own, _ in rows], minlength=size).astype(np.float64)
+    for own, novelty in rows:
+        mixed[own] += novelty < novelty[own]
+    # Of gestures that one person has shown and nobody repeated, distances alone are known.
+    rows += _compare_demonstrations(language, {own for own, _ in rows}, advance)
+    for own, novelty in rows:
+        rates[own] += _estimate(own, novelty)
+        nearest[own] = np.fmin(nearest[own], novelty)
+        shown[own] += 1
+    rates /= np.maximum(shown, 1)[:, None]
+    return Confusions(tuple(language.labels), rates, nearest, mixed, compared, people)
+
+
+def _estimate(own: int, novelty: FloatArray) -> FloatArray:
+    """Return ``(G,)`` how sure a take is mixed up with each gesture, and refused at its own."""
+    against = np.where(np.isfinite(novelty), novelty, 1e9)
+    against[own] = 1.0
+    mine = novelty[own] if np.isfinite(novelty[own]) else 1e6
+    apart = np.clip((against - mine) / SPREAD, -50, 50)
+    return np.asarray(1 / (1 + np.exp(apart)))
+
+
+def _compare_demonstrations(
+    language: Language, known: Set[int], advance: Callable[[], None]
+) -> Iterator[tuple[int, FloatArray]]:
+    """Yield index and novelties of each other gesture; for itself that of a usual take."""
+    recognizer = Recognizer(language, "full")
+    for index, gesture in enumerate(language.gestures):
+        if index not in known and gesture.trajectory is not None:
+            novelty = recognizer.compare(condense(gesture.trajectory)).novelty.copy()
+            novelty[index] = USUAL
+            yield index, novelty
+            advance()
+
+
+def _compare_takes(
+    language: Language, known: Sequence[KnownTake], advance: Callable[[], None]
+) -> Iterator[tuple[int, FloatArray]]:
+    """Yield the gesture's index and the novelty for all of each known take."""
+    recognizer = Recognizer(language, "full") if known else None
+    for take in known:
+        if recognizer is not None and take.label in language.labels:
+            yield language.labels.index(take.label), recognizer.compare(take.query).novelty
+            advance()
