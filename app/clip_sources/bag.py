@@ -7,6 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
+from typing_extensions import Unpack
 
 from app.bags import holds_keypoints, is_bag, record_bag
 from app.bags.bag import open_bag
@@ -29,7 +30,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import BagError, OsgError, TopicError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 
 
 class BagSource:
@@ -95,9 +96,7 @@ class BagSource:
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Find body and hands in the pictures of a topic, or read its keypoints."""
         found = record_bag(
@@ -105,10 +104,9 @@ class BagSource:
             options.topic,
             video=video,
             estimator=estimator,
-            progress=progress,
-            observer=observer,
             water=options.water,
             turn=options.turn,
+            **following,
         )
         poses = found.poses
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))

@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
+from typing_extensions import Unpack
 
 from app.keypoint_files import Ending, KeypointOptions
 from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 
@@ -261,9 +262,7 @@ class ClipSource(Protocol):
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Read the landmarks of every frame.
 
