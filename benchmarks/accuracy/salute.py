@@ -20,10 +20,10 @@ import numpy as np
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.poses.frame import Image
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.extraction import record
-from app.recognition.recording.salute import ENTER_SCORE, FINGERS, salute_score
+from app.recognition.recording.salute import ENTER_SCORE, salute_score
 from app.recognition.recording.video import ALPHA_BACKGROUND, over_background
 from app.resources import samples_dir
 from tests.recognition.parametric_hand import labelled_hands

@@ -18,11 +18,10 @@ import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 
-FINGERS = ("index_finger", "middle_finger", "ring_finger", "pinky")
 _JOINTS = [
     [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
     for finger in FINGERS
