@@ -1336,9 +1336,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /** Nearest */
             nearest: string | null;
             /** Confidence */
@@ -1802,9 +1805,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /**
              * Expected
              * @description What may come next
@@ -2033,9 +2039,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /** Right */
             right: boolean;
             /** Clip Id */

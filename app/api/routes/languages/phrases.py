@@ -10,9 +10,9 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.http.schemas.values import Pair
 from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
 from app.recognition import Language
+from app.recognition.decision.result import Pair
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
