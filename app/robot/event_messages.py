@@ -11,7 +11,7 @@ from dataclasses import MISSING, fields
 from functools import reduce
 from inspect import getdoc
 from operator import or_
-from typing import Annotated, Any, Final, Literal, get_args, get_type_hints
+from typing import Annotated, Any, Final, Literal, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 
@@ -106,7 +106,7 @@ def _derive_message(event: type[Event]) -> type[Message]:
 
 _MODELS: Final[dict[type[Event], type[Message]]] = {
     event: PhraseHeardMessage if event is PhraseHeard else _derive_message(event)
-    for event in get_args(Event)
+    for event in Event.__subclasses__()
 }
 
 _ANY_MESSAGE: Any = Annotated[reduce(or_, _MODELS.values()), Field(discriminator="event")]
