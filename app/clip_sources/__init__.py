@@ -11,7 +11,6 @@ from app.clip_sources.registry import (
 )
 from app.clip_sources.source import (
     ClipSource,
-    ClipTopic,
     ReadOptions,
     Refusal,
     UnsupportedFile,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +19,6 @@ from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
     MADE_VIDEO,
     ClipFacts,
-    ClipTopic,
     OpenFrames,
     ReadOptions,
     RecordedClip,
@@ -81,7 +79,7 @@ class BagSource:
             archive = bag_kind(file.read(8)) == "zip"
         if archive and not is_bag_archive(path):
             raise UnsupportedFile("the archive holds no dive recording (no .mcap and no .db3 file)")
-        topics = tuple(ClipTopic(**asdict(topic)) for topic in usable_topics(path))
+        topics = usable_topics(path)
         first = topics[0]
         return ClipFacts(first.width, first.height, first.duration, first.messages, topics)
 
