@@ -201,13 +201,16 @@ def entry_to_grammar(entry: GrammarEntry) -> Grammar:
         When it is inconsistent; its pointer is that of the language file.
 
     """
-    phrases = [vars(each) | {"parts": tuple(map(_part, each.parts))} for each in entry.phrases]
-    slot_types = [
+    read: dict[str, Any] = dict(vars(entry))
+    read["phrases"] = tuple(
+        Phrase(each.name, tuple(map(_part, each.parts)), each.command, each.says)
+        for each in entry.phrases
+    )
+    read["slot_types"] = tuple(
         _slot_type(each, build_pointer("grammar", "slot_types", index))
         for index, each in enumerate(entry.slot_types)
-    ]
-    read = {"phrases": tuple(Phrase(**each) for each in phrases), "slot_types": tuple(slot_types)}
-    return Grammar(**(vars(entry) | read))
+    )
+    return Grammar(**read)
 
 
 def _part(entry: PartEntry) -> Part:

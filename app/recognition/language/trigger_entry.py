@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -85,7 +85,8 @@ def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
     try:
         poses = (entry.start, entry.stop)
         start, stop = (pose and ArmPose.of_joints(pose.model_dump()) for pose in poses)
-        return Trigger(**vars(entry) | {"start": start, "stop": stop})
+        read: dict[str, Any] = vars(entry) | {"start": start, "stop": stop}
+        return Trigger(**read)
     except TriggerError as error:
         raise LanguageError(str(error), "/trigger") from error
 
