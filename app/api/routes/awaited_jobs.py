@@ -16,7 +16,7 @@ Made = TypeVar("Made")
 
 
 async def await_job(
-    request: Request, studio: Studio, job: Job[Made], cancelled: str = "", code: str = ""
+    request: Request, studio: Studio, job: Job[Made], cancelled: ProblemError | None = None
 ) -> Made:
     """Run a job, or join it, while the client waits; return what it made.
 
@@ -28,13 +28,13 @@ async def await_job(
         Running studio.
     job
         The job.
-    cancelled, code
-        What to say, and the problem's code, when somebody cancels it; empty: nobody can.
+    cancelled
+        What to answer when somebody cancels it; None: nobody can.
 
     Raises
     ------
     ProblemError
-        409 when it was cancelled, 503 when the server stops.
+        `cancelled`, or 503 when the server stops.
     ClientDisconnect
         When the client has left.
 
@@ -42,6 +42,6 @@ async def await_job(
     try:
         return await while_connected(request, studio.runner.run(job))
     except JobCancelled as error:
-        if studio.stopping.is_set() or not code:
+        if cancelled is None or studio.stopping.is_set():
             raise stopping() from error
-        raise ProblemError(409, code, cancelled) from error
+        raise cancelled from error

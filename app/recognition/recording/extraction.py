@@ -47,7 +47,7 @@ over these frames; the end of the clip may show that it is another one."""
 
 
 class Following(TypedDict, total=False):
-    """Keywords of all who record a clip: what is called while it is read."""
+    """Keywords of all who record frames, see `record`: what is called while they are read."""
 
     progress: Progress | None
     observer: Observer | None
@@ -66,10 +66,12 @@ def record(
     clip: str | Path,
     *,
     estimator: PoseEstimator | None = None,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
+    keep_so_far: KeepSoFar | None = None,
     turn: Turn = 0,
-    **following: Unpack[Following],
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -105,7 +107,14 @@ def record(
 
     """
     with read_frames(clip, limits, turn) as reader:
-        return record_frames(reader, estimator=estimator, water=water, **following)
+        return record_frames(
+            reader,
+            estimator=estimator,
+            progress=progress,
+            observer=observer,
+            water=water,
+            keep_so_far=keep_so_far,
+        )
 
 
 def record_frames(

@@ -64,8 +64,8 @@ async def check_language(
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
-    job = _job(state, studio)
-    ended = await await_job(request, studio, job, CANCELLED, "check_cancelled")
+    cancelled = ProblemError(409, "check_cancelled", CANCELLED)
+    ended = await await_job(request, studio, _job(state, studio), cancelled)
     if isinstance(ended, Failed):
         raise ProblemError(422, ended.code, ended.detail)
     report = ended.result

@@ -49,7 +49,8 @@ async def run_test_set(request: Request, language_id: str, studio: CurrentStudio
     """
     state = await run_in_threadpool(studio.languages.get, language_id)
     if (job := await run_in_threadpool(test_run_of, studio, state)) is not None:
-        ended = await await_job(request, studio, job, CANCELLED, "test_run_cancelled")
+        cancelled = ProblemError(409, "test_run_cancelled", CANCELLED)
+        ended = await await_job(request, studio, job, cancelled)
         if isinstance(ended, Failed):
             raise ProblemError(422, ended.code, ended.detail)
     return await run_in_threadpool(_changed, studio, state)
