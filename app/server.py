@@ -28,14 +28,12 @@ from app.api.http.page_files import (
     PageFiles,
 )
 from app.api.http.schemas.invitations import MOST_TAKE_BYTES
-from app.api.ingest.invited_takes import settle_takes
 from app.api.ingest.multipart import FRAME_BYTES
 from app.api.live import socket as live
 from app.api.middleware.access import SameOrigin, TokenRequired
 from app.api.middleware.audit import Audit
 from app.api.middleware.connections import ConnectionGuard
 from app.api.middleware.headers import SecurityHeaders
-from app.api.middleware.identities import Identities, check_tokens
 from app.api.middleware.request_bodies import AnswerAfterBody, BodyLimit, BodyPace, StrictBodies
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
@@ -73,6 +71,8 @@ from app.api.routes.languages import (
 )
 from app.api.routes.recognitions import recognition_pages, recognitions
 from app.api.routes.samples import sample_clips, sample_languages
+from app.api.services.identities import Identities, check_tokens
+from app.api.services.invited_takes import settle_takes
 from app.api.services.running_studio import check_store, open_studio
 from app.api.viser_workspaces import playback_socket, relay
 from app.api.viser_workspaces import routes as workspaces

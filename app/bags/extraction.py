@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from typing_extensions import Unpack
 
 from app.bags.bag import open_bag
 from app.bags.image_topic import BagFrames
@@ -16,7 +17,7 @@ from app.bags.video_writer import VideoFile
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.frame import FrameLandmarks
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress, record_frames
+from app.recognition.recording.extraction import Following, record_frames
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn, VideoFrame
 from app.recognition.recording.video_limits import VideoLimits
@@ -28,11 +29,10 @@ def record_bag(
     *,
     video: Path | None = None,
     estimator: PoseEstimator | None = None,
-    progress: Progress | None = None,
-    observer: Observer | None = None,
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
     turn: Turn = 0,
+    **following: Unpack[Following],
 ) -> Recording:
     """Find body and hands in a dive recording, as `extraction.record` does in a clip.
 
@@ -47,7 +47,7 @@ def record_bag(
     video
         Path of a copy for players (`VideoFile`): the same pictures at the same times, or the
         skeleton on black if only keypoints were recorded. None writes no copy.
-    estimator, progress, observer, limits, water, turn
+    estimator, limits, water, turn, following
         See `app.recognition.recording.extraction.record`.
 
     Raises
@@ -66,12 +66,10 @@ def record_bag(
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
             recording = keypoint_recording(bag, chosen, limits)
-            show_recording(recording, video, progress, observer)
+            show_recording(recording, video, following.get("progress"), following.get("observer"))
             return recording
         frames = BagFrames(bag, chosen, limits, turn)
-        return record_and_copy(
-            frames, video, estimator=estimator, progress=progress, observer=observer, water=water
-        )
+        return record_and_copy(frames, video, estimator, water, **following)
 
 
 def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0) -> None:
@@ -99,14 +97,17 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
 def record_and_copy(
     frames: FrameSource,
     video: Path | None,
-    *,
     estimator: PoseEstimator | None,
-    progress: Progress | None,
-    observer: Observer | None,
     water: WaterCorrection,
-    keep_so_far: KeepSoFar | None = None,
+    **following: Unpack[Following],
 ) -> Recording:
-    """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`."""
+    """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`.
+
+    With a copy, nothing is kept before the end.
+    """
+    if video is None:
+        return record_frames(frames, estimator=estimator, water=water, **following)
+    observer = following.get("observer")
     with copying(frames, video) as copy:
 
         def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
@@ -114,14 +115,8 @@ def record_and_copy(
             if observer is not None:
                 observer(frame, found)
 
-        return record_frames(
-            frames,
-            estimator=estimator,
-            progress=progress,
-            observer=observe,
-            water=water,
-            keep_so_far=keep_so_far,
-        )
+        following |= {"observer": observe, "keep_so_far": None}
+        return record_frames(frames, estimator=estimator, water=water, **following)
 
 
 @contextmanager

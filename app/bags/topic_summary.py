@@ -22,11 +22,11 @@ class TopicSummary:
     Attributes
     ----------
     name, type, use, messages
-        See `app.bags.bag.Topic`.
+        See `app.bags.bag.Topic`; each message is one frame of the clip.
     duration
         Seconds from its first message to its last.
     width, height
-        Pixels of its first picture.
+        Pixels of its first picture, upright.
 
     """
 

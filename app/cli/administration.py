@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
@@ -45,6 +45,17 @@ def settings_of(given: Path | None) -> Settings:
 
 
 @contextmanager
+def _reporting() -> Iterator[None]:
+    """Report an error of the store as one of the command."""
+    from app.store import StoreError
+
+    try:
+        yield
+    except StoreError as error:
+        raise OsgError(str(error)) from error
+
+
+@contextmanager
 def audit_of(settings: Settings) -> Iterator[Callable[[str, str], None]]:
     """Yield a function that notes the use of a command in the studio's audit log.
 
@@ -58,7 +69,7 @@ def audit_of(settings: Settings) -> Iterator[Callable[[str, str], None]]:
         written anywhere.
 
     """
-    from app.store import AuditEntry, AuditStore, Database, Role, StoreError
+    from app.store import AuditEntry, AuditStore, Database, Role
     from app.store.tokens import COMMAND_LINE
 
     def note(command: str, about: str) -> None:
@@ -73,11 +84,8 @@ def audit_of(settings: Settings) -> Iterator[Callable[[str, str], None]]:
         )
         AuditStore(database, settings.data_dir).add(entry)
 
-    try:
-        with closing(Database(settings.database)) as database:
-            yield note
-    except StoreError as error:
-        raise OsgError(str(error)) from error
+    with _reporting(), closing(Database(settings.database)) as database:
+        yield note
 
 
 def audit(
@@ -90,15 +98,12 @@ def audit(
 ) -> None:
     """List the changes in a studio by time, name, address and path, the newest first."""
     settings = settings_of(data_dir)
-    from app.store import AuditStore, Database, StoreError
+    from app.store import AuditStore, Database
 
     if settings.database_url is None and not (settings.data_dir / "studio.db").is_file():
         raise OsgError(f"{settings.data_dir} holds no studio; give its folder with --data-dir")
-    try:
-        with closing(Database(settings.database)) as database:
-            entries = AuditStore(database, settings.data_dir).newest(limit, name=name)
-    except StoreError as error:
-        raise OsgError(str(error)) from error
+    with _reporting(), closing(Database(settings.database)) as database:
+        entries = AuditStore(database, settings.data_dir).newest(limit, name=name)
     for entry in entries:
         content = entry.model_dump(mode="json")
         if as_json:
@@ -108,29 +113,26 @@ def audit(
             typer.echo("\t".join(str(content[key]) for key in keys))
 
 
+def _places(settings: Settings) -> dict[str, Any]:
+    """Return where the clips and the database are."""
+    from app.store.objects import open_object_store
+
+    objects = open_object_store(settings.objects)
+    return {"clips": settings.clips, "objects": objects, "url": settings.database_url}
+
+
 def backup(
     file: Annotated[Path, typer.Argument(metavar="FILE.zip", help="File to write.")],
     data_dir: DataDir = None,
 ) -> None:
     """Write database, clips and keypoints to one file, also while the studio runs."""
     settings = settings_of(data_dir)
-    from app.store import StoreError
     from app.store.backup import write_backup
-    from app.store.objects import open_object_store
 
-    try:
-        objects = open_object_store(settings.objects)
-        clips = write_backup(
-            settings.data_dir,
-            file.absolute(),
-            clips=settings.clips,
-            objects=objects,
-            url=settings.database_url,
-        )
+    with _reporting():
+        clips = write_backup(settings.data_dir, file.absolute(), **_places(settings))
         with audit_of(settings) as note:
             note("backup", str(file.absolute()))
-    except StoreError as error:
-        raise OsgError(str(error)) from error
     people.print(f"{clips} clips and all languages are in {file}", markup=False, highlight=False)
 
 
@@ -140,23 +142,12 @@ def restore(
 ) -> None:
     """Restore a backup into a data folder or database that is empty; every file is verified."""
     settings = settings_of(data_dir)
-    from app.store import StoreError
     from app.store.backup import restore_backup
-    from app.store.objects import open_object_store
 
-    try:
-        objects = open_object_store(settings.objects)
-        clips = restore_backup(
-            file,
-            settings.data_dir,
-            clips=settings.clips,
-            objects=objects,
-            url=settings.database_url,
-        )
+    with _reporting():
+        clips = restore_backup(file, settings.data_dir, **_places(settings))
         with audit_of(settings) as note:
             note("restore", str(file.absolute()))
-    except StoreError as error:
-        raise OsgError(str(error)) from error
     place = "the database of OSG_DATABASE_URL" if settings.database_url else settings.data_dir
     people.print(f"{clips} clips and all languages are in {place}", markup=False, highlight=False)
 
@@ -223,13 +214,10 @@ def add_token(
 def list_tokens(data_dir: DataDir = None) -> None:
     """List the tokens by name, role, day and quotas, separated by tabs."""
     settings = settings_of(data_dir)
-    from app.store import StoreError
     from app.store.tokens import TokenFile
 
-    try:
+    with _reporting():
         tokens = TokenFile(settings.tokens, settings.tokens_seen).read()
-    except StoreError as error:
-        raise OsgError(str(error)) from error
     for token in tokens:
         quotas = (token.quota_bytes, token.quota_clips)
         shown = ["-" if each is None else str(each) for each in quotas]

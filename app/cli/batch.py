@@ -15,7 +15,7 @@ from app.cli.terminal import batch_bar, describe_error, people
 from app.clip_sources import SOURCES, VIDEO, is_take, source_of
 from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer
-from app.recognition.errors import OsgError, VideoError
+from app.recognition.errors import OsgError, VideoError, explain_missing_package
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
 from app.recognition.text.wording import list_some
@@ -167,13 +167,8 @@ def check_table(path: Path) -> None:
     if not path.parent.is_dir():
         raise OsgError(f"{path.parent} is no folder; make it, or write the table elsewhere")
     if path.suffix.lower() == PARQUET:
-        try:
+        with explain_missing_package(str(path), "parquet", instead=", or write a .csv"):
             import pyarrow  # noqa: F401
-        except ModuleNotFoundError as error:
-            raise OsgError(
-                f"{path} needs {error.name}, which is not installed; install it with: "
-                'pip install "osg-studio[parquet]", or write a .csv'
-            ) from error
 
 
 def write_table(path: Path, rows: Sequence[Row]) -> None:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field, replace
+from functools import wraps
+from inspect import Parameter, signature
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -304,6 +307,37 @@ HandsOption = Annotated[
         help="Finds the hands: mediapipe, none, or DETECTOR.onnx,KEYPOINTS.onnx, the paper's pair.",
     ),
 ]
+
+
+def reads_clips(command: Callable[..., None]) -> Callable[..., None]:
+    """Decorate a command with the options for reading clips, which it gets as ``reading``."""
+
+    def read_options(
+        *,
+        water: WaterOption = "auto",
+        turn: TurnOption = 0,
+        estimator: EstimatorOption = "onnx",
+        hands: HandsOption = MEDIAPIPE_HANDS,
+        frame_rate: FrameRateOption = None,
+        frame_size: FrameSizeOption = None,
+        landmark: LandmarkOption = None,
+    ) -> ClipReading:
+        keypoints = keypoint_options(frame_rate, frame_size, landmark)
+        return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+
+    options = signature(read_options, eval_str=True).parameters
+
+    @wraps(command)
+    def run(**given: Any) -> None:
+        reading = read_options(**{name: given.pop(name) for name in options})
+        command(**given, reading=reading)
+
+    known = signature(command, eval_str=True)
+    own = [each for name, each in known.parameters.items() if name != "reading"]
+    asked = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own] + [*options.values()]
+    run.__signature__ = known.replace(parameters=asked)  # type: ignore[attr-defined]
+    run.__annotations__ = {each.name: each.annotation for each in asked}
+    return run
 
 
 def recognize_clip(

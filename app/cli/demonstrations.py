@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
@@ -13,22 +13,15 @@ from app.bags import bag_and_topic
 from app.cli.clip_argument import (
     ClipReading,
     DiverOption,
-    EstimatorOption,
-    FrameRateOption,
-    FrameSizeOption,
-    HandsOption,
-    LandmarkOption,
     TriggerOption,
-    TurnOption,
-    WaterOption,
     clip_and_span,
-    keypoint_options,
     read_clip,
+    reads_clips,
 )
 from app.cli.terminal import people
 from app.recognition import Gesture, GestureError, Language, Recording, Take
-from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.demonstration_faults import find_demonstration_faults
+from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.language.language import require_distinct_labels
 from app.recognition.poses.hand_shape import HandShape
 from app.recognition.text.look_alikes import compose
@@ -45,6 +38,7 @@ OutputOption = Annotated[
 ]
 
 
+@reads_clips
 def define(
     demonstrations: Annotated[
         list[str],
@@ -52,8 +46,8 @@ def define(
             metavar="LABEL=CLIP[,CLIP...]...",
             help="A clip per gesture with a salute, or the trigger of --trigger, at both ends; "
             "LABEL=CLIP@START-END without. "
-            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file. Up to five clips "
-            "per gesture, best of several divers.",
+            "Also a bag, as LABEL=BAG or LABEL=BAG@/TOPIC, or a keypoint file. Up to "
+            f"{MAX_DEMONSTRATIONS} clips per gesture, best of several divers.",
         ),
     ],
     name: Annotated[str, typer.Option(help="Name of the language.")],
@@ -61,21 +55,15 @@ def define(
     author: Annotated[str, typer.Option(help="Author of the language.")] = "",
     trigger_of: TriggerOption = None,
     diver: DiverOption = "",
-    water: WaterOption = "auto",
-    turn: TurnOption = 0,
-    estimator: EstimatorOption = "onnx",
-    hands: HandsOption = MEDIAPIPE_HANDS,
-    frame_rate: FrameRateOption = None,
-    frame_size: FrameSizeOption = None,
-    landmark: LandmarkOption = None,
+    *,
+    reading: ClipReading,
 ) -> None:
     """Create a language from one demonstration clip per gesture, or several.
 
     With --trigger it has the trigger of that language file.
     """
-    keypoints = keypoint_options(frame_rate, frame_size, landmark)
     held = SALUTE if trigger_of is None else Language.load(trigger_of).trigger
-    reading = ClipReading(water, estimator, hands, keypoints=keypoints, trigger=held, turn=turn)
+    reading = replace(reading, trigger=held)
     given = [parse_demonstrations(text) for text in demonstrations]
     labels = [shown[0].label for shown in given]
     for count, _ in enumerate(labels, 1):  # before any clip is read
@@ -99,6 +87,7 @@ def list_demonstrations(language: LanguageArgument) -> None:
 
 
 @demonstrations_command.command("add")
+@reads_clips
 def add_demonstrations(
     language: LanguageArgument,
     demonstrations: Annotated[
@@ -109,23 +98,15 @@ def add_demonstrations(
     ],
     diver: DiverOption = "",
     output: OutputOption = None,
-    water: WaterOption = "auto",
-    turn: TurnOption = 0,
-    estimator: EstimatorOption = "onnx",
-    hands: HandsOption = MEDIAPIPE_HANDS,
-    frame_rate: FrameRateOption = None,
-    frame_size: FrameSizeOption = None,
-    landmark: LandmarkOption = None,
+    *,
+    reading: ClipReading,
 ) -> None:
     """Add demonstrations to gestures, up to eight each; those of another diver help most."""
     loaded = Language.load(language)
     given = [parse_demonstrations(text) for text in demonstrations]
     for shown in given:
         loaded.gesture(shown[0].label)  # an unknown label is an error before any clip is read
-    keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(
-        water, estimator, hands, keypoints=keypoints, trigger=loaded.trigger, turn=turn
-    )
+    reading = replace(reading, trigger=loaded.trigger)
     for shown in given:
         gesture = loaded.gesture(shown[0].label)
         changed = define_gesture(shown, reading, diver=diver, gesture=gesture)

@@ -10,7 +10,7 @@ import typer
 
 from app.cli.terminal import people
 from app.recognition import Language
-from app.recognition.errors import OsgError
+from app.recognition.errors import OsgError, explain_missing_package
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file import short_code
 from app.recognition.language.osg_reference import from_reference, is_reference
@@ -63,14 +63,9 @@ def list_answers(vehicle: Path) -> list[tuple[int, str]]:
         When the table has none, is not valid, or its library is missing.
 
     """
-    try:
+    with explain_missing_package("--vehicle", "mavlink"):  # reads TOML before Python 3.11
         from app.robot.commands.answers import Answer
         from app.robot.mavlink.table import read_vehicle_table
-    except ModuleNotFoundError as error:  # reads TOML before Python 3.11
-        raise OsgError(
-            f"--vehicle needs {error.name}, which is not installed; install it with: "
-            'pip install "osg-studio[mavlink]"'
-        ) from error
     answers = read_vehicle_table(vehicle).answers
     if answers is None:
         raise OsgError(f"{vehicle} has no [answers]; leave --vehicle out, or add them")

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from importlib import resources
 from itertools import zip_longest
-from typing import Annotated, Any, Final
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -14,13 +12,6 @@ from app.recognition import Recognition, Take
 from app.recognition.decision.result import RecognitionEntry
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.gestures.profile import ProfileName
-
-VERSION: Final = 1
-"""Version of the report; raised when a reader of this version could misunderstand one. New keys do
-not raise it."""
-
-SCHEMA_ID = f"urn:osg-studio:recognition-report:{VERSION}"
-SCHEMA_FILE = f"recognition-report-{VERSION}.schema.json"
 
 Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
 
@@ -77,15 +68,3 @@ def report_take(
     span = {"start": take.start, "end": take.end, "closed": take.closed}
     explained = {} if explanation is None else {"explanation": explanation.to_dict()}
     return span | result.to_dict() | explained
-
-
-def generate_schema() -> str:
-    """Generate the JSON Schema 2020-12 of the report, as text."""
-    schema = RecognitionReport.model_json_schema(mode="validation")
-    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
-    return json.dumps(head | schema, indent=2) + "\n"
-
-
-def read_schema() -> str:
-    """Read the JSON Schema that is checked in and shipped."""
-    return (resources.files("app.cli") / "schema" / SCHEMA_FILE).read_text("utf-8")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated
@@ -13,15 +14,8 @@ import typer
 from app.cli.batch import FolderBatch, is_folder_of_clips
 from app.cli.clip_argument import (
     ClipReading,
-    EstimatorOption,
-    FrameRateOption,
-    FrameSizeOption,
-    HandsOption,
-    LandmarkOption,
-    TurnOption,
-    WaterOption,
     clip_and_span,
-    keypoint_options,
+    reads_clips,
     recognize_clip,
 )
 from app.cli.mcap_file import name_recognitions, save_bag
@@ -29,7 +23,6 @@ from app.cli.recognition_report import build_report
 from app.cli.terminal import people, show_explanation, show_recognition
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
-from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
@@ -42,6 +35,7 @@ NOTHING_RECOGNISED = 1
 """Exit code when no gesture was recognised."""
 
 
+@reads_clips
 def recognize(
     clip: Annotated[
         str,
@@ -75,13 +69,8 @@ def recognize(
     table: Annotated[
         Path, typer.Option(help="Table of a folder's takes to write, .csv or .parquet.")
     ] = Path("recognitions.csv"),
-    water: WaterOption = "auto",
-    turn: TurnOption = 0,
-    estimator: EstimatorOption = "onnx",
-    hands: HandsOption = MEDIAPIPE_HANDS,
-    frame_rate: FrameRateOption = None,
-    frame_size: FrameSizeOption = None,
-    landmark: LandmarkOption = None,
+    *,
+    reading: ClipReading,
 ) -> None:
     """Recognise the gestures in a clip, with every voter's distance to every gesture."""
     path, span = clip_and_span(clip)
@@ -91,8 +80,7 @@ def recognize(
     recognizer = Recognizer(loaded, profile)
     spots = without_salutes or loaded.trigger.spots
     spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
-    keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    reading = ClipReading(water, estimator, hands, topic, keypoints, turn=turn)
+    reading = replace(reading, topic=topic)
     if is_folder_of_clips(path):
         if as_json or mcap is not None or expected is not None:
             raise OsgError(

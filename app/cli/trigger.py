@@ -10,25 +10,18 @@ import typer
 
 from app.cli.clip_argument import (
     ClipReading,
-    EstimatorOption,
-    FrameRateOption,
-    FrameSizeOption,
-    HandsOption,
-    LandmarkOption,
-    TurnOption,
-    WaterOption,
     clip_and_span,
-    keypoint_options,
     read_clip,
+    reads_clips,
 )
 from app.cli.terminal import people
 from app.recognition import Language
 from app.recognition.errors import OsgError, TriggerError
-from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.triggers.arm_pose import ArmPose
 from app.recognition.triggers.trigger import NO_TRIGGER, SALUTE, Trigger
 
 
+@reads_clips
 def trigger(
     language: Annotated[
         Path,
@@ -59,13 +52,8 @@ def trigger(
     output: Annotated[
         Path | None, typer.Option(help="Language file to write; by default the same file.")
     ] = None,
-    water: WaterOption = "auto",
-    turn: TurnOption = 0,
-    estimator: EstimatorOption = "onnx",
-    hands: HandsOption = MEDIAPIPE_HANDS,
-    frame_rate: FrameRateOption = None,
-    frame_size: FrameSizeOption = None,
-    landmark: LandmarkOption = None,
+    *,
+    reading: ClipReading,
 ) -> None:
     """Show what begins and ends a take of a language, or set it: salute, pose, gesture, nothing."""
     given = sum((pose is not None, gesture is not None, salute, none))
@@ -81,8 +69,6 @@ def trigger(
     loaded = Language.load(language) if language.exists() else Language(name=language.stem)
     chosen = SALUTE if salute else NO_TRIGGER
     if pose is not None:
-        keypoints = keypoint_options(frame_rate, frame_size, landmark)
-        reading = ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
         ends = None if stop is None else read_pose(stop, reading)
         chosen = Trigger("pose", read_pose(pose, reading), ends)
     if gesture is not None:

@@ -10,30 +10,8 @@ from app.clip_sources.registry import (
     supported_kinds,
 )
 from app.clip_sources.source import (
-    ClipFacts,
     ClipSource,
-    ClipTopic,
-    OpenFrames,
     ReadOptions,
-    RecordedClip,
     Refusal,
     UnsupportedFile,
 )
-
-__all__ = [
-    "SOURCES",
-    "VIDEO",
-    "ClipFacts",
-    "ClipSource",
-    "ClipTopic",
-    "OpenFrames",
-    "ReadOptions",
-    "RecordedClip",
-    "Refusal",
-    "UnsupportedFile",
-    "is_take",
-    "source_named",
-    "source_of",
-    "sources_of_upload",
-    "supported_kinds",
-]

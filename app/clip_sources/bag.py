@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
+from typing_extensions import Unpack
 
 from app.bags import holds_keypoints, is_bag, record_bag
 from app.bags.bag import open_bag
@@ -19,7 +19,6 @@ from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
     MADE_VIDEO,
     ClipFacts,
-    ClipTopic,
     OpenFrames,
     ReadOptions,
     RecordedClip,
@@ -29,7 +28,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import BagError, OsgError, TopicError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 
 
 class BagSource:
@@ -80,7 +79,7 @@ class BagSource:
             archive = bag_kind(file.read(8)) == "zip"
         if archive and not is_bag_archive(path):
             raise UnsupportedFile("the archive holds no dive recording (no .mcap and no .db3 file)")
-        topics = tuple(ClipTopic(**asdict(topic)) for topic in usable_topics(path))
+        topics = usable_topics(path)
         first = topics[0]
         return ClipFacts(first.width, first.height, first.duration, first.messages, topics)
 
@@ -95,9 +94,7 @@ class BagSource:
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Find body and hands in the pictures of a topic, or read its keypoints."""
         found = record_bag(
@@ -105,10 +102,9 @@ class BagSource:
             options.topic,
             video=video,
             estimator=estimator,
-            progress=progress,
-            observer=observer,
             water=options.water,
             turn=options.turn,
+            **following,
         )
         poses = found.poses
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))

@@ -6,6 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
+from typing_extensions import Unpack
+
 from app.bags import show_recording
 from app.bags.video_writer import require_encodable
 from app.clip_sources.source import (
@@ -33,7 +35,7 @@ from app.recognition.errors import (
     OsgError,
 )
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 from app.recognition.recording.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
@@ -113,14 +115,12 @@ class KeypointFileSource:
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Read the keypoints, and draw the skeleton if there is a video or an observer."""
         read = _read(path, options)
         recording = read.recording
-        show_recording(recording, video, progress, observer)
+        show_recording(recording, video, following.get("progress"), following.get("observer"))
         if video is not None:
             recording = replace(
                 recording,

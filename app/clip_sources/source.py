@@ -8,12 +8,14 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from pydantic import BaseModel, ConfigDict, Field
+from typing_extensions import Unpack
 
+from app.bags.topic_summary import TopicSummary
 from app.keypoint_files import Ending, KeypointOptions
 from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 
@@ -93,34 +95,6 @@ class ReadOptions(BaseModel):
 
 
 @dataclass(frozen=True)
-class ClipTopic:
-    """A topic of a dive recording that a clip can be made of.
-
-    Attributes
-    ----------
-    name, type
-        As in ROS.
-    use
-        ``pictures`` or ``keypoints``.
-    messages
-        Count; each is one frame of the clip.
-    duration
-        Seconds from the first message to the last.
-    width, height
-        Pixels of the upright picture.
-
-    """
-
-    name: str
-    type: str
-    use: str
-    messages: int
-    duration: float
-    width: int
-    height: int
-
-
-@dataclass(frozen=True)
 class ClipFacts:
     """Facts that a file states about its clip, before all of it is read.
 
@@ -141,7 +115,7 @@ class ClipFacts:
     height: int
     duration: float | None
     frames: int | None
-    topics: tuple[ClipTopic, ...] = ()
+    topics: tuple[TopicSummary, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -261,9 +235,7 @@ class ClipSource(Protocol):
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Read the landmarks of every frame.
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from typing_extensions import Unpack
+
 from app.bags.extraction import copying, record_and_copy
 from app.clip_sources.source import (
     HEAD_BYTES,
@@ -17,7 +19,7 @@ from app.clip_sources.source import (
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import KeepSoFar, Observer, Progress
+from app.recognition.recording.extraction import Following
 from app.recognition.recording.video import FrameReader, probe, read_frames
 
 
@@ -80,21 +82,11 @@ class VideoSource:
         *,
         video: Path | None = None,
         estimator: PoseEstimator | None = None,
-        progress: Progress | None = None,
-        observer: Observer | None = None,
-        keep_so_far: KeepSoFar | None = None,
+        **following: Unpack[Following],
     ) -> RecordedClip:
         """Find body and hands in every frame."""
         with read_frames(path, turn=options.turn) as frames:
-            found = record_and_copy(
-                frames,
-                video,
-                estimator=estimator,
-                progress=progress,
-                observer=observer,
-                water=options.water,
-                keep_so_far=keep_so_far if video is None else None,
-            )
+            found = record_and_copy(frames, video, estimator, options.water, **following)
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)
 

@@ -1,5 +1,10 @@
 """Exceptions of OSG Studio: one tree with the base `OsgError`."""
 
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class OsgError(ValueError):
     """Base of all errors that OSG Studio raises on purpose.
@@ -109,3 +114,17 @@ class PublishError(OsgError):
 
 class VehicleError(OsgError):
     """Raised when a vehicle table is invalid, or a vehicle's address cannot be used."""
+
+
+@contextmanager
+def explain_missing_package(
+    what: str, extra: str, kind: type[OsgError] = OsgError, instead: str = ""
+) -> Iterator[None]:
+    """Explain an import that fails: `what` needs the package, which an `extra` installs."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        raise kind(
+            f"{what} needs {error.name}, which is not installed; install it with: "
+            f'pip install "osg-studio[{extra}]"{instead}'
+        ) from error

@@ -1,6 +1,6 @@
 """JSON messages of the robot: one pydantic model for each event, derived from `app.robot.events`.
 
-`osg-studio robot` writes one JSON object a line. The JSON Schema in `schema/` is generated here.
+`osg-studio robot` writes one JSON object a line. The JSON Schema in `schema/` is theirs.
 """
 
 from __future__ import annotations
@@ -9,22 +9,14 @@ import json
 import re
 from dataclasses import MISSING, fields
 from functools import reduce
-from importlib import resources
 from inspect import getdoc
 from operator import or_
-from typing import Annotated, Any, Final, Literal, get_args, get_type_hints
+from typing import Annotated, Any, Final, Literal, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 
 from app.recognition.phrases.parser import PhraseEventKind
 from app.robot.events import JSON_TYPE, Event, PhraseHeard, Revision, Seconds, Sha256, Share
-
-VERSION: Final = 1
-"""Version of the lines; raised when a reader of this version could misunderstand a line. New keys
-and new events do not raise it."""
-
-SCHEMA_ID = f"urn:osg-studio:robot-event:{VERSION}"
-SCHEMA_FILE = f"robot-event-{VERSION}.schema.json"
 
 
 class Message(BaseModel):
@@ -114,7 +106,7 @@ def _derive_message(event: type[Event]) -> type[Message]:
 
 _MODELS: Final[dict[type[Event], type[Message]]] = {
     event: PhraseHeardMessage if event is PhraseHeard else _derive_message(event)
-    for event in get_args(Event)
+    for event in Event.__subclasses__()
 }
 
 _ANY_MESSAGE: Any = Annotated[reduce(or_, _MODELS.values()), Field(discriminator="event")]
@@ -132,15 +124,3 @@ def format_line(event: Event) -> str:
     """Format an event as one line of JSON in ASCII, ``event`` first, without a line break."""
     content = to_message(event).model_dump(mode="json")
     return json.dumps({"event": content.pop("event")} | content, allow_nan=False)
-
-
-def generate_schema() -> str:
-    """Generate the JSON Schema 2020-12 of a line, as text."""
-    schema = MESSAGES.json_schema(mode="serialization")
-    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
-    return json.dumps(head | schema, indent=2) + "\n"
-
-
-def read_schema() -> str:
-    """Read the JSON Schema that is checked in and shipped."""
-    return (resources.files("app.robot") / "schema" / SCHEMA_FILE).read_text("utf-8")

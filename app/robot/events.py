@@ -50,11 +50,17 @@ CommandValue = Annotated[
 ]
 
 
-@dataclass(frozen=True)
-class SourceOpened:
-    """Frames are about to be looked at; the first line."""
+@dataclass(frozen=True, eq=False)
+class Event:
+    """Base of the events, and of nothing else: `__subclasses__` lists them in order."""
 
     time: Seconds
+
+
+@dataclass(frozen=True)
+class SourceOpened(Event):
+    """Frames are about to be looked at; the first line."""
+
     source: Annotated[str, Field(description="Its name, without passwords.")]
     live: Annotated[bool, Field(description="Whether frames may be dropped.")]
     frame_size: Annotated[tuple[int, int], Field(description="Width and height in pixels.")]
@@ -65,84 +71,75 @@ class SourceOpened:
 
 
 @dataclass(frozen=True)
-class SourceWarned:
+class SourceWarned(Event):
     """Something is wrong with the source that does not stop it.
 
     An example is a damaged clip.
     """
 
-    time: Seconds
     reason: Reason
 
 
 @dataclass(frozen=True)
-class SourceLost:
+class SourceLost(Event):
     """A camera gives no frames any more and is being opened again; a take begun is rejected."""
 
-    time: Seconds
     reason: Reason
 
 
 @dataclass(frozen=True)
-class SourceRestored:
+class SourceRestored(Event):
     """A lost camera gives frames again."""
 
-    time: Seconds
     missing: Annotated[float, Field(description="Seconds without a frame.")]
     attempts: Annotated[int, Field(ge=1, description="How often opening was tried.")]
 
 
 @dataclass(frozen=True)
-class SourceEnded:
+class SourceEnded(Event):
     """The recording is over, or the robot was stopped; after it only a vehicle may report."""
 
-    time: Seconds
     frames: Annotated[Count, Field(description="Looked at.")]
     dropped: Annotated[Count, Field(description="Left out because newer ones had come.")]
     stopped: Annotated[bool, Field(description="By a signal, before the source was over.")]
 
 
 @dataclass(frozen=True)
-class FramesDropped:
+class FramesDropped(Event):
     """The camera is faster than this machine.
 
     Emitted at most once in `app.robot.runtime.REPORT_SECONDS`.
     """
 
-    time: Seconds
     seconds: Annotated[float, Field(description="Since when is counted.")]
     dropped: Count
     frames: Annotated[Count, Field(description="Looked at in this time.")]
 
 
 @dataclass(frozen=True)
-class Heartbeat:
+class Heartbeat(Event):
     """The runtime works; of live sources alone, at least every 5 seconds.
 
     A supervisor that reads none for longer starts the robot again.
     """
 
-    time: Seconds
     frames: Annotated[Count, Field(description="Looked at since the beginning.")]
     dropped: Annotated[Count, Field(description="Left out since the beginning.")]
     lost: Annotated[bool, Field(description="Whether the source gives no frames at present.")]
 
 
 @dataclass(frozen=True)
-class RecognitionReady:
+class RecognitionReady(Event):
     """The models have processed their first frame: from now on gestures are seen."""
-
-    time: Seconds
 
 
 @dataclass(frozen=True)
-class FrameRateChanged:
+class FrameRateChanged(Event):
     """The processed frames are too few a second to recognise gestures, or enough again.
 
     Emitted when that changes, for the rate in `app.robot.runtime.RATE_SECONDS`.
     """
 
-    time: Seconds
     frames_per_second: Annotated[float, Field(ge=0, description="Frames looked at in a second.")]
     sufficient: Annotated[bool, Field(description="Whether gestures can be recognised.")]
 
@@ -154,10 +151,9 @@ class FrameRateChanged:
 
 
 @dataclass(frozen=True)
-class OutputFailed:
+class OutputFailed(Event):
     """A log cannot be written any more; everything else goes on."""
 
-    time: Seconds
     output: Annotated[
         Literal["stdout", "stderr"], Field(description="What is not written any more.")
     ]
@@ -165,18 +161,16 @@ class OutputFailed:
 
 
 @dataclass(frozen=True)
-class VehicleReported:
+class VehicleReported(Event):
     """A line about the vehicle: what was asked of it, and what it did."""
 
-    time: Seconds
     text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
 
 
 @dataclass(frozen=True)
-class AnswerGiven:
+class AnswerGiven(Event):
     """The robot answers the diver, by the pulses that the vehicle table lets him see."""
 
-    time: Seconds
     answer: Annotated[
         Answer,
         Field(
@@ -191,10 +185,9 @@ class AnswerGiven:
 
 
 @dataclass(frozen=True)
-class StateChanged:
+class StateChanged(Event):
     """Another state of the salutes."""
 
-    time: Seconds
     state: Annotated[
         TakeState,
         Field(
@@ -205,10 +198,9 @@ class StateChanged:
 
 
 @dataclass(frozen=True)
-class LanguageChanged:
+class LanguageChanged(Event):
     """From now on takes are recognised by this language; the second line, and after a reload."""
 
-    time: Seconds
     name: str
     sha256: Sha256
     revision: Revision
@@ -225,20 +217,19 @@ class LanguageChanged:
 
 
 @dataclass(frozen=True)
-class LanguageRefused:
+class LanguageRefused(Event):
     """A new language file cannot be used; the language told here is kept.
 
     `sha256` and `revision` are those of the language that stays active.
     """
 
-    time: Seconds
     reason: Reason
     sha256: Sha256
     revision: Revision
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TakeRecognized:
+class TakeRecognized(Event):
     """A gesture was shown.
 
     Attributes
@@ -256,7 +247,6 @@ class TakeRecognized:
 
     """
 
-    time: Seconds
     start: Seconds
     end: Seconds
     closed: Literal[True]
@@ -274,7 +264,7 @@ class TakeRecognized:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TakeRejected:
+class TakeRejected(Event):
     """Something was shown that the robot must not act on.
 
     Attributes
@@ -295,7 +285,6 @@ class TakeRejected:
 
     """
 
-    time: Seconds
     start: Seconds
     end: Seconds
     closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
@@ -322,7 +311,7 @@ class TakeRejected:
 
 
 @dataclass(frozen=True)
-class PhraseHeard:
+class PhraseHeard(Event):
     """What came of a gesture, or of a pause, in a language with phrases.
 
     Attributes
@@ -339,30 +328,7 @@ class PhraseHeard:
 
     """
 
-    time: float
     phrase: PhraseEvent
     confidence: float
     sha256: str
     revision: int
-
-
-Event = (
-    SourceOpened
-    | SourceWarned
-    | SourceLost
-    | SourceRestored
-    | SourceEnded
-    | FramesDropped
-    | Heartbeat
-    | RecognitionReady
-    | FrameRateChanged
-    | OutputFailed
-    | VehicleReported
-    | AnswerGiven
-    | StateChanged
-    | LanguageChanged
-    | LanguageRefused
-    | TakeRecognized
-    | TakeRejected
-    | PhraseHeard
-)

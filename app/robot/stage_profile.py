@@ -6,6 +6,7 @@ The paper reports frames per second of the camera alone, with pose estimation, a
 
 from __future__ import annotations
 
+import operator
 import re
 import shutil
 import subprocess
@@ -13,7 +14,7 @@ import threading
 import time as clock
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, get_args
 
@@ -193,18 +194,10 @@ class Cost:
     processor: float = 0.0
 
     def __add__(self, other: Cost) -> Cost:
-        return Cost(
-            self.seconds + other.seconds,
-            self.joules + other.joules,
-            self.processor + other.processor,
-        )
+        return Cost(*map(operator.add, astuple(self), astuple(other)))
 
     def __sub__(self, other: Cost) -> Cost:
-        return Cost(
-            self.seconds - other.seconds,
-            self.joules - other.joules,
-            self.processor - other.processor,
-        )
+        return Cost(*map(operator.sub, astuple(self), astuple(other)))
 
 
 @dataclass

@@ -42,22 +42,12 @@ def judge_recognition(
     language: ActiveLanguage, recognition: Recognition, time: float, start: float, end: float
 ) -> TakeRecognized | TakeRejected:
     """Build the event of a recognition from `start` to `end`: recognised, a pair, or rejected."""
+    about: dict[str, Any] = {"time": time, "start": start, "end": end, "recognition": recognition}
     if recognition.label is None:
-        return TakeRejected(
-            time=time,
-            start=start,
-            end=end,
-            closed=True,
-            reason=explain_rejection(language, recognition),
-            sha256=language.sha256,
-            revision=language.revision,
-            pair=recognition.pair,
-            recognition=recognition,
-        )
+        reason = explain_rejection(language, recognition)
+        return _reject(language, reason, **about, closed=True, pair=recognition.pair)
     return TakeRecognized(
-        time=time,
-        start=start,
-        end=end,
+        **about,
         closed=True,
         label=recognition.label,
         confidence=recognition.confidence,
@@ -65,7 +55,6 @@ def judge_recognition(
         command=language.recognizer.language.gesture(recognition.label).command,
         sha256=language.sha256,
         revision=language.revision,
-        recognition=recognition,
     )
 
 
@@ -77,16 +66,12 @@ def reject_take(
     recognition: Recognition | None = None,
 ) -> TakeRejected:
     """Build the event of a take that is rejected for `reason`."""
-    return TakeRejected(
-        time=time,
-        start=take.start,
-        end=take.end,
-        closed=take.closed,
-        reason=reason,
-        sha256=language.sha256,
-        revision=language.revision,
-        recognition=recognition,
-    )
+    about = {"start": take.start, "end": take.end, "closed": take.closed}
+    return _reject(language, reason, **about, time=time, recognition=recognition)
+
+
+def _reject(language: ActiveLanguage, reason: str, **about: Any) -> TakeRejected:
+    return TakeRejected(reason=reason, sha256=language.sha256, revision=language.revision, **about)
 
 
 def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str:

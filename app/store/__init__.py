@@ -1,7 +1,7 @@
 """Store of clips, languages, jobs and recognitions: a database, and files beside it."""
 
 from app.store.audit import AuditStore
-from app.store.clips import ClipPage, ClipQuery, ClipStore, ClipWithJob
+from app.store.clips import ClipQuery, ClipStore, ClipWithJob
 from app.store.data_folder import FolderLock, identity_of
 from app.store.database import Database
 from app.store.errors import (
@@ -25,7 +25,6 @@ from app.store.models import (
     JobStatus,
     LabelledResult,
     LabelledTake,
-    LanguageRecord,
     LanguageRevision,
     PracticeTake,
     RecognitionRecord,
@@ -37,57 +36,3 @@ from app.store.sign_ins import SignInStore
 from app.store.test_sets import LabelledTakeStore, TestedTake, TestSetFull
 from app.store.tokens import NamedToken, Role, TokenFile
 from app.store.uploads import Upload, UploadStore
-
-__all__ = [
-    "NO_QUOTA",
-    "AuditEntry",
-    "AuditStore",
-    "Clip",
-    "ClipPage",
-    "ClipQuery",
-    "ClipStore",
-    "ClipWithJob",
-    "Conflict",
-    "Database",
-    "DemonstrationSource",
-    "Draft",
-    "FolderLock",
-    "Invitation",
-    "InvitationClosed",
-    "InvitationState",
-    "InvitationStore",
-    "InvitedTake",
-    "Job",
-    "JobStatus",
-    "JobStore",
-    "LabelledResult",
-    "LabelledTake",
-    "LabelledTakeStore",
-    "LanguageRecord",
-    "LanguageRevision",
-    "LanguageState",
-    "LanguageStore",
-    "NamedToken",
-    "NotFound",
-    "PracticeStore",
-    "PracticeTake",
-    "Quota",
-    "QuotaExceeded",
-    "QuotaStore",
-    "RecognitionRecord",
-    "RecognitionStore",
-    "Role",
-    "SignInStore",
-    "SourceStore",
-    "StoreError",
-    "StoreUnavailable",
-    "TestSetFull",
-    "TestedTake",
-    "TokenFile",
-    "TooManyInvitations",
-    "Upload",
-    "UploadStore",
-    "Usage",
-    "identity_of",
-    "require_open",
-]

@@ -18,7 +18,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from sqlmodel import col, select
 
 from app.store.atomic_files import sync_directory
-from app.store.database import Database
+from app.store.database import Database, DatabaseStore
 from app.store.errors import StoreError, StoreUnavailable
 from app.store.models import AuditEntry
 
@@ -31,7 +31,7 @@ JOURNAL = "audit.jsonl"
 logger = logging.getLogger(__name__)
 
 
-class AuditStore:
+class AuditStore(DatabaseStore):
     """Keeps the entries; none is ever changed or removed.
 
     Parameters
@@ -44,7 +44,7 @@ class AuditStore:
     """
 
     def __init__(self, database: Database, folder: Path) -> None:
-        self._database = database
+        super().__init__(database)
         self._journal = folder / JOURNAL
         self._lock = FileLock(folder / f"{JOURNAL}.lock", mode=0o600)
 

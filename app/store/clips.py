@@ -18,7 +18,7 @@ from sqlmodel.sql.expression import SelectOfScalar
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish_copy, sync_directory
 from app.store.clip_folder import ClipFolder
-from app.store.database import Database
+from app.store.database import Database, DatabaseStore
 from app.store.errors import NotFound
 from app.store.models import UPRIGHT, VIDEO, Clip, Job, JobStatus, new_id, now
 from app.store.objects import ObjectStore, SharedFolder
@@ -88,7 +88,7 @@ class ClipPage:
     more: bool
 
 
-class ClipStore:
+class ClipStore(DatabaseStore):
     """Keeps clips.
 
     Parameters
@@ -112,7 +112,7 @@ class ClipStore:
         objects: ObjectStore | None = None,
         most_copied: int = 0,
     ) -> None:
-        self._database = database
+        super().__init__(database)
         objects = objects or SharedFolder()
         self._copies = ClipCopies(folder, objects, most_copied, self._at_rest)
         self._files = ClipFolder(folder, objects, self._copies)
@@ -181,11 +181,6 @@ class ClipStore:
             added = ClipWithJob(clip, job)
         partial.unlink(missing_ok=True)
         return added
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change of the database, see `Database`."""
-        return self._database.changes
 
     def get(self, clip_id: str) -> ClipWithJob:
         """Return a clip that is not deleted.

@@ -180,6 +180,18 @@ class Database:
             )
 
 
+class DatabaseStore:
+    """Base of the stores, each of which keeps the rows of its kind in `database`."""
+
+    def __init__(self, database: Database) -> None:
+        self._database = database
+
+    @property
+    def changes(self) -> int:
+        """Grows with every change of the database, see `Database`."""
+        return self._database.changes
+
+
 def moment_of(session: Session) -> datetime:
     """Return the present time of the database, because the servers' clocks may differ."""
     moment: datetime = session.execute(select(func.current_timestamp())).scalar_one()

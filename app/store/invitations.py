@@ -11,7 +11,7 @@ from typing import Final
 from sqlalchemy import ColumnElement, and_, func, not_, or_, update
 from sqlmodel import Session, col, select
 
-from app.store.database import Database
+from app.store.database import DatabaseStore
 from app.store.errors import InvitationClosed, NotFound, TooManyInvitations
 from app.store.models import Invitation, InvitedTake, new_id, now
 from app.store.tokens import TOKEN_BYTES, digest
@@ -42,16 +42,8 @@ class InvitationState:
     takes: Sequence[InvitedTake]
 
 
-class InvitationStore:
+class InvitationStore(DatabaseStore):
     """Keeps invitations and their takes in `database`; a language's go when it is purged."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change of the database, see `Database`."""
-        return self._database.changes
 
     def add(
         self, language_id: str, owner: str, *, most_takes: int, most_bytes: int, days: int

@@ -9,7 +9,7 @@ from datetime import timedelta
 from sqlalchemy import ColumnElement, or_
 from sqlmodel import Session, col, func, select
 
-from app.store.database import Database, moment_of
+from app.store.database import Database, DatabaseStore, moment_of
 from app.store.errors import NotFound
 from app.store.models import Clip, Job, JobStatus, now
 
@@ -33,7 +33,7 @@ MOST_RESUMED = 1000
 """Most waiting jobs that are read at once; further ones are read when these have begun."""
 
 
-class JobStore:
+class JobStore(DatabaseStore):
     """Keeps jobs; every change of status is one transaction.
 
     A running job belongs to the server that started it, which renews its lease. After the lease any
@@ -49,7 +49,7 @@ class JobStore:
     """
 
     def __init__(self, database: Database, server: str = "") -> None:
-        self._database = database
+        super().__init__(database)
         self._server = server
 
     def get(self, job_id: str) -> Job:

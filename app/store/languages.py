@@ -10,7 +10,7 @@ from datetime import datetime
 from sqlalchemy.orm import defer
 from sqlmodel import Session, col, func, select
 
-from app.store.database import Database
+from app.store.database import DatabaseStore
 from app.store.errors import Conflict, NotFound, StoreUnavailable
 from app.store.models import (
     Clip,
@@ -53,16 +53,8 @@ class LanguageState:
     revision: LanguageRevision
 
 
-class LanguageStore:
+class LanguageStore(DatabaseStore):
     """Keeps languages in `database`; documents are opaque text here."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change of the database, see `Database`."""
-        return self._database.changes
 
     def create(
         self,
@@ -319,15 +311,12 @@ def _load(
     return LanguageState(record, row)
 
 
-class SourceStore:
+class SourceStore(DatabaseStore):
     """Keeps the sources of demonstrations in `database`.
 
     A source is stored by demonstration and not by language, revision or label, so it stays known
     after a rename or revert, in a copy, and in an exported file that is imported again.
     """
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
 
     def keep(self, source: DemonstrationSource) -> None:
         """Store the source of a demonstration, in place of an earlier one."""

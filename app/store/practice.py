@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlmodel import col, select
 
-from app.store.database import Database
+from app.store.database import DatabaseStore
 from app.store.errors import NotFound
 from app.store.models import PracticeTake
 
@@ -12,11 +12,8 @@ MOST_TAKES = 5000
 """Number of a language's newest takes that are counted: an acceptance test of a hundred divers."""
 
 
-class PracticeStore:
+class PracticeStore(DatabaseStore):
     """Keeps practice takes in `database`; they are removed with the purged clips."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
 
     def keep(self, take: PracticeTake) -> PracticeTake:
         """Store a take; it replaces the same take recognised by the same revision."""

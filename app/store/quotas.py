@@ -9,7 +9,7 @@ from sqlalchemy import Function, exists, or_
 from sqlalchemy.orm import aliased
 from sqlmodel import Session, col, delete, func, select
 
-from app.store.database import Database, moment_of
+from app.store.database import DatabaseStore, moment_of
 from app.store.errors import StoreError
 from app.store.models import (
     Clip,
@@ -164,7 +164,7 @@ NO_QUOTA = Quota()
 """Quota of a sender whom nothing limits."""
 
 
-class QuotaStore:
+class QuotaStore(DatabaseStore):
     """Reserves quota for uploads; checks and reservations hold the database's write lock.
 
     Parameters
@@ -173,9 +173,6 @@ class QuotaStore:
         Where the rows are.
 
     """
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
 
     def usage(self, owner: str, *, deleted: bool = True) -> Usage:
         """Return the present usage of an owner, with or without deleted clips and languages."""

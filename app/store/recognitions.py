@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sqlmodel import col, select
 
-from app.store.database import Database
+from app.store.database import DatabaseStore
 from app.store.errors import NotFound
 from app.store.models import Clip, LanguageRecord, RecognitionRecord
 from app.store.quotas import NO_QUOTA, Quota
@@ -12,11 +12,8 @@ from app.store.quotas import NO_QUOTA, Quota
 _VISIBLE = (col(Clip.deleted).is_(None), col(LanguageRecord.deleted).is_(None))
 
 
-class RecognitionStore:
+class RecognitionStore(DatabaseStore):
     """Keeps recognitions in `database`; those of deleted clips and languages are hidden."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
 
     def add(self, record: RecognitionRecord, quota: Quota = NO_QUOTA) -> RecognitionRecord:
         """Store `record` for the owner of a quota.

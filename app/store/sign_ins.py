@@ -14,7 +14,7 @@ from typing import Final
 
 from sqlmodel import Session, col, delete, or_, select
 
-from app.store.database import Database
+from app.store.database import Database, DatabaseStore
 from app.store.models import SignIn, now
 
 LIFETIME: Final = timedelta(days=30)
@@ -37,7 +37,7 @@ COOKIE_BYTES: Final = 32
 """Random bytes of a session's cookie."""
 
 
-class SignInStore:
+class SignInStore(DatabaseStore):
     """Begins, finds and ends sessions; used by several threads.
 
     Parameters
@@ -48,7 +48,7 @@ class SignInStore:
     """
 
     def __init__(self, database: Database) -> None:
-        self._database = database
+        super().__init__(database)
         self._lock = Lock()
         self._cached: OrderedDict[str, tuple[float, SignIn]] = OrderedDict()
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from sqlalchemy import delete
 from sqlmodel import Session, col, select
 
-from app.store.database import Database
+from app.store.database import DatabaseStore
 from app.store.errors import NotFound, StoreError
 from app.store.models import Clip, LabelledResult, LabelledTake, RecognitionRecord
 
@@ -48,11 +48,8 @@ class TestedTake:
     results: tuple[LabelledResult, ...]
 
 
-class LabelledTakeStore:
+class LabelledTakeStore(DatabaseStore):
     """Keeps the test sets of languages in `database`; takes of deleted clips are hidden."""
-
-    def __init__(self, database: Database) -> None:
-        self._database = database
 
     def add(self, takes: Sequence[LabelledTake]) -> list[LabelledTake]:
         """Add takes of one language; a take that exists already gets the new label.

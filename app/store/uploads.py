@@ -132,11 +132,8 @@ class UploadStore:
         # Only our own ids become paths.
         if not _ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
-        about = json.loads(self._about(upload_id).read_text())
         # An upload that an earlier version began has no fields, client or owner.
-        fields, client = about.get("fields", {}), about.get("client", "")
-        owner = about.get("owner", "")
-        return Upload(upload_id, about["name"], about["size"], path, fields, client, owner)
+        return Upload(id=upload_id, path=path, **json.loads(self._about(upload_id).read_text()))
 
     def remove(self, upload_id: str) -> None:
         """Remove an upload and its bytes; do nothing if there is none."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import product
 
@@ -105,7 +105,9 @@ class Shown:
         kept = share * self.measure_way(self.stroke.start, self.stroke.end)
         ends = np.interp([self.stroke.start, self.stroke.end], self.poses.time, self._way)
         times = np.interp(ends + [-kept, kept], self._way, self.poses.time)
-        return take.with_stroke(max(float(times[0]), take.start), min(float(times[1]), take.end))
+        start, end = max(float(times[0]), take.start), min(float(times[1]), take.end)
+        poses = take.untrimmed.between(start, end)
+        return replace(take, poses=poses, stroke_start=start, stroke_end=end)
 
     @cached_property
     def _way(self) -> FloatArray:

@@ -20,9 +20,10 @@ import numpy as np
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.poses.frame import Image
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.extraction import record
-from app.recognition.recording.salute import ENTER_SCORE, check_published_rule, salute_score
+from app.recognition.recording.salute import ENTER_SCORE, salute_score
 from app.recognition.recording.video import ALPHA_BACKGROUND, over_background
 from app.resources import samples_dir
 from tests.recognition.parametric_hand import labelled_hands
@@ -39,6 +40,28 @@ expects hands as a part of a picture."""
 
 SYNTHETIC_HANDS = 3000
 """Synthetic hands: enough to measure a false-positive rate of 1 % to a quarter of its value."""
+
+
+PUBLISHED_RATIO = 1.2
+"""How many times wider the middle gap must be in the published rule (OSG's reference code)."""
+
+_TIPS = [HAND_LANDMARKS.index(f"{finger}_tip") for finger in FINGERS]
+
+
+def check_published_rule(hand_xy: FloatArray) -> bool:
+    """Return whether the published implementation accepts a hand as a salute.
+
+    The gap between the tips of middle and ring finger is `PUBLISHED_RATIO` times wider than the
+    gap between index and middle finger, and than the one between ring and little finger.
+
+    Parameters
+    ----------
+    hand_xy
+        ``(21, 2)`` pixels, in the order of `HAND_LANDMARKS`.
+
+    """
+    index, middle, little = np.linalg.norm(np.diff(hand_xy[_TIPS], axis=0), axis=1)
+    return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
 
 
 def salutes(hand: FloatArray) -> bool:

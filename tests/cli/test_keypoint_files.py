@@ -11,7 +11,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from app.cli.recognition_report import RecognitionReport, read_schema
+from app.cli.recognition_report import RecognitionReport
 from app.recognition import Gesture, Language
 from app.recognition.gestures.tuning import Tuning
 from app.recognition.poses.frame import Hand
@@ -26,6 +26,7 @@ from tests.keypoint_files.files import (
     write_numbered,
     write_openpose,
 )
+from tests.published_schemas import RECOGNITION_REPORT
 from tests.recognition.demonstrations import pool
 from tests.recognition.parametric_hand import hand_xy, salute
 from tests.recognition.strategies import BODY, Shape, circle, line, recording
@@ -62,7 +63,7 @@ def test_a_take_between_two_gestures_is_a_question_and_nothing_is_recognised(
     assert ended.code == 1
     (take,) = json.loads(ended.out)["takes"]
     assert (take["label"], take["pair"]) == (None, ["circle", "ring"])
-    jsonschema.validate(json.loads(ended.out), json.loads(read_schema()))
+    jsonschema.validate(json.loads(ended.out), RECOGNITION_REPORT.content)
     assert RecognitionReport.model_validate_json(ended.out).takes[0].pair == ("circle", "ring")
 
 

@@ -32,15 +32,6 @@ def test_migrating_again_changes_nothing(database: Database) -> None:
     assert set(inspect(database.engine).get_table_names()) == before
 
 
-def test_every_migration_can_be_taken_back(database: Database) -> None:
-    config = Config()
-    config.set_main_option("script_location", str(MIGRATIONS))
-    with database.engine.begin() as connection:
-        config.attributes["connection"] = connection
-        command.downgrade(config, "base")
-    assert inspect(database.engine).get_table_names() == ["alembic_version"]
-
-
 @pytest.mark.withstands(row="H21")
 def test_a_migration_that_breaks_off_leaves_the_database_as_it_was(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -7,7 +7,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.middleware.identities import identity_of
+from app.api.services.identities import identity_of
 from app.api.services.running_studio import Studio
 from app.store import Quota
 

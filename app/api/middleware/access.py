@@ -25,9 +25,9 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from app.api.http.page_files import prefix_of
 from app.api.http.problems import RETRY_SECONDS, ProblemError, problem_of
 from app.api.http.websockets import POLICY_VIOLATION
-from app.api.middleware.identities import ANYBODY, Identities, Identity
 from app.api.middleware.open_connections import OpenConnections, Proof
 from app.api.middleware.roles import SAFE_METHODS
+from app.api.services.identities import ANYBODY, Identities, Identity
 from app.settings import Settings, is_loopback
 from app.store import InvitationStore, SignInStore, StoreError
 from app.store.invitations import closed

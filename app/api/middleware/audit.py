@@ -7,9 +7,9 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.http.problems import problem_of
-from app.api.middleware.identities import identity_of
 from app.api.middleware.roles import SAFE_METHODS, needed_role
 from app.api.observation.logs import request_id
+from app.api.services.identities import identity_of
 from app.store import AuditEntry, AuditStore, Role, StoreError
 
 LONGEST_PATH = 300

@@ -18,8 +18,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
 from app.api.http.websockets import POLICY_VIOLATION
-from app.api.middleware.identities import ANYBODY, Identities, Identity
 from app.api.middleware.roles import SAFE_METHODS, includes, needed_role
+from app.api.services.identities import ANYBODY, Identities, Identity
 from app.store import Role, SignInStore, StoreError
 from app.store.tokens import TokensUnavailable
 

@@ -11,9 +11,9 @@ from uuid import uuid4
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.middleware.identities import identity_of
 from app.api.observation.logs import FIELDS, request_id
 from app.api.observation.metrics import Metrics
+from app.api.services.identities import identity_of
 
 HEADER: Final = "X-Request-ID"
 

@@ -8,7 +8,7 @@ from typing import Final
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.api.http.problems import ProblemError
-from app.api.middleware.identities import identity_of
+from app.api.services.identities import identity_of
 from app.store import Role
 
 SAFE_METHODS: Final = frozenset({"GET", "HEAD", "OPTIONS"})

@@ -22,10 +22,10 @@ from app.api.http.schemas.invitations import (
 )
 from app.api.http.schemas.values import Diver, Label
 from app.api.ingest.intake import Inspected, inspect, require_place_in_queue, store
-from app.api.ingest.invited_takes import Returned, answer_question, require_unshown
 from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
+from app.api.services.invited_takes import Returned, answer_question, require_unshown
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly, edited
 from app.recognition import Gesture
 from app.store import Invitation, require_open

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 
+from app.api.http.schemas.clips import TakeView
 from app.api.services.running_studio import RecordingFile, Studio, load_recording
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.recording.segmentation import takes_in
@@ -15,28 +15,6 @@ from app.store import LanguageState
 CACHED_CLIPS = 64
 """Number of clips whose takes are cached: spotting takes a fifth of a clip's duration, and trimming
 some milliseconds a take."""
-
-
-@dataclass(frozen=True)
-class TakeRange:
-    """A take without its landmarks.
-
-    Attributes
-    ----------
-    start, end
-        Seconds between the triggers.
-    closed
-        Whether a trigger ended it.
-    stroke_start, stroke_end
-        Seconds of the gesture itself.
-
-    """
-
-    start: float
-    end: float
-    closed: bool
-    stroke_start: float
-    stroke_end: float
 
 
 def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
@@ -55,7 +33,7 @@ def trigger_of(studio: Studio, language_id: str | None) -> Trigger:
 
 def find_takes(
     studio: Studio, clip_id: str, state: LanguageState | None, *, so_far: bool = False
-) -> tuple[TakeRange, ...]:
+) -> tuple[TakeView, ...]:
     """Return the takes of a clip by a language's trigger; without a trigger, the spotted gestures.
 
     With `so_far`, those that have ended in a clip whose other frames are being read.
@@ -76,22 +54,28 @@ def find_takes(
 
 
 @lru_cache(CACHED_CLIPS)
-def _segment(recording: RecordingFile, trigger: Trigger) -> tuple[TakeRange, ...]:
+def _segment(recording: RecordingFile, trigger: Trigger) -> tuple[TakeView, ...]:
     """Find the takes between held triggers."""
     return tuple(
-        TakeRange(take.start, take.end, take.closed, take.stroke_start, take.stroke_end)
+        TakeView.model_validate(take)
         for take in takes_in(load_recording(recording), trigger=trigger)
     )
 
 
 @lru_cache(CACHED_CLIPS)
-def _spot(recording: RecordingFile, document: str) -> tuple[TakeRange, ...]:
+def _spot(recording: RecordingFile, document: str) -> tuple[TakeView, ...]:
     """Spot a language's gestures; return none if none of them can be spotted."""
     try:
         spotter = Spotter(Recognizer(Language.from_json(document)))
     except OsgError:
         return ()
     return tuple(
-        TakeRange(found.start, found.end, True, found.start, found.end)
+        TakeView(
+            start=found.start,
+            end=found.end,
+            closed=True,
+            stroke_start=found.start,
+            stroke_end=found.end,
+        )
         for found in spotter.listen(load_recording(recording).poses)
     )

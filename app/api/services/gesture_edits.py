@@ -117,12 +117,8 @@ def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language
 
 def set_switches(switches: Switches, wanted: GestureDraft | GestureChange) -> Switches:
     """Return the switches, changed to those values of the request that are not None."""
-    return replace(
-        switches,
-        direction=wanted.direction or switches.direction,
-        tempo=wanted.tempo or switches.tempo,
-        mirror=wanted.mirror or switches.mirror,
-        hand_shape=wanted.hand_shape or switches.hand_shape,
+    return Switches(
+        **{name: getattr(wanted, name) or kept for name, kept in vars(switches).items()}
     )
 
 

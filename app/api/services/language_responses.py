@@ -78,16 +78,11 @@ _checksums = DocumentCache(lambda document: seal(json.loads(document)))
 
 def view_summary(state: LanguageState) -> LanguageSummary:
     """Return a language as it stands in a list."""
-    record, row = state.record, state.revision
+    row = state.revision
     return LanguageSummary(
-        id=record.id,
-        name=row.name,
-        revision=row.revision,
-        author=row.author,
-        change=row.change,
+        **state.record.model_dump(include={"id", "sample", "created"}),
+        **row.model_dump(include={"name", "revision", "author", "change"}),
         labels=json.loads(row.labels),
-        sample=record.sample,
-        created=record.created,
         updated=row.created,
     )
 
@@ -98,12 +93,8 @@ def view_gesture(
     """Return a gesture of a revision; `sources` are the clips of its demonstrations."""
     # With the revision in the address, browsers can keep the picture until the gesture changes.
     query = urlencode({"label": gesture.label, "revision": state.revision.revision})
-    switches = gesture.switches
     return GestureView(
-        direction=switches.direction,
-        tempo=switches.tempo,
-        mirror=switches.mirror,
-        hand_shape=switches.hand_shape,
+        **vars(gesture.switches),
         label=gesture.label,
         description=gesture.description,
         command=gesture.command,

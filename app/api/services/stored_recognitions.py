@@ -255,10 +255,12 @@ def write_pair(answer: dict[str, Any]) -> str | None:
     return None if answer["pair"] is None else json.dumps(answer["pair"])
 
 
-def read_pair(stored: str | None) -> list[str] | None:
+def read_pair(stored: str | None) -> tuple[str, str] | None:
     """Return a pair that `write_pair` has written."""
-    pair: list[str] | None = None if stored is None else json.loads(stored)
-    return pair
+    if stored is None:
+        return None
+    nearest, other = json.loads(stored)
+    return nearest, other
 
 
 def load_recognition(record: RecognitionRecord) -> Recognition:

@@ -8,7 +8,7 @@ from fastapi import Depends, Path
 from starlette.requests import HTTPConnection
 
 from app.api.http.problems import ProblemError
-from app.api.middleware.identities import identity_of
+from app.api.services.identities import identity_of
 from app.ui.workspace import Workspace
 from app.ui.workspace_registry import WorkspaceRegistry
 

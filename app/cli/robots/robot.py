@@ -24,7 +24,7 @@ from app.cli.robots.run import (
     run_with_uploads,
     try_answers,
 )
-from app.recognition.errors import PublishError
+from app.recognition.errors import PublishError, explain_missing_package
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.gestures.profile import PROFILES
 from app.robot import Event, SourceEnded, SourceOpened
@@ -169,13 +169,8 @@ def robot(
 
 def open_files(options: RobotOptions, control: Control) -> RobotFiles:
     """Return the files that the page takes by upload."""
-    try:
+    with explain_missing_package("--upload", "mavlink", PublishError):
         from app.robot.publishing.robot_files import RobotFiles
-    except ModuleNotFoundError as error:
-        raise PublishError(
-            f"--upload needs {error.name}, which is not installed; install it with: "
-            'pip install "osg-studio[mavlink]"'
-        ) from error
     return RobotFiles(
         options.language,
         options.vehicle,

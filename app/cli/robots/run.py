@@ -21,7 +21,7 @@ from rich.table import Table
 
 from app.cli.robots.channels import Channels, Handler, open_ros2_topics
 from app.cli.terminal import describe_error, people
-from app.recognition.errors import EstimatorError, OsgError, VehicleError
+from app.recognition.errors import EstimatorError, OsgError, VehicleError, explain_missing_package
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
@@ -386,15 +386,10 @@ def open_bridge(
         When the table or its key cannot be read.
 
     """
-    try:
+    with explain_missing_package("--mavlink", "mavlink", VehicleError):
         from app.robot.mavlink.bridge import MavlinkBridge
         from app.robot.mavlink.links import open_link
         from app.robot.mavlink.table import read_signing_key, read_vehicle_table
-    except ModuleNotFoundError as error:
-        raise VehicleError(
-            f"--mavlink needs {error.name}, which is not installed; install it with: "
-            'pip install "osg-studio[mavlink]"'
-        ) from error
     table = read_vehicle_table(table_file)
     language = listener.language.recognizer.language
     if unknown := list(table.list_unknown(language)):

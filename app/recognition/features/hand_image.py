@@ -15,7 +15,7 @@ import numpy as np
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.trajectory_image import MARGIN, SIZE, STROKE_WIDTH
 from app.recognition.poses.hand_shape import HandShape
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 
 BONE_WIDTH = STROKE_WIDTH // 2 + 1
@@ -38,7 +38,7 @@ FINGER_BONES = tuple(
 
 KNUCKLE_BONES = tuple(
     (HAND_LANDMARKS.index(f"{one}_mcp"), HAND_LANDMARKS.index(f"{other}_mcp"))
-    for one, other in pairwise(("index_finger", "middle_finger", "ring_finger", "pinky"))
+    for one, other in pairwise(FINGERS)
 )
 """The line across the palm."""
 

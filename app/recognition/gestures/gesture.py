@@ -194,16 +194,7 @@ class Gesture:
         """
         label = make_label(label)
         shown = Demonstration.from_poses(label, poses, salient=salient, diver=diver)
-        return cls(
-            label=label,
-            salient=shown.salient,
-            image=shown.image,
-            trajectory=shown.trajectory,
-            descriptors=shown.descriptors,
-            description=description,
-            command=command,
-            diver=shown.diver,
-        )
+        return cls(label=label, description=description, command=command, **vars(shown))
 
     @property
     def is_held(self) -> bool:
@@ -398,15 +389,7 @@ class Gesture:
     def _with_shown(self, shown: Sequence[Demonstration]) -> Gesture:
         """Return the gesture with other demonstrations."""
         first, *further = shown
-        return replace(
-            self,
-            salient=first.salient,
-            image=first.image,
-            trajectory=first.trajectory,
-            descriptors=first.descriptors,
-            diver=first.diver,
-            further=tuple(further),
-        )
+        return replace(self, **vars(first), further=tuple(further))
 
 
 def check_label(label: Any) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass, replace
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, get_args
 
 import numpy as np
 
@@ -18,14 +18,14 @@ from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, condense
 from app.recognition.gestures.gesture import Gesture
-from app.recognition.health.rate import Rate
+from app.recognition.health.rate import Rate, to_plain
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
 
 Outcome = Literal["right", "asked", "refused", "wrong"]
 
-OUTCOMES: Final[tuple[Outcome, ...]] = ("right", "asked", "refused", "wrong")
+OUTCOMES: Final[tuple[Outcome, ...]] = get_args(Outcome)
 
 ENOUGH_PEOPLE: Final = 3
 """Number of people from which a forecast is promised; that of two people ranks languages worse."""
@@ -72,10 +72,6 @@ class Reading:
             return f"{whose} is refused" + (f" (nearest {answer})" if answer else "")
         asked = "asked back as" if len(self.read_as) > 1 else "read as"
         return f"{whose} is {asked} {answer}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return vars(self) | {"read_as": list(self.read_as)}
 
 
 @dataclass(frozen=True)
@@ -134,6 +130,10 @@ class Forecast:
         of = [each for each in self.readings if label in (None, each.gesture)]
         return Rate(sum(each.outcome == outcome for each in of), len(of)) if of else None
 
+    def counts(self, label: str | None = None) -> dict[str, Rate | None]:
+        """Count every outcome, see `count`."""
+        return {outcome: self.count(outcome, label) for outcome in OUTCOMES}
+
     def failed(self, label: str) -> tuple[Reading, ...]:
         """Return the readings of a gesture that are not right."""
         return tuple(
@@ -169,15 +169,18 @@ class Forecast:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        counts = {outcome: self.count(outcome) for outcome in OUTCOMES}
-        return {
-            "people": self.people,
-            "words": self.words,
-            "asks_more": self.asks_more,
-            "curve": [{"people": point.people, **point.right.to_dict()} for point in self.curve],
-            **{outcome: rate and rate.to_dict() for outcome, rate in counts.items()},
-            "failed": [each.to_dict() for each in self.readings if each.outcome != "right"],
-        }
+        curve = [{"people": each.people, **to_plain(each.right)} for each in self.curve]
+        plain: dict[str, Any] = to_plain(
+            {
+                "people": self.people,
+                "words": self.words,
+                "asks_more": self.asks_more,
+                "curve": curve,
+                **self.counts(),
+                "failed": [each for each in self.readings if each.outcome != "right"],
+            }
+        )
+        return plain
 
 
 def make_forecast(language: Language, *, advance: Callable[[], None] = lambda: None) -> Forecast:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass
 from typing import Any, Final
 
 STANDARD_ERRORS: Final = 1.96
@@ -46,7 +46,16 @@ class Rate:
         low, high = self.interval
         return f"{self.rate:.0%} ({low:.0%}-{high:.0%}, n {self.n})"
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types, rounded."""
-        low, high = (round(end, DIGITS) for end in self.interval)
-        return {"rate": round(self.rate, DIGITS), "low": low, "high": high, "n": self.n}
+
+def to_plain(value: Any) -> Any:
+    """Return a part of a report in plain JSON types, numbers rounded to `DIGITS`."""
+    if isinstance(value, Rate):
+        low, high = value.interval
+        return to_plain({"rate": value.rate, "low": low, "high": high, "n": value.n})
+    if is_dataclass(value):
+        return to_plain(vars(value))
+    if isinstance(value, dict):
+        return {name: to_plain(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [to_plain(each) for each in value]
+    return round(value, DIGITS) if isinstance(value, float) else value

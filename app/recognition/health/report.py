@@ -10,8 +10,8 @@ import numpy as np
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.gestures.switches import Sensitivity
 from app.recognition.health.finding import Finding
-from app.recognition.health.forecast import OUTCOMES, Forecast
-from app.recognition.health.rate import DIGITS, Rate
+from app.recognition.health.forecast import Forecast
+from app.recognition.health.rate import DIGITS, Rate, to_plain
 from app.recognition.health.trigger_health import TriggerHealth
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
@@ -35,14 +35,6 @@ class LandmarkHealth:
     landmark: str
     displacement: float
     visible: float
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {
-            "landmark": self.landmark,
-            "displacement": round(self.displacement, DIGITS),
-            "visible": round(self.visible, DIGITS),
-        }
 
 
 @dataclass(frozen=True)
@@ -73,16 +65,11 @@ class GestureHealth:
 
     def to_dict(self, forecast: Forecast) -> dict[str, Any]:
         """Return plain JSON types, with the gesture's part of the forecast."""
-        rates = {outcome: forecast.count(outcome, self.label) for outcome in OUTCOMES}
-        return {
-            "label": self.label,
-            "seconds": None if self.seconds is None else round(self.seconds, DIGITS),
-            "landmarks": [landmark.to_dict() for landmark in self.landmarks],
-            "counts": self.counts and vars(self.counts),
-            "nearest": self.nearest
-            and {"label": self.nearest[0], "distance": round(self.nearest[1], DIGITS)},
-            **{outcome: rate and rate.to_dict() for outcome, rate in rates.items()},
-        }
+        near = self.nearest and dict(zip(("label", "distance"), self.nearest, strict=True))
+        plain: dict[str, Any] = to_plain(
+            vars(self) | {"nearest": near} | forecast.counts(self.label)
+        )
+        return plain
 
 
 @dataclass(frozen=True)
@@ -132,17 +119,6 @@ class LimitHealth:
             accepted=Rate(accepted, len(others.foreign)) if len(others.foreign) else None,
         )
 
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {
-            "people": self.people,
-            "most_refused": self.most_refused,
-            "limit": round(self.limit, DIGITS),
-            "measured": self.measured,
-            "refused": self.refused and self.refused.to_dict(),
-            "accepted": self.accepted and self.accepted.to_dict(),
-        }
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class HealthReport:
@@ -183,19 +159,16 @@ class HealthReport:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        labels = [gesture.label for gesture in self.gestures]
-        places = np.round(self.places, DIGITS).tolist()
+        limit = self.limit and to_plain(self.limit) | {"most_refused": self.limit.most_refused}
+        places = zip(self.gestures, np.round(self.places, DIGITS).tolist(), strict=True)
         return {
             "language": self.language,
             "revision": self.revision,
             "ok": self.ok,
             "forecast": self.forecast.to_dict(),
-            "trigger": self.trigger and self.trigger.to_dict(),
-            "limit": self.limit and self.limit.to_dict(),
+            "trigger": to_plain(self.trigger),
+            "limit": limit,
             "gestures": [gesture.to_dict(self.forecast) for gesture in self.gestures],
             "warnings": [finding.to_dict() for finding in self.findings],
-            "map": [
-                {"label": label, "x": x, "y": y}
-                for label, (x, y) in zip(labels, places, strict=True)
-            ],
+            "map": [{"label": each.label, "x": x, "y": y} for each, (x, y) in places],
         }

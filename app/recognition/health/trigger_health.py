@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.finding import Finding
-from app.recognition.health.rate import DIGITS, Rate
+from app.recognition.health.rate import Rate
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.salute import ENTER_SCORE, HeldTrigger
@@ -57,15 +56,6 @@ class TriggerHealth:
     missed: Rate
     false_per_hour: float
     set_off_by: tuple[str, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {
-            "words": self.words,
-            "missed": self.missed.to_dict(),
-            "false_per_hour": round(self.false_per_hour, DIGITS),
-            "set_off_by": list(self.set_off_by),
-        }
 
 
 def check_trigger(trigger: Trigger, *, seed: int = 0) -> TriggerHealth | None:

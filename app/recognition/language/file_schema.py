@@ -5,8 +5,6 @@ The JSON Schema published in `schema/` is generated from them.
 
 from __future__ import annotations
 
-import json
-from importlib import resources
 from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -23,9 +21,6 @@ from app.recognition.poses.landmarks import HAND_LANDMARKS
 
 FORMAT: Final = "osg-studio/gesture-language"
 VERSION: Final = 1
-
-SCHEMA_ID = f"urn:osg-studio:gesture-language:{VERSION}"
-SCHEMA_FILE = f"gesture-language-{VERSION}.schema.json"
 
 MAX_GESTURES = 1000
 """Most gestures, and most demonstrations of all gestures together, which bounds the work; published
@@ -350,15 +345,3 @@ class LanguageDocument(_Model):
             "edited by hand leaves it out; saving adds it again.",
         ),
     ] = None
-
-
-def generate_schema() -> str:
-    """Return the JSON Schema 2020-12 of the file as text, generated from the models."""
-    schema = LanguageDocument.model_json_schema()
-    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": SCHEMA_ID}
-    return json.dumps(head | schema, indent=2) + "\n"
-
-
-def load_schema() -> str:
-    """Return the JSON Schema that is checked in and shipped."""
-    return (resources.files("app.recognition") / "schema" / SCHEMA_FILE).read_text("utf-8")

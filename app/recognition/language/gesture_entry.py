@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import base64
 import binascii
-from collections.abc import Mapping
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.gestures.demonstration import Demonstration, check_diver
 from app.recognition.gestures.gesture import Gesture, Rates, check_command, check_label
-from app.recognition.gestures.switches import Switches
+from app.recognition.gestures.switches import AUTOMATIC, Switches
 from app.recognition.language.file_schema import (
     DemonstrationEntry,
     GestureEntry,
@@ -33,23 +33,16 @@ from app.recognition.voters.registry import PAPER_VOTERS
 
 def gesture_to_entry(gesture: Gesture) -> GestureEntry:
     """Return the file's entry of a gesture."""
-    trajectory, rates = gesture.trajectory, gesture.rates
+    rates = gesture.rates
     return GestureEntry(
         label=gesture.label,
         description=gesture.description,
         command=gesture.command,
-        salient=list(gesture.salient),
-        trajectory=None if trajectory is None else _trajectory_entry(trajectory),
-        image=_image_entry(gesture.image),
-        descriptors=_descriptors_entry(gesture.descriptors),
         thresholds=dict(gesture.thresholds),
-        rates=None if rates is None else RatesEntry(miss=rates.miss, false_alarm=rates.false_alarm),
-        direction=gesture.switches.direction,
-        tempo=gesture.switches.tempo,
-        mirror=gesture.switches.mirror,
-        hand_shape=gesture.switches.hand_shape,
-        diver=gesture.diver,
-        demonstrations=[_demonstration_entry(each) for each in gesture.further],
+        rates=None if rates is None else RatesEntry(**vars(rates)),
+        demonstrations=[DemonstrationEntry(**_list_shown(each)) for each in gesture.further],
+        **vars(gesture.switches),
+        **_list_shown(gesture),
     )
 
 
@@ -69,60 +62,55 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
         When its parts are inconsistent.
 
     """
-    image = _image(entry.image, pointer + "/image")
-    trajectory = None
-    if entry.trajectory is not None:
-        trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
-    _check_salient(entry.salient, trajectory, pointer)
+    shown = _read_shown(entry, pointer)
     _check_words(entry, pointer)
     rates = entry.rates
     return Gesture(
         label=entry.label,
-        salient=tuple(entry.salient),
-        image=image,
-        trajectory=trajectory,
-        descriptors=_descriptors(entry, image, pointer),
         thresholds=entry.thresholds,
-        rates=None if rates is None else Rates(miss=rates.miss, false_alarm=rates.false_alarm),
+        rates=None if rates is None else Rates(**vars(rates)),
         description=entry.description,
         command=entry.command,
-        switches=Switches(
-            direction=entry.direction,
-            tempo=entry.tempo,
-            mirror=entry.mirror,
-            hand_shape=entry.hand_shape,
-        ),
-        diver=_diver(entry.diver, pointer),
+        switches=Switches(**{name: getattr(entry, name) for name in vars(AUTOMATIC)}),
         further=tuple(
             _demonstration(each, pointer + build_pointer("demonstrations", index))
             for index, each in enumerate(entry.demonstrations)
         ),
-    )
-
-
-def _demonstration_entry(shown: Demonstration) -> DemonstrationEntry:
-    return DemonstrationEntry(
-        salient=list(shown.salient),
-        trajectory=_trajectory_entry(shown.trajectory),
-        image=_image_entry(shown.image),
-        descriptors=_descriptors_entry(shown.descriptors),
-        diver=shown.diver,
+        **shown,
     )
 
 
 def _demonstration(entry: DemonstrationEntry, pointer: str) -> Demonstration:
-    image = _image(entry.image, pointer + "/image")
-    trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
-    _check_salient(entry.salient, trajectory, pointer)
-    if not entry.salient and not trajectory.hands:
+    shown = Demonstration(**_read_shown(entry, pointer))
+    if not shown.salient and not shown.is_held:
         raise LanguageError("no salient landmark and no held hand", pointer + "/salient")
-    return Demonstration(
-        trajectory=trajectory,
-        salient=tuple(entry.salient),
-        image=image,
-        descriptors=_descriptors(entry, image, pointer),
-        diver=_diver(entry.diver, pointer),
-    )
+    return shown
+
+
+def _list_shown(shown: Gesture | Demonstration) -> dict[str, Any]:
+    """Return the keys of a demonstration, which a gesture has for its first."""
+    return {
+        "salient": list(shown.salient),
+        "trajectory": None if shown.trajectory is None else _trajectory_entry(shown.trajectory),
+        "image": base64.b64encode(encode_png(shown.image)).decode("ascii"),
+        "descriptors": {name: values.tolist() for name, values in shown.descriptors.items()},
+        "diver": shown.diver,
+    }
+
+
+def _read_shown(entry: GestureEntry | DemonstrationEntry, pointer: str) -> dict[str, Any]:
+    """Return the fields of a demonstration, which a gesture has for its first."""
+    image, trajectory = _image(entry.image, pointer + "/image"), None
+    if entry.trajectory is not None:
+        trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
+    _check_salient(entry.salient, trajectory, pointer)
+    return {
+        "salient": tuple(entry.salient),
+        "trajectory": trajectory,
+        "image": image,
+        "descriptors": _descriptors(entry, image, pointer),
+        "diver": _diver(entry.diver, pointer),
+    }
 
 
 def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
@@ -249,19 +237,11 @@ def _check_salient(salient: list[str], trajectory: Trajectory | None, pointer: s
         raise LanguageError("a landmark occurs twice", pointer + "/salient")
 
 
-def _image_entry(image: BinaryImage) -> str:
-    return base64.b64encode(encode_png(image)).decode("ascii")
-
-
 def _image(text: str, pointer: str) -> BinaryImage:
     try:
         return decode_png(base64.b64decode(text, validate=True), (SIZE, SIZE))
     except (binascii.Error, ValueError) as error:
         raise LanguageError(f"not a PNG in base64: {error}", pointer) from error
-
-
-def _descriptors_entry(descriptors: Mapping[str, FloatArray]) -> dict[str, list[float]]:
-    return {name: values.tolist() for name, values in descriptors.items()}
 
 
 def _descriptors(

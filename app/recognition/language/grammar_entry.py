@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
@@ -178,23 +179,17 @@ class GrammarEntry(_Model):
 
 def grammar_to_entry(grammar: Grammar) -> GrammarEntry:
     """Return the file's entry of a grammar."""
-    return GrammarEntry(
-        start=grammar.start,
-        end=grammar.end,
-        cancel=grammar.cancel,
-        timeout=grammar.timeout,
-        most_phrases=grammar.most_phrases,
-        slot_types=[_slot_type_entry(each) for each in grammar.slot_types],
-        phrases=[
-            PhraseEntry(
-                name=phrase.name,
-                parts=[_part_entry(part) for part in phrase.parts],
-                command=phrase.command,
-                says=phrase.says,
-            )
-            for phrase in grammar.phrases
-        ],
-    )
+    return GrammarEntry.model_validate(asdict(grammar, dict_factory=_name_keys), strict=False)
+
+
+def _name_keys(fields: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the fields of a part of a grammar by the file's keys, where these differ."""
+    entry = dict(fields)
+    if "slot_type" in entry:
+        entry |= {"slot": entry.pop("name"), "type": entry.pop("slot_type")}
+    if "values" in entry:
+        entry["values"] = [{"gesture": label, "value": v} for label, v in entry["values"].items()]
+    return entry
 
 
 def entry_to_grammar(entry: GrammarEntry) -> Grammar:
@@ -206,40 +201,16 @@ def entry_to_grammar(entry: GrammarEntry) -> Grammar:
         When it is inconsistent; its pointer is that of the language file.
 
     """
-    return Grammar(
-        phrases=tuple(
-            Phrase(each.name, tuple(map(_part, each.parts)), each.command, each.says)
-            for each in entry.phrases
-        ),
-        slot_types=tuple(
-            _slot_type(each, build_pointer("grammar", "slot_types", index))
-            for index, each in enumerate(entry.slot_types)
-        ),
-        start=entry.start,
-        end=entry.end,
-        cancel=entry.cancel,
-        timeout=entry.timeout,
-        most_phrases=entry.most_phrases,
+    read: dict[str, Any] = dict(vars(entry))
+    read["phrases"] = tuple(
+        Phrase(each.name, tuple(map(_part, each.parts)), each.command, each.says)
+        for each in entry.phrases
     )
-
-
-def _part_entry(part: Part) -> PartEntry:
-    if isinstance(part, Group):
-        members = [_member_entry(member) for member in part.parts]
-        return GroupEntry(parts=members, least=part.least, most=part.most)
-    return _member_entry(part)
-
-
-def _member_entry(part: OneOf | Slot) -> GesturesEntry | SlotEntry:
-    if isinstance(part, OneOf):
-        return GesturesEntry(gestures=list(part.gestures), least=part.least, most=part.most)
-    return SlotEntry(
-        slot=part.name,
-        type=part.slot_type,
-        least=part.least,
-        most=part.most,
-        default=part.default,
+    read["slot_types"] = tuple(
+        _slot_type(each, build_pointer("grammar", "slot_types", index))
+        for index, each in enumerate(entry.slot_types)
     )
+    return Grammar(**read)
 
 
 def _part(entry: PartEntry) -> Part:
@@ -252,11 +223,6 @@ def _member(entry: GesturesEntry | SlotEntry) -> OneOf | Slot:
     if isinstance(entry, GesturesEntry):
         return OneOf(tuple(entry.gestures), entry.least, entry.most)
     return Slot(entry.slot, entry.type, entry.least, entry.most, entry.default)
-
-
-def _slot_type_entry(slot_type: SlotType) -> SlotTypeEntry:
-    values = [SlotValueEntry(gesture=name, value=v) for name, v in slot_type.values.items()]
-    return SlotTypeEntry(name=slot_type.name, reads_as=slot_type.reads_as, values=values)
 
 
 def _slot_type(entry: SlotTypeEntry, pointer: str) -> SlotType:

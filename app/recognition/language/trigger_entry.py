@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -65,15 +65,10 @@ def trigger_to_entry(trigger: Trigger) -> TriggerEntry | None:
     """Return the file's entry of a trigger; None for the salute."""
     if trigger == SALUTE:
         return None
-    start, stop = (_pose_to_entry(pose) for pose in (trigger.start, trigger.stop))
+    poses = (trigger.start, trigger.stop)
+    start, stop = (None if pose is None else _pose_to_entry(pose) for pose in poses)
     stop_label = "" if trigger.stop_label == trigger.start_label else trigger.stop_label
-    return TriggerEntry(
-        kind=trigger.kind,
-        start=start,
-        stop=stop,
-        start_label=trigger.start_label,
-        stop_label=stop_label,
-    )
+    return TriggerEntry(**vars(trigger) | {"start": start, "stop": stop, "stop_label": stop_label})
 
 
 def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
@@ -88,17 +83,13 @@ def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
     if entry is None:
         return SALUTE
     try:
-        start, stop = (_entry_to_pose(pose) for pose in (entry.start, entry.stop))
-        return Trigger(entry.kind, start, stop, entry.start_label, entry.stop_label)
+        poses = (entry.start, entry.stop)
+        start, stop = (pose and ArmPose.of_joints(pose.model_dump()) for pose in poses)
+        read: dict[str, Any] = vars(entry) | {"start": start, "stop": stop}
+        return Trigger(**read)
     except TriggerError as error:
         raise LanguageError(str(error), "/trigger") from error
 
 
-def _pose_to_entry(pose: ArmPose | None) -> ArmPoseEntry | None:
-    if pose is None:
-        return None
+def _pose_to_entry(pose: ArmPose) -> ArmPoseEntry:
     return ArmPoseEntry(**{name: list(place) for name, place in pose.joints.items()})
-
-
-def _entry_to_pose(entry: ArmPoseEntry | None) -> ArmPose | None:
-    return None if entry is None else ArmPose.of_joints(entry.model_dump())

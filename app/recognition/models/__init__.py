@@ -6,7 +6,6 @@ the remedy. In a checkout, ``make models`` obtains them (`release.models`).
 
 from app.recognition.models.catalogue import ModelName, TaskBundleName
 from app.recognition.models.storage import (
-    InstalledModel,
     export_models,
     finder_path,
     install_models,
@@ -15,16 +14,3 @@ from app.recognition.models.storage import (
     models_dir,
     task_bundle_path,
 )
-
-__all__ = [
-    "InstalledModel",
-    "ModelName",
-    "TaskBundleName",
-    "export_models",
-    "finder_path",
-    "install_models",
-    "installed_models",
-    "model_path",
-    "models_dir",
-    "task_bundle_path",
-]

@@ -5,7 +5,9 @@ Names are MediaPipe's own in snake_case. "Left" and "right" are the person's, no
 
 from typing import Final
 
-POSE_LANDMARKS: Final = (
+FINGERS: Final = ("index_finger", "middle_finger", "ring_finger", "pinky")
+
+FACE: Final = (
     "nose",
     "left_eye_inner",
     "left_eye",
@@ -17,53 +19,25 @@ POSE_LANDMARKS: Final = (
     "right_ear",
     "mouth_left",
     "mouth_right",
-    "left_shoulder",
-    "right_shoulder",
-    "left_elbow",
-    "right_elbow",
-    "left_wrist",
-    "right_wrist",
-    "left_pinky",
-    "right_pinky",
-    "left_index",
-    "right_index",
-    "left_thumb",
-    "right_thumb",
-    "left_hip",
-    "right_hip",
-    "left_knee",
-    "right_knee",
-    "left_ankle",
-    "right_ankle",
-    "left_heel",
-    "right_heel",
-    "left_foot_index",
-    "right_foot_index",
+)
+
+
+def name_both_sides(*parts: str) -> tuple[str, ...]:
+    """Return the landmarks of parts of the body, of each the left one before the right one."""
+    return tuple(f"{side}_{part}" for part in parts for side in ("left", "right"))
+
+
+POSE_LANDMARKS: Final = (
+    *FACE,
+    *name_both_sides("shoulder", "elbow", "wrist", "pinky", "index", "thumb"),
+    *name_both_sides("hip", "knee", "ankle", "heel", "foot_index"),
 )
 """BlazePose's 33 body landmarks in the order of the model's output (Bazarevsky et al. 2020)."""
 
 HAND_LANDMARKS: Final = (
     "wrist",
-    "thumb_cmc",
-    "thumb_mcp",
-    "thumb_ip",
-    "thumb_tip",
-    "index_finger_mcp",
-    "index_finger_pip",
-    "index_finger_dip",
-    "index_finger_tip",
-    "middle_finger_mcp",
-    "middle_finger_pip",
-    "middle_finger_dip",
-    "middle_finger_tip",
-    "ring_finger_mcp",
-    "ring_finger_pip",
-    "ring_finger_dip",
-    "ring_finger_tip",
-    "pinky_mcp",
-    "pinky_pip",
-    "pinky_dip",
-    "pinky_tip",
+    *(f"thumb_{joint}" for joint in ("cmc", "mcp", "ip", "tip")),
+    *(f"{finger}_{joint}" for finger in FINGERS for joint in ("mcp", "pip", "dip", "tip")),
 )
 """The 21 landmarks of one hand in the order of the model's output (Zhang et al. 2020)."""
 
@@ -78,19 +52,7 @@ belongs to no recording; `Trajectory.from_poses` computes it."""
 LANDMARK_GROUPS: Final[dict[str, tuple[str, ...]]] = {
     "right_hand": ("right_wrist", "right_index", "right_pinky", "right_thumb"),
     "left_hand": ("left_wrist", "left_index", "left_pinky", "left_thumb"),
-    "head": (
-        "nose",
-        "left_eye_inner",
-        "left_eye",
-        "left_eye_outer",
-        "right_eye_inner",
-        "right_eye",
-        "right_eye_outer",
-        "left_ear",
-        "right_ear",
-        "mouth_left",
-        "mouth_right",
-    ),
+    "head": FACE,
 }
 """Landmarks that move together; a gesture uses at most one of each group (paper, Sec. IV-A).
 

@@ -10,28 +10,13 @@ import re
 from collections.abc import Collection
 from typing import Final
 
-from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY
+from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, name_both_sides
 
 LandmarkSet = tuple[str | None, ...]
 
 COCO_17: Final = (
     "nose",
-    "left_eye",
-    "right_eye",
-    "left_ear",
-    "right_ear",
-    "left_shoulder",
-    "right_shoulder",
-    "left_elbow",
-    "right_elbow",
-    "left_wrist",
-    "right_wrist",
-    "left_hip",
-    "right_hip",
-    "left_knee",
-    "right_knee",
-    "left_ankle",
-    "right_ankle",
+    *name_both_sides("eye", "ear", "shoulder", "elbow", "wrist", "hip", "knee", "ankle"),
 )
 """COCO's keypoints (Lin et al. 2014), which YOLO-pose, RTMPose, MoveNet and HRNet find."""
 

@@ -45,8 +45,8 @@ class Trajectory:
     landmarks
         K landmark names.
     xy
-        ``(T, K, 2)`` in `unit`, x to the image's right, y down, origin at the torso's centre (or
-        at the centroid after `recentre`). NaN: not seen and not bridged.
+        ``(T, K, 2)`` in `unit`, x to the image's right, y down, origin at the torso's centre.
+        NaN: not seen and not bridged.
     time
         ``(T,)`` seconds since the first moment, strictly increasing.
     unit

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from pathlib import Path
-from typing import Final
+from typing import Final, TypedDict
 
 import numpy as np
+from typing_extensions import Unpack
 
 from app.recognition.estimation import create_estimator, finds_hands, list_landmarks
 from app.recognition.estimation.estimator import PoseEstimator
@@ -20,6 +21,7 @@ from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.recording.hand_sides import place_hands
 from app.recognition.recording.people import People, keep_person, see_people
+from app.recognition.recording.picture_turn import HEAD_POINTS, find_turn
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import explain_missing_salutes
 from app.recognition.recording.video import (
@@ -30,27 +32,6 @@ from app.recognition.recording.video import (
     read_frames,
 )
 from app.recognition.recording.video_limits import VideoLimits
-
-TURNED_SHARE: Final = 0.8
-"""Share of the frames with a body in which it must lie in one direction, to be called turned."""
-
-TURNED_DEGREES, MOST_LEAN = 40.0, 60.0
-"""Farthest of a torso from a quarter turn, in the median and in these frames: divers lean a little,
-and bend, whatever way up they are."""
-
-LEAST_TORSO: Final = 0.5
-"""Least length of a torso in shoulder widths: that of somebody who points at the camera is short,
-and its direction says nothing."""
-
-FEWEST_TURNED: Final = 10
-"""Fewest frames with a body from which it is told."""
-
-HEAD_POINTS: Final[dict[Turn, str]] = {
-    90: "lies on the side, the head to the left,",
-    180: "is upside down",
-    270: "lies on the side, the head to the right,",
-}
-"""How a diver is seen in a picture that must be turned by so much."""
 
 NOBODY: Final = FrameLandmarks(None, ())
 
@@ -63,6 +44,15 @@ cancels the work."""
 KeepSoFar = Callable[[Recording], None]
 """``keep_so_far(recording)``: what is recorded until now. The person whose body counts is chosen
 over these frames; the end of the clip may show that it is another one."""
+
+
+class Following(TypedDict, total=False):
+    """Keywords of all who record frames, see `record`: what is called while they are read."""
+
+    progress: Progress | None
+    observer: Observer | None
+    keep_so_far: KeepSoFar | None
+
 
 FIRST_SECONDS: Final = 2.0
 """Seconds of a clip before the first recording so far, and between two of them at least."""
@@ -131,10 +121,8 @@ def record_frames(
     frames: FrameSource,
     *,
     estimator: PoseEstimator | None = None,
-    progress: Progress | None = None,
-    observer: Observer | None = None,
     water: WaterCorrection = "auto",
-    keep_so_far: KeepSoFar | None = None,
+    **following: Unpack[Following],
 ) -> Recording:
     """Find body and hands in the frames of an open source; see `record`.
 
@@ -147,9 +135,9 @@ def record_frames(
 
     """
     if estimator is not None:
-        return _record(frames, estimator, progress, observer, water, keep_so_far)
+        return _record(frames, estimator, water, **following)
     with closing(create_estimator()) as own:
-        return _record(frames, own, progress, observer, water, keep_so_far)
+        return _record(frames, own, water, **following)
 
 
 def extract_poses(
@@ -161,35 +149,6 @@ def extract_poses(
 ) -> PoseSequence:
     """Find the body in every frame of a clip; see `record`, which also keeps the hands."""
     return record(clip, estimator=estimator, progress=progress, water=water).poses
-
-
-def find_turn(poses: PoseSequence) -> Turn:
-    """Return by how much the picture must be turned for the person to stand upright in it.
-
-    0 where shoulders and hips do not lie sideways or upside down in nearly all frames.
-    """
-    if not {*_SHOULDERS, *_HIPS} <= set(poses.landmarks):
-        return 0
-    shoulders, hips = poses.select(_SHOULDERS).xy, poses.select(_HIPS).xy
-    up = shoulders.mean(axis=1) - hips.mean(axis=1)
-    width = np.hypot(*(shoulders[:, 0] - shoulders[:, 1]).T)
-    length = np.hypot(*up.T)
-    # The comparisons are False for NaN.
-    up = up[(length > 0) & (length >= LEAST_TORSO * width)]
-    if len(up) < FEWEST_TURNED:
-        return 0
-    # Clockwise in the picture, whose y points down, from upwards.
-    lean = np.degrees(np.arctan2(up[:, 0], -up[:, 1]))
-    for turn in HEAD_POINTS:
-        off = (lean + turn + 180) % 360 - 180
-        steady = (np.abs(off) <= MOST_LEAN).mean() >= TURNED_SHARE
-        if steady and abs(np.median(off)) <= TURNED_DEGREES:
-            return turn
-    return 0
-
-
-_SHOULDERS: Final = ("left_shoulder", "right_shoulder")
-_HIPS: Final = ("left_hip", "right_hip")
 
 
 def build_frame_sequence(
@@ -326,10 +285,10 @@ def _sort_hands(found: FrameLandmarks) -> tuple[Hand, ...]:
 def _record(
     frames: FrameSource,
     estimator: PoseEstimator,
-    progress: Progress | None,
-    observer: Observer | None,
     water: WaterCorrection,
-    keep_so_far: KeepSoFar | None,
+    progress: Progress | None = None,
+    observer: Observer | None = None,
+    keep_so_far: KeepSoFar | None = None,
 ) -> Recording:
     sight = WaterSight(estimator, water)
     sight.reset()

@@ -18,11 +18,10 @@ import numpy as np
 
 from app.recognition.errors import PoseError
 from app.recognition.poses.frame import Hand
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 
-FINGERS = ("index_finger", "middle_finger", "ring_finger", "pinky")
 _JOINTS = [
     [HAND_LANDMARKS.index(f"{finger}_{joint}") for joint in ("mcp", "pip", "dip", "tip")]
     for finger in FINGERS
@@ -33,10 +32,6 @@ _JOINTS_OF_FINGERS = [itemgetter(*joints) for joints in _JOINTS]
 """Getters of each finger's four joints from a hand's points."""
 
 _INDEX_KNUCKLE, _MIDDLE_KNUCKLE, _, _LITTLE_KNUCKLE = (joints[0] for joints in _JOINTS)
-_TIPS = [joints[3] for joints in _JOINTS]
-
-PUBLISHED_RATIO = 1.2
-"""How many times wider the middle gap must be in the published rule (OSG's reference code)."""
 
 
 @dataclass(frozen=True)
@@ -270,28 +265,6 @@ def _wide_salute(shape: _HandShape) -> float:
         WIDE_TIP_GAP_RATIO.excess(shape.gap_ratio),
         PALM_WIDTH.excess(shape.width),
     )
-
-
-def check_published_rule(hand_xy: FloatArray) -> bool:
-    """Return whether the published implementation accepts a hand as a salute, for comparison.
-
-    The gap between the tips of middle and ring finger is `PUBLISHED_RATIO` times wider than the
-    gap between index and middle finger, and than the one between ring and little finger.
-
-    Parameters
-    ----------
-    hand_xy
-        ``(21, 2)`` pixels, in the order of `HAND_LANDMARKS`.
-
-    Raises
-    ------
-    PoseError
-        When `hand_xy` has another shape.
-
-    """
-    tips = _check_shape(hand_xy)[_TIPS]
-    index, middle, little = np.linalg.norm(np.diff(tips, axis=0), axis=1)
-    return bool(PUBLISHED_RATIO * index < middle and PUBLISHED_RATIO * little < middle)
 
 
 def best_salute(hands: Iterable[Hand]) -> float:

@@ -5,11 +5,10 @@ A trigger is a salute unless a language names a pose of the arms (`app.recogniti
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
 
-from app.recognition.errors import PoseError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.poses.sequence import PoseSequence
@@ -274,28 +273,6 @@ class Take:
     stroke_start: float
     stroke_end: float
     untrimmed: PoseSequence
-
-    def with_stroke(self, start: float, end: float) -> Take:
-        """Return this take with another stroke, chosen by the user.
-
-        Parameters
-        ----------
-        start, end
-            Seconds in the clip.
-
-        Raises
-        ------
-        PoseError
-            When they do not lie in order between the triggers.
-
-        """
-        if not self.start <= start < end <= self.end:
-            raise PoseError(
-                f"a stroke from {start:g} s to {end:g} s does not fit the take from "
-                f"{self.start:g} s to {self.end:g} s; choose two moments inside it"
-            )
-        poses = self.untrimmed.between(start, end)
-        return replace(self, poses=poses, stroke_start=start, stroke_end=end)
 
 
 def takes_in(

@@ -22,6 +22,13 @@ class SpottingListener:
         Whether a trigger gesture is respected: only gestures between two triggers are then
         reported.
 
+    Attributes
+    ----------
+    language
+        The active language; `set_language` changes it.
+    order
+        What is known of the order of the frames.
+
     Raises
     ------
     OsgError
@@ -30,26 +37,16 @@ class SpottingListener:
     """
 
     def __init__(self, language: ActiveLanguage, *, triggered: bool = True) -> None:
-        self._language = language
+        self.language = language
         self._triggered = triggered
         self._spotter = Spotter(language.recognizer, triggered=triggered)
-        self._order = StreamOrder()
+        self.order = StreamOrder()
         self._begun = False
-
-    @property
-    def language(self) -> ActiveLanguage:
-        """The active language."""
-        return self._language
 
     @property
     def state(self) -> TakeState:
         """Always idle: there are no salutes."""
         return TakeState.idle
-
-    @property
-    def order(self) -> StreamOrder:
-        """What is known of the order of the frames."""
-        return self._order
 
     def __len__(self) -> int:
         """Return the number of frames in memory."""
@@ -57,9 +54,9 @@ class SpottingListener:
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame; see `Listener.feed`. `salute` is ignored."""
-        frames = self._order.admit(moment, salute)
+        frames = self.order.admit(moment, salute)
         events: list[Event] = []
-        if self._order.reason:
+        if self.order.reason:
             events += self._start_again(float(moment.time[0]))
         for each, _ in frames:
             time = float(each.time[0])
@@ -71,17 +68,17 @@ class SpottingListener:
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory; return the events of gestures that had already ended."""
-        self._order.restart()
+        self.order.restart()
         return self._start_again(time)
 
     def _start_again(self, time: float) -> tuple[Event, ...]:
         events = self._to_events(time, self._spotter.finish())
-        self._spotter = Spotter(self._language.recognizer, triggered=self._triggered)
+        self._spotter = Spotter(self.language.recognizer, triggered=self._triggered)
         return events
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream and return the events that were still pending."""
-        return self._to_events(self._order.time, self._spotter.finish())
+        return self._to_events(self.order.time, self._spotter.finish())
 
     def set_language(self, language: ActiveLanguage) -> None:
         """Spot the gestures of another language from the next frame on.
@@ -93,10 +90,10 @@ class SpottingListener:
 
         """
         self._spotter = self._spotter.for_language(language.recognizer)
-        self._language = language
+        self.language = language
 
     def _to_events(self, time: float, spotted: tuple[Spotted, ...]) -> tuple[Event, ...]:
         return tuple(
-            judge_recognition(self._language, each.recognition, time, each.start, each.end)
+            judge_recognition(self.language, each.recognition, time, each.start, each.end)
             for each in spotted
         )

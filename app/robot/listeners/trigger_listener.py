@@ -69,29 +69,26 @@ class TriggerListener:
     language
         The language to recognise.
 
+    Attributes
+    ----------
+    language
+        The active language; `set_language` changes it.
+    order
+        What is known of the order of the frames.
+
     """
 
     def __init__(self, language: ActiveLanguage) -> None:
-        self._language = language
+        self.language = language
         self._takes: LiveTakes | None = None
-        self._order = StreamOrder()
+        self.order = StreamOrder()
         self._state: TakeState | None = None
         self._doubtful = False  # whether the last take was rejected
-
-    @property
-    def language(self) -> ActiveLanguage:
-        """The active language."""
-        return self._language
 
     @property
     def state(self) -> TakeState:
         """Waiting for a salute, in a take, or holding the salute that ended the take."""
         return self._state or TakeState.idle
-
-    @property
-    def order(self) -> StreamOrder:
-        """What is known of the order of the frames."""
-        return self._order
 
     def __len__(self) -> int:
         """Return the number of frames in memory."""
@@ -115,10 +112,10 @@ class TriggerListener:
         `StateChanged`, `TakeRecognized` and `TakeRejected`; for most frames none.
 
         """
-        frames = self._order.admit(moment, salute)
+        frames = self.order.admit(moment, salute)
         events: list[Event] = []
-        if self._order.reason:
-            events += self._reject_open(float(moment.time[0]), self._order.reason)
+        if self.order.reason:
+            events += self._reject_open(float(moment.time[0]), self.order.reason)
         for frame in frames:
             events += self._process(*frame)
         return tuple(events)
@@ -134,30 +131,30 @@ class TriggerListener:
             Reason for rejecting an open take.
 
         """
-        self._order.restart()
+        self.order.restart()
         return self._reject_open(time, reason)
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream; an open take is rejected, with its nearest gesture."""
-        time = self._order.time
-        self._order.restart()
+        time = self.order.time
+        self.order.restart()
         take = self._clear()
         if take is None:
             return ()
-        what = self._language.trigger.noun
+        what = self.language.trigger.noun
         unclosed = f"the stream ended before a second {what}"
-        return (judge_take(self._language, take, time, unclosed),)
+        return (judge_take(self.language, take, time, unclosed),)
 
     def set_language(self, language: ActiveLanguage) -> None:
         """Recognise the takes that end from now on with another language.
 
         If its trigger differs, an open take is rejected with the next frame.
         """
-        self._language = language
+        self.language = language
 
     def _process(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process a frame that is in order."""
-        time, trigger = float(moment.time[0]), self._language.trigger
+        time, trigger = float(moment.time[0]), self.language.trigger
         left: tuple[Event, ...] = ()
         if self._takes is not None and self._takes.trigger != trigger:
             left = self._reject_open(time, "the language's trigger changed")
@@ -169,7 +166,7 @@ class TriggerListener:
         changed = (*left, *self._set_state(time, sight.state))
         if sight.take is None:
             return changed
-        judged = judge_take(self._language, sight.take, time, explain_unclosed(trigger))
+        judged = judge_take(self.language, sight.take, time, explain_unclosed(trigger))
         self._doubtful = isinstance(judged, TakeRejected) and judged.pair is None
         return (*changed, judged)
 
@@ -179,7 +176,7 @@ class TriggerListener:
         gap = self._takes.cut_gap() if self._doubtful else None
         if gap is None:
             return None
-        judged = judge_take(self._language, gap, time, explain_unclosed(self._language.trigger))
+        judged = judge_take(self.language, gap, time, explain_unclosed(self.language.trigger))
         if not isinstance(judged, TakeRecognized):
             return None
         self._takes.end_gap()
@@ -189,7 +186,7 @@ class TriggerListener:
     def _reject_open(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory and reject an open take for `reason`."""
         take = self._clear()
-        rejected = (reject_take(self._language, take, time, reason),) if take else ()
+        rejected = (reject_take(self.language, take, time, reason),) if take else ()
         return (*rejected, *(self._set_state(time, TakeState.idle) if self._state else ()))
 
     def _clear(self) -> Take | None:

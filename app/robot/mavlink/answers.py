@@ -246,7 +246,7 @@ class PatternPlayer:
         return [self._set(self._before)]
 
     def forget(self) -> None:
-        """Forget pattern and value, of a vehicle that has started again."""
+        """Forget the pattern and the value reported before the vehicle restarted."""
         self._drop()
         self._value, self._heard = math.nan, -math.inf
 

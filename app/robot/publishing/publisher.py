@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, Protocol
 
-from app.recognition.errors import PublishError
+from app.recognition.errors import PublishError, explain_missing_package
 from app.robot.events import Event
 
 Network = Literal["dds"]
@@ -32,11 +32,6 @@ def open_publisher(network: Network) -> Publisher:
         When its library is not installed, or its settings are wrong.
 
     """
-    try:
+    with explain_missing_package(f"publishing over {network}", network, PublishError):
         from app.robot.publishing.dds import DdsPublisher
-    except ModuleNotFoundError as error:
-        raise PublishError(
-            f"publishing over {network} needs {error.name}, which is not installed; install it "
-            f'with: pip install "osg-studio[{network}]"'
-        ) from error
     return DdsPublisher()

@@ -20,7 +20,8 @@ from pydantic import TypeAdapter
 from sqlalchemy import Boolean, Column, Float, Integer, String, select, update
 from sqlmodel import AutoString, SQLModel, col
 
-from app.clip_sources import SOURCES, ClipTopic, ReadOptions
+from app.bags.topic_summary import TopicSummary
+from app.clip_sources import SOURCES, ReadOptions
 from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
 from app.store.clip_folder import CLIP_ID
@@ -39,7 +40,7 @@ _MOST: Final = 2**53 - 1
 
 _VIDEO_TYPE: Final = re.compile(r"video/[a-z0-9-]{1,40}")
 _STRINGS: Final = TypeAdapter(tuple[str, ...])
-_TOPICS: Final = TypeAdapter(tuple[ClipTopic, ...])
+_TOPICS: Final = TypeAdapter(tuple[TopicSummary, ...])
 _REVISION: Final = re.compile(r"\d{4}")
 _READING: Final = frozenset({sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA})
 _OF_SQLITE: Final = "sqlite_"

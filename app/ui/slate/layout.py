@@ -15,7 +15,7 @@ from app.recognition.explanation.transcript import describe_strokes, transcribe_
 from app.recognition.features.hand_image import PlacedHands, place_hands
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.language.file import seal, short_code
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import FINGERS, HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize, join_words
 from app.recognition.triggers.arm_pose import ArmPose
@@ -70,11 +70,9 @@ HAND_SHARE = 0.7
 FINGER_WIDTH = 0.3
 """Width of a finger in sizes of its hand, so that fingers side by side stay apart."""
 
-KNUCKLES: Final = ("index_finger", "middle_finger", "ring_finger", "pinky")
-
 PALM_OUTLINE: Final = tuple(
     HAND_LANDMARKS.index(name)
-    for name in ("wrist", "thumb_cmc", *(f"{each}_mcp" for each in KNUCKLES))
+    for name in ("wrist", "thumb_cmc", *(f"{each}_mcp" for each in FINGERS))
 )
 """Landmarks around the palm, the wrist first."""
 

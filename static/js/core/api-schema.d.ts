@@ -1361,9 +1361,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /** Nearest */
             nearest: string | null;
             /** Confidence */
@@ -1827,9 +1830,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /**
              * Expected
              * @description What may come next
@@ -2058,9 +2064,12 @@ export interface components {
             label: string | null;
             /**
              * Pair
-             * @description The two gestures between which the take lies, nearest first: the diver is asked back. Null: it lies between no two
+             * @description The two gestures between which the take lies, nearest first: the diver is asked back; null: it lies between no two.
              */
-            pair: string[] | null;
+            pair: [
+                string,
+                string
+            ] | null;
             /** Right */
             right: boolean;
             /** Clip Id */

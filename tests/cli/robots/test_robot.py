@@ -20,12 +20,12 @@ from typer.main import get_command
 
 from app.cli.application import command_line
 from app.cli.robots.robot import split_ros_arguments
-from app.robot.event_messages import read_schema
 from app.robot.publishing.status_page import UPLOAD_TYPE
 from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.documented import documented
+from tests.published_schemas import ROBOT_EVENT
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
@@ -111,7 +111,7 @@ def test_of_a_clip_the_robot_says_what_recognize_says_and_needs_no_web_app(
         out, error = process.communicate()
     assert process.returncode == 0, error
     events = [json.loads(line) for line in out.splitlines()]
-    schema = jsonschema.Draft202012Validator(json.loads(read_schema()))
+    schema = jsonschema.Draft202012Validator(ROBOT_EVENT.content)
     for each in events:
         schema.validate(each)
     recognized = osg_studio("recognize", clip, "--language", ROOT / language, "--json")

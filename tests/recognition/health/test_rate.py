@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.evaluation.proportion import Share
-from app.recognition.health.rate import Rate
+from app.recognition.health.rate import Rate, to_plain
 
 
 @given(st.integers(1, 500).flatmap(lambda n: st.tuples(st.integers(0, n), st.just(n))))
@@ -20,6 +20,6 @@ def test_the_interval_holds_the_rate_and_is_that_of_the_evaluation(count: tuple[
 
 def test_a_rate_is_told_with_its_interval_and_number() -> None:
     assert str(Rate(11, 12)) == "92% (65%-99%, n 12)"
-    content = Rate(11, 12).to_dict()
+    content = to_plain(Rate(11, 12))
     assert json.loads(json.dumps(content)) == content
     assert content == {"rate": 0.9167, "low": 0.6461, "high": 0.9851, "n": 12}

@@ -31,7 +31,7 @@ def test_a_hand_before_the_belly_is_set_off_by_what_hands_do_there() -> None:
     health = check_trigger(BY_BELLY)
     assert health is not None
     assert "checking a gauge" in health.set_off_by
-    assert health.to_dict()["false_per_hour"] > 60
+    assert health.false_per_hour > 60
     assert kinds(BY_BELLY) == ["trigger_accidental"]
 
 

@@ -12,11 +12,11 @@ import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
-from app.recognition.language.file_schema import load_schema
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.grammar_parts import DEFAULT_TIMEOUT
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.phrases.phrase import OneOf
+from tests.published_schemas import LANGUAGE_FILE
 from tests.recognition.grammars import MISSIONS
 from tests.recognition.language.test_language import GOLDEN
 from tests.recognition.strategies import circle, recording
@@ -40,7 +40,7 @@ def test_a_grammar_goes_through_the_file_as_it_was(language: Language) -> None:
     again = Language.from_json(text)
     assert again.grammar == MISSIONS
     assert again.to_json() == text
-    jsonschema.Draft202012Validator(json.loads(load_schema())).validate(json.loads(text))
+    jsonschema.Draft202012Validator(LANGUAGE_FILE.content).validate(json.loads(text))
 
 
 def test_a_phrase_takes_one_line_so_that_revisions_can_be_compared(language: Language) -> None:

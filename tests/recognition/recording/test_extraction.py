@@ -1,6 +1,5 @@
 """From a clip to a recording: every frame counted, nothing invented, cancelled at once."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -16,7 +15,6 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.extraction import (
     FIRST_SECONDS,
     extract_poses,
-    find_turn,
     record,
 )
 from app.recognition.recording.recording import Recording
@@ -320,33 +318,6 @@ def test_a_real_diver_is_followed_in_every_frame(shared_data: Path) -> None:
     assert recording.poses.duration == pytest.approx(6.0, abs=0.01)
     assert recording.poses.seen.all(axis=1).mean() > 0.9
     assert takes_in(recording) == ()
-
-
-@pytest.mark.parametrize("turn", [0, 90, 180, 270])
-@pytest.mark.parametrize("lean", [-25, 0, 25])
-def test_a_diver_sideways_or_upside_down_is_told_from_shoulders_and_hips(
-    sample_recording: Callable[[str], Recording], turn: int, lean: int
-) -> None:
-    poses = sample_recording("line-test-1").poses
-    # The picture was turned counter-clockwise, as that of a camera held another way.
-    angle = np.radians(lean - turn)
-    turned = poses.xy @ np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    assert find_turn(replace(poses, xy=turned)) == turn
-
-
-def test_who_points_at_the_camera_or_turns_about_is_not_called_sideways(
-    sample_recording: Callable[[str], Recording],
-) -> None:
-    poses = sample_recording("line-test-1").poses
-    lying = poses.xy[..., ::-1]
-    half = np.where(np.arange(len(poses))[:, None, None] % 2, lying, poses.xy)
-    assert find_turn(replace(poses, xy=half)) == 0
-    for lean, turn in ((45.0, 0), (60.0, 270)):
-        angle = np.radians(lean)
-        by = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        assert find_turn(replace(poses, xy=poses.xy @ by)) == turn
-    assert find_turn(replace(poses, xy=lying * [0.1, 1.0])) == 0
-    assert find_turn(replace(poses, xy=np.full_like(poses.xy, np.nan))) == 0
 
 
 def test_a_clip_of_a_diver_on_the_side_says_how_to_turn_it(tmp_path: Path) -> None:

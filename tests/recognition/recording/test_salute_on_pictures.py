@@ -8,8 +8,14 @@ import pytest
 
 from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.salute import check_published_rule
-from benchmarks.accuracy.salute import Picture, Rates, clip_pictures, image_pictures, salutes
+from benchmarks.accuracy.salute import (
+    Picture,
+    Rates,
+    check_published_rule,
+    clip_pictures,
+    image_pictures,
+    salutes,
+)
 
 
 @pytest.fixture(scope="module")

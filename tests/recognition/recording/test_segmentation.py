@@ -1,6 +1,5 @@
 """Takes between salutes: from clean streams, from flickering ones, and from none."""
 
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition.errors import PoseError
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import (
@@ -213,22 +211,6 @@ def test_trimming_can_be_left_out() -> None:
     (take,) = takes_in(recorded()[0], trim=False)
     assert (take.stroke_start, take.stroke_end) == (take.start, take.end)
     assert take.poses == take.untrimmed
-
-
-def test_the_user_may_choose_another_stroke() -> None:
-    (take,) = takes_in(recorded()[0])
-    chosen = take.with_stroke(take.start, take.start + 1)
-    assert chosen.poses.duration == pytest.approx(1, abs=0.05)
-    assert replace(chosen, poses=take.poses, stroke_start=0, stroke_end=0) == replace(
-        take, stroke_start=0, stroke_end=0
-    )
-
-
-@pytest.mark.parametrize(("start", "end"), [(2.0, 2.0), (2.5, 2.0), (-1.0, 2.0), (1.0, 99.0)])
-def test_a_stroke_outside_the_take_is_refused(start: float, end: float) -> None:
-    (take,) = takes_in(recorded()[0])
-    with pytest.raises(PoseError, match="does not fit the take"):
-        take.with_stroke(start, end)
 
 
 def test_a_stream_finds_the_takes_of_the_recording() -> None:

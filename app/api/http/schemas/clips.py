@@ -85,6 +85,8 @@ class PosesView(BaseModel):
 class TakeView(BaseModel):
     """What lies between two salutes, in seconds of the clip."""
 
+    model_config = ConfigDict(frozen=True, from_attributes=True)
+
     start: float
     end: float
     closed: bool = Field(description="Whether a second salute ended it")

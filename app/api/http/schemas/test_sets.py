@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, Field
 
-from app.api.http.schemas.values import Body, Identifier, Label, Pair, Seconds
+from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.recognition.decision.result import Pair
 from app.store.test_sets import MOST_TAKES
 
 

@@ -42,14 +42,6 @@ Identifier = Annotated[str, Field(min_length=1, max_length=64)]
 Landmarks = Annotated[list[Annotated[str, Field(max_length=64)]], Field(max_length=64)]
 Command = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)] | dict[str, Any] | None
 
-Pair = Annotated[
-    Annotated[list[str], Field(min_length=2, max_length=2)] | None,
-    Field(
-        description="The two gestures between which the take lies, nearest first: the diver is "
-        "asked back. Null: it lies between no two"
-    ),
-]
-
 TriggerLanguage = Annotated[
     str | None,
     Query(

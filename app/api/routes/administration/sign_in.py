@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 from app.api.http.page_files import prefix_of
 from app.api.http.problems import problem_responses
 from app.api.middleware.access import COOKIE, cookie_of
-from app.api.middleware.identities import identity_of
+from app.api.services.identities import identity_of
 from app.api.services.running_studio import CurrentStudio
 from app.store import Role
 

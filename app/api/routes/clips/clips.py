@@ -290,7 +290,7 @@ def get_takes(
 ) -> list[TakeView]:
     """List what lies between the salutes, or other triggers of a language."""
     state = None if language_id is None else studio.languages.get(language_id)
-    return [TakeView(**vars(take)) for take in find_takes(studio, clip_id, state, so_far=so_far)]
+    return list(find_takes(studio, clip_id, state, so_far=so_far))
 
 
 def _poses_json(poses: PoseSequence) -> bytes:

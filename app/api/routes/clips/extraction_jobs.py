@@ -69,13 +69,7 @@ def view_job(job: Job, progress: Progress | None) -> JobView:
         **job.model_dump(include={"id", "clip_id", "error", "error_code"}),
         **job.model_dump(include={"created", "started", "finished"}),
         status=status,
-        stage=shown.stage,
-        done=shown.done,
-        total=shown.total,
-        eta_s=shown.eta_s,
-        time=shown.time,
-        pose=shown.pose,
-        kept=shown.kept,
+        **vars(shown),
     )
 
 

@@ -14,11 +14,10 @@ from pydantic import BaseModel, Field
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, Identifier
-from app.api.jobs.job import JobCancelled, events_about, task_job
-from app.api.middleware.shutdown import stopping
+from app.api.jobs.job import events_about, task_job
+from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.workers.tasks import Export, ExportedRecognition
 from app.api.workers.worker_messages import Failed
@@ -115,10 +114,7 @@ async def _write(
         task = content.model_copy(update={"target": written})
         event = events_about("exports", id=export_id)
         job = task_job("bag_export", key, event, studio.workers, task)
-        try:
-            ended = await while_connected(request, studio.runner.run(job))
-        except JobCancelled as error:
-            raise stopping() from error
+        ended = await await_job(request, studio, job)
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
         return written.replace(target)

@@ -30,8 +30,8 @@ from app.api.ingest.intake import (
 )
 from app.api.ingest.multipart import display_name, require_space
 from app.api.ingest.quotas import SenderQuota
-from app.api.middleware.identities import identity_of
 from app.api.middleware.request_bodies import too_large
+from app.api.services.identities import identity_of
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.store import ClipWithJob, NotFound, Role, Upload
 

@@ -11,11 +11,10 @@ from fastapi import APIRouter, Header, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
-from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
-from app.api.jobs.job import Job, JobCancelled, events_about, task_job
-from app.api.middleware.shutdown import stopping
+from app.api.jobs.job import Job, events_about, task_job
+from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import CurrentStudio, Studio
@@ -27,6 +26,8 @@ from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.health.finding import Finding
 from app.store import LanguageState
+
+CANCELLED = "the check was cancelled; ask again to start it anew"
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -64,10 +65,8 @@ async def check_language(
     if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
-    try:
-        ended = await while_connected(request, studio.runner.run(_job(state, studio)))
-    except JobCancelled as error:
-        raise _refusal(studio) from error
+    cancelled = ProblemError(409, "check_cancelled", CANCELLED)
+    ended = await await_job(request, studio, _job(state, studio), cancelled)
     if isinstance(ended, Failed):
         raise ProblemError(422, ended.code, ended.detail)
     report = ended.result
@@ -132,10 +131,3 @@ def _blame(studio: Studio, state: LanguageState, language: Language) -> list[tup
         while len(_blamed) > CACHED_BLAME:
             _blamed.popitem(last=False)
     return _blamed[key]
-
-
-def _refusal(studio: Studio) -> ProblemError:
-    if studio.stopping.is_set():
-        return stopping()
-    detail = "the check was cancelled; ask again to start it anew"
-    return ProblemError(409, "check_cancelled", detail)

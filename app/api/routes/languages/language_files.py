@@ -122,7 +122,6 @@ def describe_export(
     """Return what the export holds, before it is taken to the robot."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
-    needed = find_requirements(language)
     return ExportView(
         name=language.name,
         revision=state.revision.revision,
@@ -136,10 +135,7 @@ def describe_export(
             )
             for file in FileFormat
         ],
-        salient=list(needed.salient),
-        limbs=list(needed.limbs),
-        torso=list(needed.torso),
-        models=list(needed.models),
+        **vars(find_requirements(language)),
         without_command=[gesture.label for gesture in language.gestures if not gesture.command],
     )
 
@@ -168,11 +164,6 @@ async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLan
 def _create(
     studio: Studio, quota: Quota, found: ImportedLanguage, response: Response
 ) -> LanguageView:
-    draft = Draft(
-        name=found.name[:LONGEST_NAME],
-        labels=found.labels,
-        change=found.change,
-        document=found.document,
-        author=found.author,
-    )
+    read = found.model_dump(exclude={"revision"}) | {"name": found.name[:LONGEST_NAME]}
+    draft = Draft(**read)
     return announce(studio, save_language(studio, quota, draft, found.revision), response)

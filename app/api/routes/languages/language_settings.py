@@ -54,12 +54,7 @@ def get_settings(
         profile=language.profile,
         default_profile=DEFAULT_PROFILE,
         profiles=[
-            ProfileView(
-                name=each.name,
-                rejects=each.rejects,
-                repairs_keypoints=each.repairs_keypoints,
-                voters=[voter.name for voter in each.voters],
-            )
+            ProfileView(**(vars(each) | {"voters": [voter.name for voter in each.voters]}))
             for each in PROFILES.values()
         ],
         tuning=tuning_to_entry(language.tuning),

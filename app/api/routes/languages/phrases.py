@@ -10,9 +10,9 @@ from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
-from app.api.http.schemas.values import Pair
 from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
 from app.recognition import Language
+from app.recognition.decision.result import Pair
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
 from app.recognition.health.ambiguity import Ambiguity, AmbiguityKind, find_ambiguities
 from app.recognition.phrases.grammar import Grammar
@@ -107,7 +107,7 @@ def describe_phrases(
             AmbiguityView(**asdict(each)) for each in _ambiguities.get(state.revision.document)
         ],
         examples={each.name: list(grammar.example(each)) for each in grammar.phrases},
-        events=[_view(event) for event in events],
+        events=[PhraseEventView.model_validate(event.to_dict()) for event in events],
         expected=list(parser.expected),
         may_end=parser.may_end,
     )
@@ -118,10 +118,6 @@ def _feed(parser: PhraseParser, shown: str) -> tuple[PhraseEvent, ...]:
     if one and other:
         return parser.feed(None, 0.0, 0.0, (one, other))
     return parser.feed(one or None, 0.0, 0.0)
-
-
-def _view(event: PhraseEvent) -> PhraseEventView:
-    return PhraseEventView.model_validate(event.to_dict())
 
 
 def _find_ambiguities(document: str) -> tuple[Ambiguity, ...]:

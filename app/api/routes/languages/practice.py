@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.values import Body, Diver, Identifier, Label, Pair, Seconds
+from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
@@ -20,6 +20,7 @@ from app.api.services.stored_recognitions import (
     write_pair,
 )
 from app.evaluation.error_rate_bound import CONFIDENCE, LIMIT, bound_error_rate, count_takes_needed
+from app.recognition.decision.result import Pair
 from app.recognition.explanation.causes import Cause
 from app.recognition.explanation.explanation import explain
 from app.store import LanguageState, PracticeTake

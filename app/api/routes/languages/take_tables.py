@@ -7,12 +7,10 @@ from functools import partial
 from fastapi import APIRouter, Request
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.connection import while_connected
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.take_tables import TakeRowView, TakeTableRequest, TakeTableView
-from app.api.jobs.job import JobCancelled
 from app.api.jobs.take_table import take_table_job
-from app.api.middleware.shutdown import stopping
+from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.take_tables import recognize_clip_takes
 from app.evaluation.take_table import write_csv
@@ -32,10 +30,7 @@ async def make_take_table(
     state, clips = await run_in_threadpool(_load, studio, language_id, wanted)
     recognize = partial(recognize_clip_takes, studio, state)
     job = take_table_job(wanted.id, clips, recognize, studio.computations)
-    try:
-        rows = await while_connected(request, studio.runner.run(job))
-    except JobCancelled as error:
-        raise stopping() from error
+    rows = await await_job(request, studio, job)
     return TakeTableView(rows=[TakeRowView(**row) for row in rows], csv=write_csv(rows))
 
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.connection import while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.test_sets import LabelledTakeChange, LabelledTakesDraft, TestSetView
 from app.api.ingest.quotas import SenderQuota
-from app.api.jobs.job import JobCancelled
-from app.api.middleware.shutdown import stopping
+from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.test_sets import (
     add_labelled,
@@ -20,6 +18,8 @@ from app.api.services.test_sets import (
 )
 from app.api.workers.worker_messages import Failed
 from app.store import LanguageState
+
+CANCELLED = "the test run was cancelled; what is done is kept, start it again for the rest"
 
 router = APIRouter(prefix="/languages/{language_id}/test-set", tags=["languages"])
 
@@ -49,10 +49,8 @@ async def run_test_set(request: Request, language_id: str, studio: CurrentStudio
     """
     state = await run_in_threadpool(studio.languages.get, language_id)
     if (job := await run_in_threadpool(test_run_of, studio, state)) is not None:
-        try:
-            ended = await while_connected(request, studio.runner.run(job))
-        except JobCancelled as error:
-            raise _refusal(studio) from error
+        cancelled = ProblemError(409, "test_run_cancelled", CANCELLED)
+        ended = await await_job(request, studio, job, cancelled)
         if isinstance(ended, Failed):
             raise ProblemError(422, ended.code, ended.detail)
     return await run_in_threadpool(_changed, studio, state)
@@ -88,10 +86,3 @@ def _changed(studio: Studio, state: LanguageState) -> TestSetView:
     """Publish the change to the open pages, and return the test set."""
     studio.broadcast.publish("test-sets", id=state.record.id)
     return view_test_set(studio, state)
-
-
-def _refusal(studio: Studio) -> ProblemError:
-    if studio.stopping.is_set():
-        return stopping()
-    detail = "the test run was cancelled; what is done is kept, start it again for the rest"
-    return ProblemError(409, "test_run_cancelled", detail)

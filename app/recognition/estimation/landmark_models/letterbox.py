@@ -63,15 +63,7 @@ class Letterbox:
 
     def to_image(self, points: npt.NDArray[np.floating]) -> FloatArray:
         """Map ``(..., 2)`` pixels of the input to pixels of the image; (0, 0) is a corner."""
-        return np.asarray((points - self._origin) / self._scale, dtype=np.float64)
-
-    def to_input(self, points: npt.NDArray[np.floating]) -> FloatArray:
-        """Map ``(..., 2)`` pixels of the image to pixels of the input."""
-        return np.asarray(points * self._scale + self._origin, dtype=np.float64)
-
-    @property
-    def _origin(self) -> FloatArray:
-        return np.array([self.left, self.top], dtype=np.float64)
+        return np.asarray((points - np.array([self.left, self.top])) / self._scale)
 
     @property
     def _scale(self) -> FloatArray:

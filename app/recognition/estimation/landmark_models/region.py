@@ -136,12 +136,6 @@ class Region:
         matrix = self.matrix(size)
         return np.asarray(points @ matrix[:, :2].T + matrix[:, 2], dtype=np.float64)
 
-    def to_crop(self, points: npt.NDArray[np.floating], size: int) -> FloatArray:
-        """Map ``(N, 2)`` pixels of the image to pixels of the `size` x `size` crop."""
-        matrix = self.matrix(size)
-        offsets = (points - matrix[:, 2]).T
-        return np.asarray(np.linalg.solve(matrix[:, :2], offsets).T, dtype=np.float64)
-
     def overlap(self, other: Region) -> float:
         """Return intersection over union of the two squares, both taken as if upright.
 

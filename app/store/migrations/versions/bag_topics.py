@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0003"
 down_revision = "0002"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -14,10 +12,3 @@ def upgrade() -> None:
     with op.batch_alter_table("clip") as table:
         table.add_column(sa.Column("topics", sa.Text(), nullable=False, server_default="[]"))
         table.add_column(sa.Column("topic", sa.String(255), nullable=True))
-
-
-def downgrade() -> None:
-    """Drop the columns."""
-    with op.batch_alter_table("clip") as table:
-        table.drop_column("topic")
-        table.drop_column("topics")

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0006"
 down_revision = "0005"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -18,10 +16,3 @@ def upgrade() -> None:
     op.execute("ALTER TABLE clip RENAME COLUMN keypoints TO options")
     op.execute("UPDATE clip SET source = 'bag' WHERE topics <> '[]'")
     op.execute("UPDATE clip SET source = 'keypoints' WHERE options IS NOT NULL")
-
-
-def downgrade() -> None:
-    """Drop the source and restore the column of keypoint options."""
-    op.execute("ALTER TABLE clip RENAME COLUMN options TO keypoints")
-    with op.batch_alter_table("clip") as table:
-        table.drop_column("source")

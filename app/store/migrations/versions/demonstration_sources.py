@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0004"
 down_revision = "0003"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -22,8 +20,3 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("trajectory"),
     )
     op.create_index("ix_demonstration_source_clip_id", "demonstration_source", ["clip_id"])
-
-
-def downgrade() -> None:
-    """Drop it."""
-    op.drop_table("demonstration_source")

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0012"
 down_revision = "0011"
-branch_labels = None
-depends_on = None
 
 _DOCUMENTS = {"language_revision": "document", "recognition": "result"}
 _BYTES = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
@@ -20,12 +18,3 @@ def upgrade() -> None:
         op.create_index(f"ix_{table}_owner", table, ["owner"])
         # The number of characters: these documents are ASCII but for names.
         op.execute(f"UPDATE {table} SET size = length({document})")
-
-
-def downgrade() -> None:
-    """Drop them."""
-    for table in _DOCUMENTS:
-        op.drop_index(f"ix_{table}_owner", table)
-        with op.batch_alter_table(table) as changed:
-            changed.drop_column("size")
-            changed.drop_column("owner")

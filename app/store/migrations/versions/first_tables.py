@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0001"
 down_revision = None
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -101,13 +99,3 @@ def upgrade() -> None:
     op.create_index("ix_recognition_clip_id", "recognition", ["clip_id"])
     op.create_index("ix_recognition_created", "recognition", ["created"])
     op.create_index("ix_recognition_language_id", "recognition", ["language_id"])
-
-
-def downgrade() -> None:
-    """Drop them."""
-    op.drop_table("recognition")
-    op.drop_table("language_revision")
-    op.drop_table("job")
-    op.drop_table("seeded_sample")
-    op.drop_table("language")
-    op.drop_table("clip")

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0016"
 down_revision = "0015"
-branch_labels = None
-depends_on = None
 
 _BYTES = sa.BigInteger().with_variant(sa.Integer(), "sqlite")
 
@@ -51,9 +49,3 @@ def upgrade() -> None:
     )
     op.create_index("ix_invited_take_invitation_id", "invited_take", ["invitation_id"])
     op.create_index("ix_invited_take_status", "invited_take", ["status"])
-
-
-def downgrade() -> None:
-    """Drop them."""
-    op.drop_table("invited_take")
-    op.drop_table("invitation")

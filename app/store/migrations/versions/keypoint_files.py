@@ -5,17 +5,9 @@ from alembic import op
 
 revision = "0005"
 down_revision = "0004"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
     """Add the column; clips so far are videos and dive recordings."""
     with op.batch_alter_table("clip") as table:
         table.add_column(sa.Column("keypoints", sa.Text(), nullable=True))
-
-
-def downgrade() -> None:
-    """Drop the column."""
-    with op.batch_alter_table("clip") as table:
-        table.drop_column("keypoints")

@@ -7,8 +7,6 @@ from alembic import op
 
 revision = "0008"
 down_revision = "0007"
-branch_labels = None
-depends_on = None
 
 _recognitions = sa.table(
     "recognition",
@@ -70,9 +68,3 @@ def upgrade() -> None:
             if row is not None and row.expected is not None
         ],
     )
-
-
-def downgrade() -> None:
-    """Drop them."""
-    op.drop_table("labelled_result")
-    op.drop_table("labelled_take")

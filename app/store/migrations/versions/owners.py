@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0007"
 down_revision = "0006"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -27,11 +25,3 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("id"),
     )
     op.create_index("ix_audit_entry_name", "audit_entry", ["name"])
-
-
-def downgrade() -> None:
-    """Drop them."""
-    op.drop_table("audit_entry")
-    op.drop_index("ix_clip_owner", "clip")
-    with op.batch_alter_table("clip") as table:
-        table.drop_column("owner")

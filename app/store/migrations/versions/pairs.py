@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0014"
 down_revision = "0013"
-branch_labels = None
-depends_on = None
 
 _TABLES = ("labelled_result", "practice_take")
 
@@ -15,10 +13,3 @@ def upgrade() -> None:
     """Add the columns; no take so far has a pair."""
     for table in _TABLES:
         op.add_column(table, sa.Column("pair", sa.Text(), nullable=True))
-
-
-def downgrade() -> None:
-    """Drop the columns."""
-    for table in _TABLES:
-        with op.batch_alter_table(table) as changed:
-            changed.drop_column("pair")

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0009"
 down_revision = "0008"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -29,8 +27,3 @@ def upgrade() -> None:
     )
     op.create_index("ix_practice_take_language_id", "practice_take", ["language_id"])
     op.create_index("ix_practice_take_clip_id", "practice_take", ["clip_id"])
-
-
-def downgrade() -> None:
-    """Drop it."""
-    op.drop_table("practice_take")

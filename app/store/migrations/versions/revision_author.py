@@ -7,8 +7,6 @@ from alembic import op
 
 revision = "0002"
 down_revision = "0001"
-branch_labels = None
-depends_on = None
 
 _revisions = sa.table(
     "language_revision",
@@ -31,9 +29,3 @@ def upgrade() -> None:
         document = connection.execute(sa.select(_revisions.c.document).where(this)).scalar_one()
         if author := json.loads(document).get("author", ""):
             connection.execute(sa.update(_revisions).where(this).values(author=author))
-
-
-def downgrade() -> None:
-    """Drop the column."""
-    with op.batch_alter_table("language_revision") as table:
-        table.drop_column("author")

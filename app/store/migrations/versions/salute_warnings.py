@@ -5,17 +5,9 @@ from alembic import op
 
 revision = "0015"
 down_revision = "0014"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
     """Add the column; of clips so far nobody knows which warnings concern salutes."""
     column = sa.Column("salute_warnings", sa.Text(), nullable=False, server_default="[]")
     op.add_column("job", column)
-
-
-def downgrade() -> None:
-    """Drop the column."""
-    with op.batch_alter_table("job") as table:
-        table.drop_column("salute_warnings")

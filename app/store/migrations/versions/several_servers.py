@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0010"
 down_revision = "0009"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -20,11 +18,3 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("id"),
     )
     op.bulk_insert(count, [{"id": 1, "changes": 0}])
-
-
-def downgrade() -> None:
-    """Drop them."""
-    op.drop_table("change_count")
-    with op.batch_alter_table("job") as table:
-        table.drop_column("lease")
-        table.drop_column("server")

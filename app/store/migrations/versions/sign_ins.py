@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0013"
 down_revision = "0012"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -21,8 +19,3 @@ def upgrade() -> None:
     )
     op.create_index("ix_sign_in_name", "sign_in", ["name"])
     op.create_index("ix_sign_in_created", "sign_in", ["created"])
-
-
-def downgrade() -> None:
-    """Drop it."""
-    op.drop_table("sign_in")

@@ -5,8 +5,6 @@ from alembic import op
 
 revision = "0011"
 down_revision = "0010"
-branch_labels = None
-depends_on = None
 
 
 def upgrade() -> None:
@@ -20,8 +18,3 @@ def upgrade() -> None:
         sa.PrimaryKeyConstraint("id"),
     )
     op.create_index("ix_upload_reservation_owner", "upload_reservation", ["owner"])
-
-
-def downgrade() -> None:
-    """Drop it."""
-    op.drop_table("upload_reservation")

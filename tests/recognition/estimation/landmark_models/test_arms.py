@@ -26,6 +26,7 @@ from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
+from tests.recognition.estimation.landmark_models.crops import to_crop
 
 HAND_POINTS = {"wrist": "wrist", "pinky": "pinky_mcp", "index": "index_finger_mcp"}
 """The pose's points of a hand, and the hand model's points at the same places."""
@@ -52,7 +53,7 @@ def test_the_whole_hand_lies_upright_in_the_region(
     hand = turned(flat_hand(size=size), angle) + place
     region = region_of_wrist(body_with(hand, side), side)
     assert region is not None
-    shown = region.to_crop(hand, 224)
+    shown = to_crop(region, hand, 224)
     assert ((shown > 0) & (shown < 224)).all()
     wrist, middle_tip = shown[0], shown[HAND_LANDMARKS.index("middle_finger_tip")]
     assert wrist[1] - middle_tip[1] > 100

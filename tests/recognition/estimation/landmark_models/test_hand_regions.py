@@ -16,6 +16,7 @@ from app.recognition.estimation.landmark_models.hand_regions import (
 from app.recognition.estimation.landmark_models.suppression import Detection
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
+from tests.recognition.estimation.landmark_models.crops import to_crop
 
 ANGLES = st.floats(-math.pi, math.pi)
 SHIFTS = st.tuples(st.floats(-300, 300), st.floats(-300, 300)).map(np.array)
@@ -36,7 +37,7 @@ def test_the_region_turns_and_moves_with_the_hand(angle: float, shift: FloatArra
 @given(ANGLES, st.floats(10, 500))
 def test_the_whole_hand_lies_upright_in_its_region(angle: float, size: float) -> None:
     xy = turned(flat_hand(size=size), angle)
-    shown = region_of_hand(xy).to_crop(xy, 224)
+    shown = to_crop(region_of_hand(xy), xy, 224)
     assert ((shown > 0) & (shown < 224)).all()
     assert shown[WRIST, 1] > shown[MIDDLE_TIP, 1]
     assert abs(shown[WRIST, 0] - shown[MIDDLE_TIP, 0]) < 40

@@ -13,13 +13,19 @@ INPUTS = st.tuples(*(st.sampled_from([192, 320, 384, 416, 640]),) * 2)
 SHARES = st.lists(st.floats(-0.5, 1.5), min_size=2, max_size=2)
 
 
+def to_input(letterbox: Letterbox, points: FloatArray) -> FloatArray:
+    """Map pixels of the image to pixels of the input: the inverse of `Letterbox.to_image`."""
+    origin, one = letterbox.to_image(np.array([[0.0, 0.0], [1.0, 1.0]]))
+    return np.asarray((points - origin) / (one - origin))
+
+
 @given(SIZES, INPUTS, SHARES)
 def test_there_and_back_is_where_one_was(
     image: tuple[int, int], model: tuple[int, int], share: list[float]
 ) -> None:
     letterbox = Letterbox.fitting(image, model)
     point: FloatArray = np.array(share) * image
-    back = letterbox.to_image(letterbox.to_input(point))
+    back = letterbox.to_image(to_input(letterbox, point))
     np.testing.assert_allclose(back, point, atol=1e-6 * max(image))
 
 
@@ -28,7 +34,7 @@ def test_the_image_lies_in_the_input_and_touches_it(
     image: tuple[int, int], model: tuple[int, int]
 ) -> None:
     letterbox = Letterbox.fitting(image, model)
-    low, high = letterbox.to_input(np.array([[0.0, 0.0], image]))
+    low, high = to_input(letterbox, np.array([[0.0, 0.0], image]))
     assert (low >= 0).all()
     assert (high <= np.array(model) + 1e-9).all()
     assert np.isclose(high - low, model).any()
@@ -39,7 +45,7 @@ def test_the_bars_on_both_sides_differ_by_a_pixel_at_most(
     image: tuple[int, int], model: tuple[int, int]
 ) -> None:
     letterbox = Letterbox.fitting(image, model)
-    low, high = letterbox.to_input(np.array([[0.0, 0.0], image]))
+    low, high = to_input(letterbox, np.array([[0.0, 0.0], image]))
     assert (np.abs((model - high) - low) <= 1 + 1e-9).all()
 
 
@@ -48,7 +54,7 @@ def test_shapes_are_not_distorted_by_more_than_the_rounding_to_pixels(
     image: tuple[int, int], model: tuple[int, int]
 ) -> None:
     letterbox = Letterbox.fitting(image, model)
-    across, down = letterbox.to_input(np.array(image, float)) - letterbox.to_input(np.zeros(2))
+    across, down = to_input(letterbox, np.array(image, float)) - to_input(letterbox, np.zeros(2))
     scale = min(model[0] / image[0], model[1] / image[1])
     assert abs(across - scale * image[0]) <= 0.5 + 1e-9
     assert abs(down - scale * image[1]) <= 0.5 + 1e-9
@@ -68,7 +74,7 @@ def test_a_marker_is_drawn_where_the_letterbox_says_it_is(
     weight = np.where(np.all(seen == BAR, axis=2), 0.0, seen[:, :, 0])
     row, column = np.indices(weight.shape) + 0.5
     middle = np.array([(weight * column).sum(), (weight * row).sum()]) / weight.sum()
-    np.testing.assert_allclose(middle, letterbox.to_input(place)[0], atol=0.35)
+    np.testing.assert_allclose(middle, to_input(letterbox, place)[0], atol=0.35)
 
 
 def test_bars_are_grey() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from pydantic import SecretStr
 
-from app.api.middleware.identities import Identities, check_tokens
+from app.api.services.identities import Identities, check_tokens
 from app.settings import Settings
 from app.store import Role, StoreUnavailable, TokenFile
 

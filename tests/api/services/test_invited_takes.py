@@ -8,7 +8,7 @@ import httpx
 import pytest
 from sqlalchemy import update
 
-from app.api.ingest import invited_takes
+from app.api.services import invited_takes
 from app.api.services.running_studio import Studio
 from app.store import InvitedTake, NotFound
 from app.store.models import ANSWER_TIME, now

@@ -18,7 +18,6 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
-from app.api.middleware.identities import Identities
 from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
 from app.api.services.gesture_edits import (
@@ -27,6 +26,7 @@ from app.api.services.gesture_edits import (
     gesture_in,
     remove_demonstration_from,
 )
+from app.api.services.identities import Identities
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
