@@ -34,10 +34,10 @@ from app.robot.mavlink.orders import is_from_vehicle
 from app.robot.mavlink.table import Answers, Vehicle
 
 REPORT_SECONDS: Final = 0.1
-"""Period at which the vehicle is asked to report the value: less than half a pulse."""
+"""Seconds between two reports that the vehicle is asked for: less than half a pulse."""
 
 FRESH_SECONDS: Final = 2.0
-"""Age after which a reported value is not known to be the present one."""
+"""Seconds after which a reported value is not known to be the present one."""
 
 ASK_SECONDS: Final = 5.0
 """Seconds between two requests for reports that do not come."""
@@ -60,7 +60,7 @@ PAUSE_SECONDS: Final = 1.0
 apart."""
 
 LATEST_SECONDS: Final = 6.0
-"""Age at which an answer that could not begin is dropped: the diver has gone on."""
+"""Seconds after which an answer that could not begin is dropped: the diver has gone on."""
 
 BLINK_PULSE: Final = 1660
 """Pulse length in microseconds of a blink from low lights: 70 % of their brightness."""

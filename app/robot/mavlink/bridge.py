@@ -41,21 +41,21 @@ from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
-from app.robot.mavlink.peer import VehiclePeer
+from app.robot.mavlink.peer import Sender, VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
 
 TEXT_BYTES: Final = 50
 """Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
 
 TICK_SECONDS: Final = 0.05
-"""Longest wait for a message: shorter than what a diver or a vehicle notices."""
+"""Seconds to wait for a message: shorter than what a diver or a vehicle notices."""
 
 HEARTBEAT_SECONDS: Final = 1.0
 """Seconds between two of our heartbeats, as MAVLink requires."""
 
 CLOSE_SECONDS: Final = 3.5
-"""Longest time that closing waits for the active order and the last texts, whatever the vehicle
-answers: a service that is stopped must let go of its vehicle."""
+"""Seconds that closing waits at most for the active order and the last texts, heard or not: a
+service that is stopped must let go of its vehicle."""
 
 SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
@@ -139,10 +139,9 @@ class MavlinkBridge:
         self._texts: list[Message] = []
         self._handed: list[Message] = []
         self._pictures = 0
-        self._asked = -math.inf
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
-        self._silent = self._broken = self._is_answered = False
+        self._silent = self._broken = self._is_answered = self._was_contested = False
         self._reboots = 0
         self._fault: Exception | None = None
         # Reentrant, because a line for people may cause an event: that it cannot be printed.
@@ -305,12 +304,17 @@ class MavlinkBridge:
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
         is_known = self._servo.function is not None
-        if fault := self._peer.find_fault(now) or (is_known and self._find_obstacle(order)):
+        is_contested = self._peer.is_contested
+        obstacle = self._find_obstacle(order) if is_known and not is_contested else ""
+        if fault := self._peer.find_fault(now) or obstacle:
             self._report(Outcome(order, "stopped", fault))
             return
         if self._answers is not None:
             self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
         self._report(self._desk.give(order, now))
+        if is_contested and self._desk.order is order:
+            where = "to both" if order.emergency else "waits"
+            self._report(Outcome(order, "waits", f"{where}, {self._peer.contest}"))
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -337,8 +341,8 @@ class MavlinkBridge:
                 due = self._step(packets)
             # Though nothing can be heard, what is sent may arrive.
             try:
-                for message in due:
-                    self._link.send(message, self._peer.sender)
+                for message, receiver in due:
+                    self._link.send(message, receiver)
             except (OSError, OsgError) as error:
                 fault = str(error)
             if fault:
@@ -360,8 +364,8 @@ class MavlinkBridge:
         shows = self._answers is not None and self._answers.is_active
         return self._desk.order is not None or bool(self._texts) or shows
 
-    def _step(self, packets: Sequence[Packet]) -> list[Message]:
-        """Process the received messages and return the messages to send."""
+    def _step(self, packets: Sequence[Packet]) -> list[tuple[Message, Sender | None]]:
+        """Process the received messages and return the messages to send, and to whom."""
         now = clock.monotonic()
         self._peer.expect(self._link.expected)
         for message, sender in packets:
@@ -370,7 +374,11 @@ class MavlinkBridge:
             self._servo.hear(message)
             self._is_answered |= message.get_type() == "COMMAND_ACK"
             if self._answers is None or not self._answers.hear(message, now):
-                self._report(self._desk.hear(message, now))
+                proves = not self._peer.is_contested
+                self._report(self._desk.hear(message, now, proves=proves))
+        if self._peer.is_contested != self._was_contested:
+            self._was_contested = self._peer.is_contested
+            self._desk.begin_again(now)
         self._report(self._desk.check_deadline(now))
         decision = self._dialogue.check_deadline(self._source_time())
         if decision is not None:
@@ -378,28 +386,26 @@ class MavlinkBridge:
             self.answer(decision.answer, decision.reason)
         self._watch_vehicle(now)
         # Orders first: an emergency does not wait for texts, of which each may take its time.
-        due = self._list_orders(now) if self._peer.is_proven(now) else []
+        own: list[Message] = []
+        shared: list[Message] = []
+        if self._peer.is_proven(now):
+            own += [*self._handed, *self._servo.list_due(now)]
+            if self._desk.order is not None and not self._find_obstacle(self._desk.order):
+                shared += self._desk.list_due(now)
         self._handed.clear()
-        due += self._texts
+        shared += self._texts
         self._texts.clear()
-        due += self._list_answers(now)
         if now - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = now
-            due.append(build_heartbeat())
-        return due
-
-    def _list_orders(self, now: float) -> list[Message]:
-        """Return the messages of orders to send now, and the question before the first light."""
-        due = [*self._handed]
-        if self._servo.function is None and now - self._asked >= self._table.vehicle.repeat_seconds:
-            self._asked = now
-            due.append(self._servo.ask())
-        if self._desk.order is not None and not self._find_obstacle(self._desk.order):
-            due += self._desk.list_due(now)
-        return due
+            shared.append(build_heartbeat())
+        due = [(message, self._peer.sender) for message in own]
+        due += [(message, each) for message in shared for each in self._peer.claimants]
+        return [*due, *((message, self._peer.sender) for message in self._list_answers(now))]
 
     def _find_obstacle(self, order: Order) -> str:
-        """Return why an order for the lights must not be sent; empty if it may."""
+        """Return why an order must not be sent; empty if it may."""
+        if self._peer.is_contested:
+            return "" if order.emergency else self._peer.contest
         sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
         return self._servo.obstacle if sets else ""
 
@@ -438,19 +444,16 @@ class MavlinkBridge:
         """Announce what became of an order; None: nothing new."""
         if outcome is None:
             return
-        words = outcome.order.words
         if outcome.kind == "unanswered" and (obstacle := self._find_obstacle(outcome.order)):
             outcome = replace(outcome, kind="stopped", answer=obstacle)
-        text = {
-            "done": f"done: {words}",
-            "replaced": f"replaced: {words}",
-            "refused": f"refused ({outcome.answer}): {words}",
-            "unanswered": f"NOT DONE, no answer: {words}",
-            "late": f"done after all: {words}",
-            "cancelled": f"{', '.join(filter(None, ('cancelled', outcome.answer)))}: {words}",
-            "stopped": f"NOT DONE, {outcome.answer}: {words}",
-            "waits": f"{outcome.answer}: {words}",
-        }[outcome.kind]
+        told = {
+            "unanswered": "NOT DONE, no answer",
+            "refused": f"refused ({outcome.answer})",
+            "stopped": f"NOT DONE, {outcome.answer}",
+            "waits": outcome.answer,
+            "late": "done after all",
+        }.get(outcome.kind, outcome.kind)
+        text = f"{told}: {outcome.order.words}{f'; {outcome.sent}' if outcome.sent else ''}"
         self._say(text, SEVERITIES.get(outcome.kind, mavlink.MAV_SEVERITY_WARNING))
         self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
         # A vehicle drops without a word what is signed wrongly, or with a time before the last.

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, IPvAnyAddress, ValidationError, model_validator
 from typing_extensions import Self
 
 from app.recognition import Language
@@ -35,8 +35,8 @@ else:
 FORMAT: Final = "osg-studio/vehicle-table"
 
 GIVE_UP_SECONDS: Final = 10.0
-"""Seconds for the vehicle to carry out an action: ten heartbeats and twenty repetitions, enough
-when a fifth of all packets is lost. After that the diver has given up too."""
+"""Seconds, heard or not, for the vehicle to carry out an action: ten heartbeats and twenty
+repetitions, enough when a fifth of all packets is lost. Then the diver has given up too."""
 
 DEEPEST: Final = 30.0
 """Largest depth in metres, unless a table sets its own limit: a number below the depths of sport
@@ -147,6 +147,8 @@ class Vehicle(_Entry):
     ----------
     system, component
         MAVLink ids of the autopilot.
+    address
+        IP address from which the vehicle sends to ``udpin``; None: from any.
     camera_component
         MAVLink id of the component that takes pictures; by default the autopilot, which triggers a
         camera.
@@ -155,9 +157,9 @@ class Vehicle(_Entry):
     deepest
         Largest depth that an action may ask for, in metres.
     repeat_seconds
-        Time between two repetitions of a command that was not acknowledged.
+        Seconds between two repetitions of a command that was not acknowledged.
     give_up_seconds
-        Time after which an action that the vehicle has not done counts as failed.
+        Seconds, heard or not, after which an action that the vehicle has not done counts as failed.
     key_file
         File of the key that signs all messages (MAVLink 2), beside the table; None: no signatures.
 
@@ -165,6 +167,7 @@ class Vehicle(_Entry):
 
     system: Annotated[int, Field(ge=1, le=255)] = 1
     component: Annotated[int, Field(ge=1, le=255)] = 1
+    address: IPvAnyAddress | None = None
     camera_component: Annotated[int, Field(ge=1, le=255)] = 1
     lights_servo: Annotated[int, Field(ge=1, le=32)] = 13
     deepest: Annotated[float, Field(gt=0, le=1000)] = DEEPEST

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import time
 from contextlib import closing
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -140,6 +142,7 @@ def test_what_the_pilot_sets_during_an_outage_stays(shown: Shown, seconds: float
 @pytest.mark.parametrize("ends", ["alone", "cancel", "stop"])
 def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -> None:
     changes = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 1}}
+    sent = "hold; DO_SET_MODE ALT_HOLD was sent once"
     with diving(changes=changes) as diver:
         wait_until(lambda: diver.bridge._desk._mode is not None)
         diver.vehicle.hangs = True
@@ -149,13 +152,12 @@ def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -
         time.sleep(0.5)
         if ends == "cancel":
             diver.show("no")
-            assert diver.wait_for("cancelled") == "cancelled, but it was sent: hold"
+            assert diver.wait_for("cancelled") == f"cancelled: {sent}"
         elif ends == "stop":
             diver.bridge.publish(SourceEnded(diver.time, 100, 0, True))
-            said = diver.wait_for("NOT DONE")
-            assert said == "NOT DONE, robot is stopped, but it was sent: hold"
+            assert diver.wait_for("NOT DONE") == f"NOT DONE, robot is stopped: {sent}"
         else:
-            assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+            assert diver.wait_for("NOT DONE") == f"NOT DONE, no answer: {sent}"
         diver.vehicle.hangs = False
         assert diver.wait_for("done") == "done after all: hold"
         assert diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD
@@ -265,3 +267,18 @@ def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_pat
         diver.show(None)
         assert "cannot be written" in diver.wait_for(str(tmp_path))
         wait_until(lambda: len(diver.vehicle.shown) == 2)
+
+
+def test_every_limit_says_which_seconds_it_counts() -> None:
+    limits = {}
+    for file in Path(answers.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.Module | ast.ClassDef):
+                continue
+            for limit, text in pairwise([*node.body, ast.Pass()]):
+                target = limit.target if isinstance(limit, ast.AnnAssign) else None
+                if isinstance(target, ast.Name) and target.id.endswith("_SECONDS"):
+                    said = ast.unparse(text).lstrip("'\"")
+                    limits[target.id] = said.startswith(("Seconds", "Heard seconds"))
+    assert len(limits) > 20
+    assert [name for name, says in limits.items() if not says] == []
