@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 # Relative, because ROS 2's package has links to these files and no `app`.
 from .answers import Answer, find_phrase_answer
-from .rules import EMERGENCY_LIMIT, Rules
+from .rules import EMERGENCY_LIMIT, Rules, to_number
 
 MOST_BODIES = 32
 """Number of bodies whose last event is kept: more than the divers near one robot."""
@@ -26,7 +26,7 @@ MOST_BODIES = 32
 
 @dataclass(frozen=True)
 class RecognizedGesture:
-    """Recognition of one take.
+    """Recognition of one take. What is no finite number becomes NaN, which commands nothing.
 
     Attributes
     ----------
@@ -58,6 +58,10 @@ class RecognizedGesture:
     pair: tuple[str, str] | None = None
     novelty: float = 0.0
 
+    def __post_init__(self) -> None:
+        """Make NaN of what is no number."""
+        keep_numbers(self, "confidence", "stamp", "novelty", *["start"] * (self.start is not None))
+
     @property
     def began(self) -> float:
         """Time at which the take began, in seconds."""
@@ -66,7 +70,7 @@ class RecognizedGesture:
 
 @dataclass(frozen=True, kw_only=True)
 class RecognizedPhrase:
-    """Recognition of a message of several gestures.
+    """Recognition of a message of several gestures. What is no finite number becomes NaN.
 
     Attributes
     ----------
@@ -101,6 +105,10 @@ class RecognizedPhrase:
     language_id: str
     body_id: str = ""
     pair: tuple[str, str] | None = None
+
+    def __post_init__(self) -> None:
+        """Make NaN of what is no number."""
+        keep_numbers(self, "confidence", "start", "stamp")
 
     @property
     def began(self) -> float:
@@ -265,7 +273,7 @@ class CommandDialogue:
             least = max(least, self.rules.emergency_confidence)
         # False for NaN too, of both: what is no share of 1 is no confidence.
         sure = least <= gesture.confidence <= 1
-        sure &= gesture.novelty <= (EMERGENCY_LIMIT if is_emergency else math.inf)
+        sure &= 0 <= gesture.novelty <= (EMERGENCY_LIMIT if is_emergency else math.inf)
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
         if sure and gesture.label in self.rules.cancel:
@@ -485,6 +493,12 @@ class CommandDialogue:
         self.pending = Pending(phrase.text, deadline, phrase.mission, phrase.body_id)
         words = f"repeat the message to confirm: {phrase.text}"
         return Decision(words, label=phrase.text, answer=Answer.repeat)
+
+
+def keep_numbers(input_: RecognizedGesture | RecognizedPhrase, *names: str) -> None:
+    """Make floats of numbers from outside, and NaN of what is none; see `to_number`."""
+    for name in names:
+        object.__setattr__(input_, name, to_number(getattr(input_, name)))
 
 
 def _name(input_: RecognizedGesture | RecognizedPhrase) -> str:

@@ -118,7 +118,8 @@ class LightsServo:
 
     def hear(self, message: Message) -> None:
         """Note the vehicle's answer to the question."""
-        if message.get_type() == "PARAM_VALUE" and message.param_id == self._name:
+        is_answer = message.get_type() == "PARAM_VALUE" and message.param_id == self._name
+        if is_answer and math.isfinite(message.param_value):
             self.function = round(message.param_value)
 
     def list_due(self, now: float) -> Iterator[Message]:

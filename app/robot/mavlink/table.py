@@ -10,6 +10,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
@@ -25,6 +26,7 @@ from app.robot.commands.rules import (
     EMERGENCY_CONFIDENCE,
     STALE_SECONDS,
     Rules,
+    to_number,
 )
 
 if sys.version_info >= (3, 11):
@@ -64,7 +66,8 @@ level, and the detection of motors."""
 
 
 class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Strict: a number is no text or truth value, as in Rules.
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class Hold(_Entry):
@@ -192,7 +195,7 @@ class Answers(_Entry):
 
     """
 
-    show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1)]
+    show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1, strict=False)]
     listening: Pulses = PULSES[Answer.listening]
     repeat: Pulses = PULSES[Answer.repeat]
     one_of_two: Pulses = PULSES[Answer.one_of_two]
@@ -241,7 +244,7 @@ class VehicleTable(_Entry):
     gestures: dict[str, Action] = {}
     phrases: dict[str, Action] = {}
     emergency: dict[str, Literal["hold", "surface"]] = {}
-    cancel: tuple[str, ...] = ()
+    cancel: Annotated[tuple[str, ...], Field(strict=False)] = ()
     confirm_seconds: Annotated[float, Field(ge=1, le=300)] = CONFIRM_SECONDS
     stale_seconds: Annotated[float, Field(ge=0.1, le=60)] = STALE_SECONDS
     least_confidence: Annotated[float, Field(ge=0, le=1)] = 0.0
@@ -314,11 +317,9 @@ class VehicleTable(_Entry):
         if not (isinstance(action, Depth) and isinstance(action.metres, SlotName)):
             return action
         shown = slots.get(action.metres.slot)
-        try:
-            metres = float(shown) if isinstance(shown, int | float | str) else None
-        except ValueError:
-            metres = None
-        if metres is None or not 0 < metres <= self.vehicle.deepest:
+        with suppress(ValueError):
+            shown = float(shown) if isinstance(shown, str) else shown
+        if not 0 < (metres := to_number(shown)) <= self.vehicle.deepest:
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 
