@@ -24,11 +24,17 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
 
 
 def thinned(
-    clip: Path, copy: Path, times: int = 1, *, every: int = 3, backward: bool = False
+    clip: Path,
+    copy: Path,
+    times: int = 1,
+    *,
+    every: int = 3,
+    backward: bool = False,
+    share: float = 1.0,
 ) -> Path:
     """Write every third frame of a clip at a third of its rate, and return the copy's path.
 
-    With `times`, the clip follows itself; `backward` begins at its end.
+    With `times`, the clip follows itself; `backward` begins at its end; `share` ends it early.
     """
     with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
         stream = source.streams.video[0]
@@ -37,6 +43,7 @@ def thinned(
         written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
         written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
         kept = list(source.decode(stream))[::every]
+        kept = kept[: round(share * len(kept))]
         for number, frame in enumerate(times * (kept[::-1] if backward else kept)):
             frame.pts, frame.time_base = number, 1 / rate
             target.mux(written.encode(frame))

@@ -30,6 +30,7 @@ from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
 from tests.robot.rtp_camera import free_port
+from tests.short_clips import thinned
 from tests.test_layers import modules_of, requirements_of
 
 DOCUMENTED = [split_ros_arguments(command)[0] for command in documented()]
@@ -124,6 +125,26 @@ def test_of_a_clip_the_robot_says_what_recognize_says_and_needs_no_web_app(
     ]
     assert events[-1]["event"] == "source_ended"
     assert f"{said[0]['label']} (" in error
+
+
+@pytest.mark.slow
+def test_of_a_take_that_nobody_ended_robot_and_recognize_say_the_same(
+    osg_studio: OsgStudio, sample_clips: Path, installed_models: None, tmp_path: Path
+) -> None:
+    clip = thinned(sample_clips / "circle-test-1.mp4", tmp_path / "open.mp4", share=0.6)
+    language = sample_clips.parent / "osg-table-2.json"
+    with running("robot", "--language", language, "--source", clip) as process:
+        out, _ = process.communicate()
+    assert process.returncode == 1
+    said = [json.loads(line) for line in out.splitlines()]
+    (rejected,) = [each for each in said if each["event"].startswith("take_")]
+    recognized = osg_studio("recognize", clip, "--language", language, "--json")
+    assert recognized.code == 1
+    (take,) = json.loads(recognized.out)["takes"]
+    assert (rejected["event"], rejected["closed"]) == ("take_rejected", False)
+    assert (take["label"], take["closed"]) == (None, False)
+    assert take["fault"] == "no second salute ended it"
+    assert (rejected["nearest"], rejected["confidence"]) == (take["nearest"], take["confidence"])
 
 
 @pytest.mark.slow
