@@ -206,7 +206,7 @@ class MavlinkBridge:
         self._tell_answer(answer, self._table.answers.count_pulses(answer), text)
 
     def close(self) -> None:
-        """Wait for the active order, at most `CLOSE_SECONDS`, and disconnect.
+        """Wait for the last order, at most `CLOSE_SECONDS`, and disconnect.
 
         Texts that were announced before are sent to the vehicle's displays first.
         """
@@ -362,7 +362,9 @@ class MavlinkBridge:
                 self._report(self._desk.stop("robot has ended"))
             return False
         shows = self._answers is not None and self._answers.is_active
-        return self._desk.order is not None or bool(self._texts) or shows
+        # What was stopped may be done already: the next heartbeat tells.
+        is_open = self._desk.order is not None or self._desk.is_watched
+        return is_open or bool(self._texts) or shows
 
     def _step(self, packets: Sequence[Packet]) -> list[tuple[Message, Sender | None]]:
         """Process the received messages and return the messages to send, and to whom."""

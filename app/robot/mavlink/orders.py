@@ -204,6 +204,11 @@ class OrderDesk:
         self._late, self._late_by = (order if sent else None), self._clock.seconds + LATE_SECONDS
         return self._find_late() or outcome
 
+    @property
+    def is_watched(self) -> bool:
+        """Whether an order was given up that the vehicle may still do, in heard seconds."""
+        return self._late is not None and self._clock.seconds <= self._late_by
+
     def _find_late(self) -> Outcome | None:
         """Return that an order which was given up is done, once mode and depth show it."""
         if self._late is None or self._armed is False:
@@ -266,7 +271,7 @@ class OrderDesk:
             return None
         self._note_state(message, now)
         if self.order is None:
-            return self._find_late() if self._clock.seconds <= self._late_by else None
+            return self._find_late() if self.is_watched else None
         if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
             return outcome
         if self._watch.contradiction:

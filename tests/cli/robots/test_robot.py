@@ -314,12 +314,14 @@ def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("has_page", [False, True], ids=["alone", "upload"])
 def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
     installed_models: None,
     sample_clips: Path,
     thin_clip: Callable[[str], Path],
     tmp_path: Path,
     number: signal.Signals,
+    has_page: bool,
 ) -> None:
     """The vehicle denies the emergency, so the bridge goes on with it at the end of the clip."""
     pytest.importorskip("pymavlink", reason="needs the extra mavlink")
@@ -328,10 +330,11 @@ def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
     table = tmp_path / "vehicle.toml"
     table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
     language = sample_clips.parent / "osg-table-2.json"
+    page = ("--page", f"127.0.0.1:{free_port()}", "--upload") if has_page else ()
     with (
         sailing(refused=frozenset({176})) as vehicle,  # MAV_CMD_DO_SET_MODE
         running(
-            *("robot", "--language", language, "--source", thin_clip("line-test-1")),
+            *("robot", "--language", language, "--source", thin_clip("line-test-1"), *page),
             *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
         ) as process,
     ):
@@ -340,7 +343,44 @@ def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
         process.send_signal(number)
         _, error = process.communicate(timeout=30)
     assert process.returncode == 0, error
-    assert "NOT DONE, robot has ended" in error
+    said = "NOT DONE, robot has ended: surface; DO_SET_MODE SURFACE was sent "
+    assert said in " ".join(error.split())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_an_emergency_that_a_signal_stops_is_told_as_done_when_the_vehicle_shows_it(
+    installed_models: None,
+    sample_clips: Path,
+    thin_clip: Callable[[str], Path],
+    tmp_path: Path,
+    number: signal.Signals,
+) -> None:
+    """The vehicle accepts the mode, and shows it only after the signal."""
+    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
+    from tests.robot.mavlink.vehicle import sailing
+
+    table = tmp_path / "vehicle.toml"
+    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
+    language = sample_clips.parent / "osg-table-2.json"
+    clip = thinned(sample_clips / "line-test-1.mp4", tmp_path / "long.mp4", 20)
+    with (
+        sailing(is_slow=True) as vehicle,
+        running(
+            *("robot", "--language", language, "--source", clip),
+            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
+        ) as process,
+    ):
+        until_words(process, "vehicle: EMERGENCY")
+        while not vehicle.asked:
+            time.sleep(0.01)
+        process.send_signal(number)
+        until_words(process, "vehicle: NOT DONE, robot is stopped")
+        vehicle.is_slow = False
+        _, error = process.communicate(timeout=30)
+    assert process.returncode == 0, error
+    assert "done after all: surface" in error
+    assert vehicle.mode == 9  # SUB_MODE_SURFACE
 
 
 @pytest.mark.slow
