@@ -116,6 +116,10 @@ class RecognizedPhrase:
         return min(self.start, self.stamp)
 
 
+Input = RecognizedGesture | RecognizedPhrase
+"""What a diver has shown."""
+
+
 @dataclass(frozen=True)
 class CommandTable:
     """Commands of a language's gestures.
@@ -279,14 +283,14 @@ class CommandDialogue:
         if sure and gesture.label in self.rules.cancel:
             refused = None
         elif sure and is_emergency:
-            refused = self._find_foreign(gesture, now, self.rules.emergency_seconds)
+            refused = self._find_foreign(gesture, self.rules.emergency_seconds)
         else:
-            refused = self._find_refusal(gesture, now, before, is_newer=is_newer)
+            refused = self._find_refusal(gesture, before, is_newer=is_newer)
         if refused is not None:
             return Decision(refused)
         label, pair = (gesture.label, gesture.pair) if sure else (None, None)
         understood = label is not None or pair is not None
-        self._remember(self._gestures, gesture, now, understood=understood)
+        self._remember(self._gestures, gesture, understood=understood)
         if label is not None:
             return self._decide_label(label, gesture)
         if pair is not None:
@@ -312,12 +316,12 @@ class CommandDialogue:
         refused = None
         if phrase.kind != "cancelled":
             same = before if whole else replace(before, middle=-math.inf)
-            refused = self._find_refusal(phrase, now, same, is_newer=is_newer)
+            refused = self._find_refusal(phrase, same, is_newer=is_newer)
         if refused is None and not self.table.phrase_labels:
             refused = "ignored: the language of the commands has no phrases"
         if refused is not None:
             return Decision(refused)
-        self._remember(self._messages, phrase, now, understood=whole)
+        self._remember(self._messages, phrase, understood=whole)
         pending = self.pending if self.pending and self.pending.mission else None
         in_time = self._is_repetition(pending, phrase)
         if phrase.kind == "complete" and phrase.mission:
@@ -365,20 +369,13 @@ class CommandDialogue:
             for shown in (self._gestures, self._messages):
                 for body, last in shown.items():
                     shown[body] = Shown(last.stamp + step, last.started + step, last.middle + step)
-        self._now = now if math.isfinite(now) else self._now
+        self._now = to_number(now)
 
-    def _remember(
-        self,
-        shown: OrderedDict[str, Shown],
-        input_: RecognizedGesture | RecognizedPhrase,
-        now: float,
-        *,
-        understood: bool,
-    ) -> None:
+    def _remember(self, shown: OrderedDict[str, Shown], input_: Input, *, understood: bool) -> None:
         """Store the last event of a body."""
         last = shown.pop(input_.body_id, Shown())
         # A stamp in the future must not make later events count as old.
-        stamp = now if math.isnan(input_.stamp) else min(input_.stamp, now)
+        stamp = self._now if math.isnan(input_.stamp) else min(input_.stamp, self._now)
         middle = (input_.began + stamp) / 2 if understood else last.middle
         shown[input_.body_id] = Shown(
             max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
@@ -386,17 +383,10 @@ class CommandDialogue:
         if len(shown) > MOST_BODIES:
             shown.popitem(last=False)
 
-    def _find_refusal(
-        self,
-        input_: RecognizedGesture | RecognizedPhrase,
-        now: float,
-        before: Shown,
-        *,
-        is_newer: bool,
-    ) -> str | None:
+    def _find_refusal(self, input_: Input, before: Shown, *, is_newer: bool) -> str | None:
         """Return why a gesture or message is ignored; None where it is not."""
         what = _name(input_)
-        if refused := self._find_foreign(input_, now, self.rules.stale_seconds):
+        if refused := self._find_foreign(input_, self.rules.stale_seconds):
             return refused
         if not is_newer:
             return f"ignored: the {what} is not newer than the one before"
@@ -404,11 +394,9 @@ class CommandDialogue:
             return f"ignored: the {what} is the one before, recognised once more"
         return None
 
-    def _find_foreign(
-        self, input_: RecognizedGesture | RecognizedPhrase, now: float, oldest: float
-    ) -> str | None:
+    def _find_foreign(self, input_: Input, oldest: float) -> str | None:
         """Return why a gesture or message is not of here and now; None where it is."""
-        what, age = _name(input_), now - input_.stamp
+        what, age = _name(input_), self._now - input_.stamp
         if math.isnan(input_.stamp + input_.began):
             return f"ignored: the {what} has no stamp"
         if not abs(age) <= oldest:
@@ -417,9 +405,7 @@ class CommandDialogue:
             return f"ignored: the {what} is of another language than the commands"
         return None
 
-    def _is_repetition(
-        self, pending: Pending | None, input_: RecognizedGesture | RecognizedPhrase
-    ) -> bool:
+    def _is_repetition(self, pending: Pending | None, input_: Input) -> bool:
         """Return whether an input may confirm the pending one: in time, and of the same body."""
         return (
             pending is not None
@@ -495,11 +481,11 @@ class CommandDialogue:
         return Decision(words, label=phrase.text, answer=Answer.repeat)
 
 
-def keep_numbers(input_: RecognizedGesture | RecognizedPhrase, *names: str) -> None:
+def keep_numbers(input_: Input, *names: str) -> None:
     """Make floats of numbers from outside, and NaN of what is none; see `to_number`."""
     for name in names:
         object.__setattr__(input_, name, to_number(getattr(input_, name)))
 
 
-def _name(input_: RecognizedGesture | RecognizedPhrase) -> str:
+def _name(input_: Input) -> str:
     return "message" if isinstance(input_, RecognizedPhrase) else "gesture"

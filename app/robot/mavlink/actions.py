@@ -274,12 +274,8 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     """
     address = (vehicle.system, vehicle.component)
     match action:
-        case Hold():
-            return (ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),)
-        case Surface():
-            return (ModeStep(mavlink.SUB_MODE_SURFACE, *address),)
-        case Mode(mode=mode):
-            return (ModeStep(getattr(mavlink, f"SUB_MODE_{mode}"), *address),)
+        case Hold() | Surface() | Mode():
+            return (ModeStep(getattr(mavlink, f"SUB_MODE_{action.mode}"), *address),)
         case Lights(percent=percent):
             pulse = round(LEAST_PWM + (MOST_PWM - LEAST_PWM) * percent / 100)
             command = mavlink.MAV_CMD_DO_SET_SERVO
@@ -290,8 +286,5 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
             return (CommandStep(command, (0.0, 0.0, 1.0, float(picture)), *camera),)
         case Depth(metres=float() as metres):
             # ArduSub accepts a target depth only in ALT_HOLD.
-            return (
-                ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),
-                DepthStep(metres, *address),
-            )
+            return (*build_steps(Hold(), vehicle, picture), DepthStep(metres, *address))
     raise ValueError(f"{action!r} has an open slot: resolve it first")

@@ -331,7 +331,9 @@ class PatternPlayer:
             self.stop(now)
             if now - self._asked > ASK_SECONDS:
                 self._asked = now
-                yield self._ask_for_reports()
+                vehicle, message = self.output.vehicle, float(self.output.reported_by)
+                ask = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+                yield build_command(vehicle, ask, message, REPORT_SECONDS * 1e6)
             # Nothing is set unseen: the pilot may have another value by now.
             return
         if self.is_active:
@@ -372,10 +374,6 @@ class PatternPlayer:
         self._unanswered += 1
         return self.output.build(value)
 
-    def _ask_for_reports(self) -> Message:
-        command, message = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(self.output.reported_by)
-        return build_command(self.output.vehicle, command, message, REPORT_SECONDS * 1e6)
-
 
 class AnswerDesk:
     """State of the answers to the diver: the newest that waits, and the patterns.
@@ -386,7 +384,7 @@ class AnswerDesk:
     Parameters
     ----------
     answers, vehicle
-        The table's.
+        The table's; None: nothing is shown.
     memory
         Keeps what was before a pattern.
     servo
@@ -403,7 +401,7 @@ class AnswerDesk:
 
     def __init__(
         self,
-        answers: Answers,
+        answers: Answers | None,
         vehicle: Vehicle,
         memory: Memory | None = None,
         servo: LightsServo | None = None,
@@ -411,8 +409,10 @@ class AnswerDesk:
         lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
         outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
-        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in answers.show]
-        self._waiting: tuple[Answer, float, bool] | None = None
+        shown = () if answers is None else answers.show
+        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in shown]
+        # The answer, its pulses, when it was given, and whether to an emergency.
+        self._waiting: tuple[Answer, int, float, bool] | None = None
         self.is_take_open = False
         self.notices: list[str] = []
 
@@ -426,13 +426,14 @@ class AnswerDesk:
         """Whether nothing is shown and nothing waits to be shown."""
         return self._waiting is None and not self.is_active
 
-    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> None:
-        """Show an answer as soon as it may be shown."""
-        if self._waiting is not None and self._waiting[2] and not emergency:
-            return
-        self._waiting = (answer, now, emergency)
-        if emergency:
-            self.stop(now)
+    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> int:
+        """Show an answer as soon as it may be shown; return its number of pulses, 0 for none."""
+        pulses = 0 if self._answers is None else self._answers.count_pulses(answer)
+        if pulses and (self._waiting is None or emergency or not self._waiting[3]):
+            self._waiting = (answer, pulses, now, emergency)
+            if emergency:
+                self.stop(now)
+        return pulses
 
     def stop(self, now: float) -> None:
         """End the patterns, and restore what was before."""
@@ -459,16 +460,16 @@ class AnswerDesk:
         if self.is_take_open:
             self.stop(now)
         elif self._waiting is not None and may_begin:
-            self._begin(*self._waiting[:2], now)
+            self._begin(*self._waiting[:3], now)
         for player in self._players:
             yield from player.list_due(now)
 
-    def _begin(self, answer: Answer, given: float, now: float) -> None:
+    def _begin(self, answer: Answer, pulses: int, given: float, now: float) -> None:
         obstacles = [player.find_obstacle(now) for player in self._players]
         able = [player for player, found in zip(self._players, obstacles, strict=True) if not found]
         if able and all(player.is_free(now) for player in able):
             for player in able:
-                player.begin(self._answers.count_pulses(answer), now)
+                player.begin(pulses, now)
             self._waiting = None
         elif now - given > LATEST_SECONDS:
             self._waiting = None

@@ -60,20 +60,14 @@ service that is stopped must let go of its vehicle."""
 SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
 SEVERITIES: Final = {
-    "done": mavlink.MAV_SEVERITY_NOTICE,
-    "replaced": mavlink.MAV_SEVERITY_NOTICE,
-    "cancelled": mavlink.MAV_SEVERITY_NOTICE,
+    **dict.fromkeys(("done", "replaced", "cancelled", "late"), mavlink.MAV_SEVERITY_NOTICE),
     "waits": mavlink.MAV_SEVERITY_CRITICAL,
 }
-
+"""Severity of the text about an order; that of the others is a warning."""
 
 ANSWERS: Final = {
-    "done": Answer.done,
-    "late": Answer.done,
-    "cancelled": Answer.done,
-    "refused": Answer.refused,
-    "unanswered": Answer.refused,
-    "stopped": Answer.refused,
+    **dict.fromkeys(("done", "late", "cancelled"), Answer.done),
+    **dict.fromkeys(("refused", "unanswered", "stopped"), Answer.refused),
 }
 """Answers to the diver about an order that ended; the others go on, or are told by the next one."""
 
@@ -126,11 +120,7 @@ class MavlinkBridge:
         self._now = now
         self._tell_answer = tell_answer
         self._servo = LightsServo(table.vehicle)
-        self._answers = (
-            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
-            if table.answers is not None
-            else None
-        )
+        self._answers = AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
@@ -141,7 +131,7 @@ class MavlinkBridge:
         self._pictures = 0
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
-        self._silent = self._broken = self._is_answered = self._was_contested = False
+        self._silent = self._broken = self._is_answered = False
         self._reboots = 0
         self._fault: Exception | None = None
         # Reentrant, because a line for people may cause an event: that it cannot be printed.
@@ -183,27 +173,26 @@ class MavlinkBridge:
                 case RecognitionReady():
                     self._say("ready for gestures", mavlink.MAV_SEVERITY_NOTICE)
                     self.answer(Answer.listening, "ready for gestures")
-                case StateChanged(state=state) if self._answers is not None:
+                case StateChanged(state=state):
                     self._answers.is_take_open = state is TakeState.recording
                 case OutputFailed(output=output):
                     self._say(f"{output} cannot be written", mavlink.MAV_SEVERITY_WARNING)
                 case SourceEnded(stopped=True):
                     self._report(self._desk.stop("robot is stopped"))
-                case _:
-                    pass
 
     @property
     def has_answered(self) -> bool:
         """Whether nothing is shown to the diver, or waits to be shown."""
-        return self._answers is None or self._answers.is_idle
+        return self._answers.is_idle
 
     def answer(self, answer: Answer | None, text: str, *, emergency: bool = False) -> None:
         """Show an answer to the diver, if the table says how; None: there is none."""
-        if answer is None or self._answers is None or self._table.answers is None:
+        if answer is None:
             return
         with self._lock:
-            self._answers.give(answer, clock.monotonic(), emergency=emergency)
-        self._tell_answer(answer, self._table.answers.count_pulses(answer), text)
+            pulses = self._answers.give(answer, clock.monotonic(), emergency=emergency)
+        if pulses:
+            self._tell_answer(answer, pulses, text)
 
     def close(self) -> None:
         """Wait for the last order, at most `CLOSE_SECONDS`, and disconnect.
@@ -304,17 +293,16 @@ class MavlinkBridge:
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
         is_known = self._servo.function is not None
-        is_contested = self._peer.is_contested
-        obstacle = self._find_obstacle(order) if is_known and not is_contested else ""
+        contest = self._peer.contest
+        obstacle = self._find_obstacle(order) if is_known and not contest else ""
         if fault := self._peer.find_fault(now) or obstacle:
             self._report(Outcome(order, "stopped", fault))
             return
-        if self._answers is not None:
-            self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
+        self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
         self._report(self._desk.give(order, now))
-        if is_contested and self._desk.order is order:
+        if contest and self._desk.order is order:
             where = "to both" if order.emergency else "waits"
-            self._report(Outcome(order, "waits", f"{where}, {self._peer.contest}"))
+            self._report(Outcome(order, "waits", f"{where}, {contest}"))
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -361,10 +349,9 @@ class MavlinkBridge:
             with self._lock:
                 self._report(self._desk.stop("robot has ended"))
             return False
-        shows = self._answers is not None and self._answers.is_active
         # What was stopped may be done already: the next heartbeat tells.
         is_open = self._desk.order is not None or self._desk.is_watched
-        return is_open or bool(self._texts) or shows
+        return is_open or bool(self._texts) or self._answers.is_active
 
     def _step(self, packets: Sequence[Packet]) -> list[tuple[Message, Sender | None]]:
         """Process the received messages and return the messages to send, and to whom."""
@@ -375,12 +362,8 @@ class MavlinkBridge:
                 continue
             self._servo.hear(message)
             self._is_answered |= message.get_type() == "COMMAND_ACK"
-            if self._answers is None or not self._answers.hear(message, now):
-                proves = not self._peer.is_contested
-                self._report(self._desk.hear(message, now, proves=proves))
-        if self._peer.is_contested != self._was_contested:
-            self._was_contested = self._peer.is_contested
-            self._desk.begin_again(now)
+            if not self._answers.hear(message, now):
+                self._report(self._desk.hear(message, now, proves=not self._peer.contest))
         self._report(self._desk.check_deadline(now))
         decision = self._dialogue.check_deadline(self._source_time())
         if decision is not None:
@@ -406,15 +389,13 @@ class MavlinkBridge:
 
     def _find_obstacle(self, order: Order) -> str:
         """Return why an order must not be sent; empty if it may."""
-        if self._peer.is_contested:
-            return "" if order.emergency else self._peer.contest
+        if contest := self._peer.contest:
+            return "" if order.emergency else contest
         sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
         return self._servo.obstacle if sets else ""
 
     def _list_answers(self, now: float) -> Iterator[Message]:
         """Yield the messages that show answers to the diver."""
-        if self._answers is None:
-            return
         is_proven = self._peer.is_proven(now)
         if self._closing.is_set() or not is_proven:
             self._answers.stop(now)
@@ -433,14 +414,12 @@ class MavlinkBridge:
         silent = self._peer.is_silent(now)
         if silent != self._silent:
             self._silent = silent
-            self._say(
-                "vehicle is silent" if silent else "vehicle is back", mavlink.MAV_SEVERITY_ALERT
-            )
+            words = "vehicle is silent" if silent else "vehicle is back"
+            self._say(words, mavlink.MAV_SEVERITY_ALERT)
         if self._desk.reboots != self._reboots:
             self._reboots = self._desk.reboots
             self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
-            if self._answers is not None:
-                self._answers.forget()
+            self._answers.forget()
 
     def _report(self, outcome: Outcome | None) -> None:
         """Announce what became of an order; None: nothing new."""

@@ -141,15 +141,15 @@ class OrderDesk:
         self._clock = HeardClock()
         self._reported = Reported()
         self._uptime = 0
-        self._refused = False
         self._mode: int | None = None
         self._requested: dict[int, float] = {}
         self._armed: bool | None = None
-        self._waits = False
+        self._told: set[OutcomeKind] = set()
         self._watch = ModeWatch(None)
         self._late: Order | None = None
         self._late_by = 0.0
         self._version = 0
+        self._proves = True
 
     def give(self, order: Order, now: float) -> Outcome | None:
         """Begin an order.
@@ -167,7 +167,7 @@ class OrderDesk:
                 return Outcome(order, "stopped", DISARMED)
         replaced = None if self.order is None else self._give_up("replaced")
         self.order, self._late, self._given = order, None, now
-        self._refused = self._waits = False
+        self._told.clear()
         self._sendings.clear()
         self._deadline = now + self._vehicle.give_up_seconds * len(order.steps)
         if order.emergency:
@@ -175,7 +175,7 @@ class OrderDesk:
         self._begin(0, now)
         return replaced
 
-    def begin_again(self, now: float) -> None:
+    def _begin_again(self, now: float) -> None:
         """Begin the active order again: what was heard until now proves nothing."""
         if self.order is not None:
             self._begin(0, now)
@@ -267,17 +267,27 @@ class OrderDesk:
         if not is_from_vehicle(message, self._vehicle):
             return None
         self._clock.hear(now)
+        if proves != self._proves:
+            self._proves = proves
+            self._begin_again(now)
         if not proves:
             return None
         self._note_state(message, now)
         if self.order is None:
             return self._find_late() if self.is_watched else None
-        if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
+        if (
+            self.order.moves
+            and self._armed is False
+            and (outcome := self._go_on("stopped", "waits", DISARMED))
+        ):
             return outcome
         if self._watch.contradiction:
             return self._end("stopped", self._watch.contradiction)
-        if not self._sent:
-            return None
+        return self._hear_answer(message, now) if self._sent else None
+
+    def _hear_answer(self, message: Message, now: float) -> Outcome | None:
+        """Process what may prove or refuse the present step."""
+        assert self.order is not None
         step = self.order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(now)
@@ -286,7 +296,8 @@ class OrderDesk:
             self._watch.accept(self._clock.seconds)
         if not answered or message.result in GO_ON:
             return None
-        return self._refuse(message.result)
+        answer = name_entry("MAV_RESULT", message.result) or str(message.result)
+        return self._go_on("refused", "refused", answer)
 
     def _note_state(self, message: Message, now: float) -> None:
         """Note what a message says of the vehicle's state."""
@@ -296,29 +307,20 @@ class OrderDesk:
                 self._note_uptime(message.time_boot_ms, now)
                 self._watch.hear_clock()
             case "HEARTBEAT":
-                self._mode = message.custom_mode
+                self._mode = int(message.custom_mode)
                 self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-                heard = self._clock.seconds
-                self._watch.hear_mode(message.custom_mode, heard, sent=self._sent > 0)
+                self._watch.hear_mode(self._mode, self._clock.seconds, sent=self._sent > 0)
             case "AUTOPILOT_VERSION":
                 self._version = message.flight_sw_version
 
-    def _wait_for_arming(self) -> Outcome | None:
-        """End an ordinary order of a disarmed vehicle; an emergency goes on, which is said once."""
+    def _go_on(self, kind: OutcomeKind, told: OutcomeKind, answer: str) -> Outcome | None:
+        """End an ordinary order as `kind`; an emergency goes on, and is told as `told` once."""
         assert self.order is not None
         if not self.order.emergency:
-            return self._end("stopped", DISARMED)
-        told, self._waits = self._waits, True
-        return None if told else Outcome(self.order, "waits", DISARMED)
-
-    def _refuse(self, result: int) -> Outcome | None:
-        """End a refused order; an emergency goes on, and only its first refusal is reported."""
-        assert self.order is not None
-        answer = name_entry("MAV_RESULT", result) or str(result)
-        if not self.order.emergency:
-            return self._end("refused", answer)
-        told, self._refused = self._refused, True
-        return None if told else Outcome(self.order, "refused", answer)
+            return self._end(kind, answer)
+        is_new = told not in self._told
+        self._told.add(told)
+        return Outcome(self.order, told, answer) if is_new else None
 
     def _note_uptime(self, uptime: int, now: float) -> None:
         """Detect a restart of the vehicle, which has then lost its orders."""
@@ -326,7 +328,7 @@ class OrderDesk:
             self.reboots += 1
             self._reported = Reported()
             self._mode = None
-            self.begin_again(now)
+            self._begin_again(now)
         self._uptime = uptime
 
     def _advance(self, now: float) -> Outcome | None:
@@ -436,7 +438,7 @@ class ModeWatch:
         self._accepted = None
         self._overrides += 1
         if self._overrides >= MOST_OVERRIDES:
-            self.contradiction = f"stays in {name_mode(mode)}"
+            self.contradiction = f"stays in {name_entry('SUB_MODE', mode) or f'mode {mode}'}"
 
 
 def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
@@ -448,8 +450,3 @@ def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
     ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
     answering = ((vehicle.system, part) for part in (vehicle.component, vehicle.camera_component))
     return sender in answering and (message.target_system, message.target_component) in ours
-
-
-def name_mode(mode: int) -> str:
-    """Return the name of one of ArduSub's modes, or its number."""
-    return name_entry("SUB_MODE", mode) or f"mode {mode}"

@@ -62,6 +62,7 @@ class VehiclePeer:
         self.sender: Sender | None = None
         self.dropped = 0
         self._heard = now
+        self._two = f"two vehicles with system {vehicle.system}"
         # A rival's last heartbeat, in heard seconds; None: it has the vehicle's own address.
         self._rivals: dict[Sender | None, float] = {}
         self._heard_clock = HeardClock()
@@ -79,14 +80,8 @@ class VehiclePeer:
 
     def find_fault(self, now: float) -> str:
         """Return, in few words, why nothing may be sent to the vehicle; empty for no fault."""
-        if self.sender not in (None, self._faulty) or now - self._refused > SILENT_SECONDS:
-            return ""
-        return NO_ARDUSUB
-
-    @property
-    def is_contested(self) -> bool:
-        """Whether there is a rival: nothing that is heard proves anything then."""
-        return bool(self._rivals)
+        is_faulty = self.sender in (None, self._faulty)
+        return NO_ARDUSUB if is_faulty and now - self._refused <= SILENT_SECONDS else ""
 
     @property
     def claimants(self) -> list[Sender | None]:
@@ -95,8 +90,8 @@ class VehiclePeer:
 
     @property
     def contest(self) -> str:
-        """Why nothing counts as done while there is a rival."""
-        return f"two vehicles with system {self._vehicle.system}"
+        """Why nothing that is heard proves anything: there is a rival; empty for none."""
+        return self._two if self._rivals else ""
 
     def is_proven(self, now: float) -> bool:
         """Return whether commands may be sent."""
@@ -177,13 +172,13 @@ class VehiclePeer:
         if sender not in self._rivals:
             if len(self._rivals) == MOST_RIVALS:
                 return
-            self._notices.append(f"{self.contest}, orders wait{name_address(sender)}")
+            self._notices.append(f"{self._two}, orders wait{name_address(sender)}")
         self._rivals[sender] = self._heard_clock.seconds
 
     def _note_ignored(self, sender: Sender, now: float) -> None:
         """Announce a sender with the vehicle's ids that is none, once while it is heard."""
         if now - self._ignored > AGAIN_SECONDS:
-            self._notices.append(f"{self.contest}{name_address(sender)} is ignored")
+            self._notices.append(f"{self._two}{name_address(sender)} is ignored")
         self._ignored = now
 
     def _watch_clock(self, uptime: int, now: float) -> None:

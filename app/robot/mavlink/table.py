@@ -75,6 +75,7 @@ class Hold(_Entry):
 
     do: Literal["hold"] = "hold"
 
+    mode: ClassVar[str] = "ALT_HOLD"
     words: ClassVar[str] = "hold"
 
 
@@ -83,6 +84,7 @@ class Surface(_Entry):
 
     do: Literal["surface"] = "surface"
 
+    mode: ClassVar[str] = "SURFACE"
     words: ClassVar[str] = "surface"
 
 

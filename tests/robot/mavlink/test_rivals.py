@@ -139,9 +139,9 @@ def test_the_block_ends_ten_heard_seconds_after_the_rivals_last_heartbeat() -> N
     # Ten minutes in which nobody is heard end no block.
     for second in range(604, 613):
         assert heard(found, beat(), ("h", 1), second)
-        assert found.is_contested
+        assert found.contest
     heard(found, beat(), ("h", 1), 614)
-    assert not found.is_contested
+    assert not found.contest
     heard(found, beat(), ("h", 2), 615)
     assert len(found.take_notices()) == 1
 
@@ -151,7 +151,7 @@ def test_a_rival_that_takes_the_place_of_a_silent_vehicle_is_still_one_of_two() 
     heard(found, beat(), ("h", 1), 0.0)
     for second in range(1, 16):
         heard(found, beat(), ("h", 2), second)
-        assert found.is_contested == (second < 15)
+        assert bool(found.contest) == (second < 15)
     assert found.sender == ("h", 2)
 
 
