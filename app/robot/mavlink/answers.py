@@ -186,8 +186,10 @@ class PatternPlayer:
         # Whether a pulse is on, and whether the following parts of the pattern are.
         self._is_on: bool | None = None
         self._sent = self._ticked = -math.inf
-        # Heard seconds of the present part, and those before an order's value is restored over.
-        self._lasted = self._yields = 0.0
+        # Heard seconds of the present part.
+        self._lasted = 0.0
+        # When an order for the output is given up, and the value before it may be restored.
+        self._yields = -math.inf
         # Whether the next report ends a silence, in which the pilot may have set anything.
         self._was_silent = True
         self._following: deque[bool] = deque()
@@ -219,7 +221,7 @@ class PatternPlayer:
 
     def begin(self, pulses: int, now: float) -> None:
         """Begin a pattern of so many pulses; nothing may be in its way."""
-        self._before = self._value
+        self._before, self._expected = self._value, math.nan
         self._peak = self._shown_peak = self.output.find_peak(self._value)
         self._has_shown = False
         self._following = deque([True, False] * pulses)
@@ -240,7 +242,7 @@ class PatternPlayer:
         self._following.clear()
         self._turn(False)
         # The order may be lost: until it is given up, what is reported shows who has set it.
-        self._yields = self.output.vehicle.give_up_seconds
+        self._yields = now + self.output.vehicle.give_up_seconds
         # Its answers are told from the order's by the time of the last message.
         self._sent = now
         return [self._set(self._before)]
@@ -276,7 +278,7 @@ class PatternPlayer:
         self._was_silent |= now - self._heard > FRESH_SECONDS
         last, self._value, self._heard = self._value, value, now
         if self.is_active:
-            if self._yields and self._equals(value, self._expected):
+            if self._equals(value, self._expected):
                 self._drop()
             elif not self._is_ours(value):
                 self._drop()
@@ -340,7 +342,7 @@ class PatternPlayer:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
         if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
-            if self._lasted < self._yields or self.output.obstacle:
+            if now < self._yields or self.output.obstacle:
                 return
             self._sent = now
             yield self._set(self._peak if self._is_on else self._before)
@@ -350,7 +352,7 @@ class PatternPlayer:
         if not self._following:
             # A report on its way before the last message proves nothing.
             restored = self._is_reached and now - self._sent > REPORT_SECONDS
-            if restored or self._lasted > LONGEST_RESTORE + self._yields:
+            if restored or self._lasted > LONGEST_RESTORE:
                 self._drop()
                 self._rested = now
         elif self._lasted > LONGEST_LEVEL or (
@@ -359,7 +361,8 @@ class PatternPlayer:
             self._turn(self._following.popleft())
 
     def _turn(self, is_on: bool) -> None:
-        self._is_on, self._sent, self._lasted, self._yields = is_on, -math.inf, 0.0, 0.0
+        self._is_on, self._lasted = is_on, 0.0
+        self._sent = self._yields = -math.inf
 
     def _remember(self) -> None:
         self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
@@ -367,7 +370,6 @@ class PatternPlayer:
     def _drop(self) -> None:
         self._following.clear()
         self._is_on = None
-        self._yields = 0.0
         self._memory.keep(self.output.key)
 
     def _set(self, value: float) -> Message:

@@ -90,13 +90,13 @@ class Dive:
         while self.value == BEFORE[self.shown]:
             self.wait(STEP)
 
-    def order(self) -> int:
+    def order(self, value: float = 1400.0) -> int:
         """Give an order for the same output, whose messages are lost; return its command."""
         command: int = {
             "lights": mavlink.MAV_CMD_DO_SET_SERVO,
             "tilt": mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
         }[self.shown]
-        self.obey(*self.desk.hand_over(CommandStep(command, (13.0, 1400.0), 1, 1), self.now))
+        self.obey(*self.desk.hand_over(CommandStep(command, (13.0, value), 1, 1), self.now))
         return command
 
 
@@ -118,7 +118,8 @@ def test_what_was_before_a_pattern_is_restored_after_any_outage(
     dive.wait(seconds)
     assert dive.value != BEFORE[shown]
     dive.linked = True
-    dive.wait(0.5 if state != "order" else 11)
+    # An order has its ten seconds, heard or not, before the value before it is restored.
+    dive.wait(0.5 if state != "order" or seconds > 10 else 6)
     assert dive.value == BEFORE[shown]
     dive.wait(5)
     assert dive.value == BEFORE[shown]
@@ -174,6 +175,15 @@ def test_an_order_in_a_pulse_is_not_proven_by_the_answers_to_the_pulse(shown: Sh
     # Of the pulse, of what restores the value before it, of the order.
     heard = [dive.desk.hear(answer, dive.now) for _ in range(3)]
     assert heard == [True, True, False]
+
+
+def test_a_lost_order_for_the_value_of_a_pulse_ends_no_later_pattern() -> None:
+    dive = Dive("lights")
+    dive.order(1100.0)
+    dive.wait(12)
+    dive.begin_pulse()
+    dive.wait(10)
+    assert dive.value == 1800
 
 
 def test_nothing_is_set_while_nothing_is_reported() -> None:
