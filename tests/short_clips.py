@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import av
+import cv2
 
 
 def shortened(clip: Path, copy: Path, seconds: float) -> Path:
@@ -23,12 +24,29 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
     return copy
 
 
+def film_of(clip: Path, rate: float) -> list[bytes]:
+    """Return JPEGs of a clip at another frame rate."""
+    with av.open(str(clip)) as source:
+        stream = source.streams.video[0]
+        assert stream.average_rate is not None
+        frames = [frame.to_ndarray(format="bgr24") for frame in source.decode(stream)]
+    step = float(stream.average_rate) / rate
+    kept = [frames[int(number * step)] for number in range(int(len(frames) / step))]
+    return [cv2.imencode(".jpg", frame)[1].tobytes() for frame in kept]
+
+
 def thinned(
-    clip: Path, copy: Path, times: int = 1, *, every: int = 3, backward: bool = False
+    clip: Path,
+    copy: Path,
+    times: int = 1,
+    *,
+    every: int = 3,
+    backward: bool = False,
+    share: float = 1.0,
 ) -> Path:
     """Write every third frame of a clip at a third of its rate, and return the copy's path.
 
-    With `times`, the clip follows itself; `backward` begins at its end.
+    With `times`, the clip follows itself; `backward` begins at its end; `share` ends it early.
     """
     with av.open(str(clip)) as source, av.open(str(copy), "w") as target:
         stream = source.streams.video[0]
@@ -37,6 +55,7 @@ def thinned(
         written = target.add_stream("libx264", rate=rate, options={"crf": "20", "g": "15"})
         written.width, written.height, written.pix_fmt = stream.width, stream.height, "yuv420p"
         kept = list(source.decode(stream))[::every]
+        kept = kept[: round(share * len(kept))]
         for number, frame in enumerate(times * (kept[::-1] if backward else kept)):
             frame.pts, frame.time_base = number, 1 / rate
             target.mux(written.encode(frame))

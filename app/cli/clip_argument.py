@@ -359,7 +359,7 @@ def recognize_clip(
     if spotter is not None:
         return read.recording, spot_takes(spotter, read.recording, span)
     takes = read.takes(span)
-    return read.recording, [(take, recognizer.recognize(take.poses)) for take in takes]
+    return read.recording, [(take, recognizer.recognize_take(take)) for take in takes]
 
 
 def spot_takes(

@@ -29,8 +29,8 @@ def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{answer}\t{result.confidence:.2f}")
     if not take.closed:
         people.print(
-            f"the take from {take.start:.2f} s has no second {trigger.noun}: its end is set "
-            f"to {take.end:.2f} s"
+            f"the take from {take.start:.2f} s has no second {trigger.noun}: the gesture may be "
+            f"incomplete; give its range by hand, CLIP@{take.start:.2f}-{take.end:.2f}"
         )
     for finding in result.findings:
         people.print(f"the take from {take.start:.2f} s: {finding}")

@@ -79,7 +79,7 @@ def rows_of_clip(
             "confidence": round(result.confidence, 4),
             "margin": round(result.margin, 4) if abs(result.margin) < 1e300 else None,
             "expected": known.get(number),
-            "faults": "; ".join(_list_faults(recording, take, result, recognizer)),
+            "faults": "; ".join([*warnings, *result.findings, *filter(None, [result.fault])]),
             "pair": None if result.pair is None else join_words(result.pair, last="or"),
         }
         for number, (take, result) in enumerate(results, start=1)
@@ -109,15 +109,6 @@ def _constant(clip: str, recognizer: Recognizer) -> Row:
         "revision": language.revision,
         "profile": recognizer.profile,
     }
-
-
-def _list_faults(
-    recording: Recording, take: Take, result: Recognition, recognizer: Recognizer
-) -> list[str]:
-    trigger = recognizer.language.trigger
-    unclosed = [] if take.closed else [f"no second {trigger.noun}"]
-    poor = [result.fault] if result.fault else []
-    return [*recording.list_warnings(trigger), *unclosed, *result.findings, *poor]
 
 
 def _to_cell(value: Any) -> str:

@@ -32,6 +32,7 @@ from app.recognition.preprocessing.holds import (
 from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
+from app.recognition.recording.segmentation import Take
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 
 
@@ -146,6 +147,23 @@ class Recognizer:
 
         """
         return self.examine(poses).result
+
+    def recognize_take(self, take: Take) -> Recognition:
+        """Recognise a take as `recognize` does; one that is not closed gets no label.
+
+        Its gesture may be incomplete: the diver forgot the second trigger, or is not done.
+
+        Raises
+        ------
+        PoseError
+            As `recognize`.
+
+        """
+        result = self.recognize(take.poses)
+        if take.closed:
+            return result
+        fault = result.fault or f"no second {self.language.trigger.noun} ended it"
+        return replace(result, label=None, pair=None, fault=fault)
 
     def examine(self, poses: PoseSequence) -> Trace:
         """Recognise as `recognize` does, and return the trace: query, score table and result.

@@ -30,7 +30,7 @@ def judge_take(
 
     """
     try:
-        recognition = language.recognizer.recognize(take.poses)
+        recognition = language.recognizer.recognize_take(take)
     except PoseError as error:
         return reject_take(language, take, time, str(error))
     if not take.closed:

@@ -41,7 +41,25 @@ def corner(share: FloatArray) -> FloatArray:
     return np.stack([np.maximum(0, 2 * share - 1), -np.minimum(1, 2 * share)], axis=1)
 
 
-SHAPES = {"circle": circle, "circle backwards": backwards, "line": line, "corner": corner}
+def square(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of the square around the circle."""
+    round_one = circle(share)
+    return np.asarray(round_one / np.abs(round_one).max(axis=1, keepdims=True))
+
+
+def rounded(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of a shape that lies between circle and square."""
+    return 0.46 * circle(share) + 0.54 * square(share)
+
+
+SHAPES = {
+    "circle": circle,
+    "circle backwards": backwards,
+    "line": line,
+    "corner": corner,
+    "square": square,
+    "rounded square": rounded,
+}
 
 
 def recording_of(*shapes: str) -> Recording:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Sequence
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import cv2
@@ -35,6 +36,8 @@ class MjpegServer(CameraServer):
         Brightness of all its pictures.
     pictures
         Number of pictures after which it sends nothing more, but keeps the connection.
+    film
+        JPEGs to send instead, in order and again.
 
     """
 
@@ -45,8 +48,9 @@ class MjpegServer(CameraServer):
         pause: float = 0.02,
         brightness: int = 100,
         pictures: float = math.inf,
+        film: Sequence[bytes] = (),
     ) -> None:
-        jpeg, off = picture(brightness), threading.Event()
+        shown, off = film or [picture(brightness)], threading.Event()
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self) -> None:
@@ -54,12 +58,14 @@ class MjpegServer(CameraServer):
                 kind = f"multipart/x-mixed-replace; boundary={BOUNDARY}"
                 self.send_header("Content-Type", kind)
                 self.end_headers()
-                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: {len(jpeg)}"
+                head = f"--{BOUNDARY}\r\nContent-Type: image/jpeg\r\nContent-Length: "
                 try:
                     sent = 0
                     while not off.wait(pause):
                         if sent < pictures:
-                            self.wfile.write(f"{head}\r\n\r\n".encode() + jpeg + b"\r\n")
+                            jpeg = shown[sent % len(shown)]
+                            length = f"{len(jpeg)}\r\n\r\n"
+                            self.wfile.write(f"{head}{length}".encode() + jpeg + b"\r\n")
                             sent += 1
                 except OSError:
                     pass  # the client has disconnected

@@ -289,7 +289,7 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
     """
     if recognizer is None:
         return _view_take(take, problem="no language is chosen; choose one above")
-    result = recognizer.recognize(take.poses)
+    result = recognizer.recognize_take(take)
     return _view_answer(recognizer, result, take.start, take.end, closed=take.closed)
 
 

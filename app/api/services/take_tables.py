@@ -42,7 +42,7 @@ def recognize_clip_takes(
         takes = _list_takes(studio, state, clip)
         results: list[tuple[Take, Recognition]] = []
         for take in takes:
-            results.append((take, recognizer.recognize(take.poses)))
+            results.append((take, recognizer.recognize_take(take)))
             advance(len(results) / len(takes))
         expected = _find_expected(studio, state, clip, takes)
         rows = rows_of_clip(clip.name, recognizer, recording, results, expected)

@@ -152,12 +152,13 @@ def robot(
     channels.add(partial(report_event, ServiceManager()))
     control = Control()
     with ExitStack() as opened:
+        # First in, last out: a signal ends the robot in order while all opens or closes too.
+        opened.enter_context(handle_signals(control.stop, control.reload))
         if page:
             files = open_files(options, control) if upload else None
             shown = opened.enter_context(closing(open_page(page, files)))
             channels.add(shown.publish)
             if upload:
-                opened.enter_context(handle_signals(control.stop, control.reload))
                 recognised = run_with_uploads(options, channels, control, shown)
         if not upload:
             recognised = run_robot(options, channels, control)

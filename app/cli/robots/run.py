@@ -200,9 +200,6 @@ def run_robot(
 
     """
     with ExitStack() as opened:
-        # First in, last out: a signal ends the robot in order while a bridge opens or closes too.
-        if not options.upload:
-            opened.enter_context(handle_signals(control.stop, control.reload))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
         frames = opened.enter_context(closing(open_source(options.source)))
@@ -282,7 +279,10 @@ def try_answers(options: RobotOptions) -> None:
         people.print(text, markup=False, highlight=False, soft_wrap=True)
         missing.extend([text] if text.startswith(NOT_SHOWN) else [])
 
+    stops: list[bool] = []
     with ExitStack() as opened:
+        # First in, last out: a signal ends it in order while the bridge opens or closes too.
+        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
         bridge = open_bridge(
@@ -295,10 +295,9 @@ def try_answers(options: RobotOptions) -> None:
             without_salutes=options.without_salutes,
         )
         opened.enter_context(closing(bridge))
-        stops: list[bool] = []
-        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
         for answer in Answer:
-            bridge.answer(answer, f"{answer.value}: {answer.words}")
+            if not stops:
+                bridge.answer(answer, f"{answer.value}: {answer.words}")
             while not (bridge.has_answered or stops):
                 clock.sleep(WAIT_STEP)
     if missing:

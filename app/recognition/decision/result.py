@@ -76,10 +76,13 @@ class RecognitionEntry(BaseModel):
     ] = []
     fault: Annotated[
         str | None,
-        Field(description="Why the keypoints are too poor to judge; null: they are not."),
+        Field(
+            description="Why there is no recognition: the keypoints are too poor to judge, or no "
+            "second trigger ended the take; null: there is one."
+        ),
     ] = None
     fault_kind: Annotated[
-        QualityFaultKind | None, Field(description="The kind of fault; null without one.")
+        QualityFaultKind | None, Field(description="The kind of the keypoints' fault, or null.")
     ] = None
     voters: list[str]
     gestures: list[str]
@@ -148,10 +151,11 @@ class Recognition:
         Repairs of the poses before recognition, as sentences with counts; and a sentence if more
         shapes are held than a gesture has.
     fault
-        Reason why there is no recognition, in words: the poses are too poor, or no hand is seen
-        although the hand shape of `nearest` counts; `label` is then None.
+        Reason why there is no recognition, in words: the poses are too poor, no hand is seen
+        although the hand shape of `nearest` counts, or the take is not closed; `label` is then
+        None.
     fault_kind
-        The kind of `fault`; None without one, and in results of earlier versions.
+        The kind of a `fault` of the poses; None without one, and in results of earlier versions.
     scores
         ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
         distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:

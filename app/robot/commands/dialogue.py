@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 # Relative, because ROS 2's package has links to these files and no `app`.
 from .answers import Answer, find_phrase_answer
-from .rules import EMERGENCY_LIMIT, Rules
+from .rules import EMERGENCY_LIMIT, Rules, to_number
 
 MOST_BODIES = 32
 """Number of bodies whose last event is kept: more than the divers near one robot."""
@@ -26,7 +26,7 @@ MOST_BODIES = 32
 
 @dataclass(frozen=True)
 class RecognizedGesture:
-    """Recognition of one take.
+    """Recognition of one take. What is no finite number becomes NaN, which commands nothing.
 
     Attributes
     ----------
@@ -58,6 +58,10 @@ class RecognizedGesture:
     pair: tuple[str, str] | None = None
     novelty: float = 0.0
 
+    def __post_init__(self) -> None:
+        """Make NaN of what is no number."""
+        keep_numbers(self, "confidence", "stamp", "novelty", *["start"] * (self.start is not None))
+
     @property
     def began(self) -> float:
         """Time at which the take began, in seconds."""
@@ -66,7 +70,7 @@ class RecognizedGesture:
 
 @dataclass(frozen=True, kw_only=True)
 class RecognizedPhrase:
-    """Recognition of a message of several gestures.
+    """Recognition of a message of several gestures. What is no finite number becomes NaN.
 
     Attributes
     ----------
@@ -102,10 +106,18 @@ class RecognizedPhrase:
     body_id: str = ""
     pair: tuple[str, str] | None = None
 
+    def __post_init__(self) -> None:
+        """Make NaN of what is no number."""
+        keep_numbers(self, "confidence", "start", "stamp")
+
     @property
     def began(self) -> float:
         """Time at which the message began, in seconds."""
         return min(self.start, self.stamp)
+
+
+Input = RecognizedGesture | RecognizedPhrase
+"""What a diver has shown."""
 
 
 @dataclass(frozen=True)
@@ -265,20 +277,20 @@ class CommandDialogue:
             least = max(least, self.rules.emergency_confidence)
         # False for NaN too, of both: what is no share of 1 is no confidence.
         sure = least <= gesture.confidence <= 1
-        sure &= gesture.novelty <= (EMERGENCY_LIMIT if is_emergency else math.inf)
+        sure &= 0 <= gesture.novelty <= (EMERGENCY_LIMIT if is_emergency else math.inf)
         before = self._gestures.get(gesture.body_id, Shown())
         is_newer = gesture.stamp > before.stamp
         if sure and gesture.label in self.rules.cancel:
             refused = None
         elif sure and is_emergency:
-            refused = self._find_foreign(gesture, now, self.rules.emergency_seconds)
+            refused = self._find_foreign(gesture, self.rules.emergency_seconds)
         else:
-            refused = self._find_refusal(gesture, now, before, is_newer=is_newer)
+            refused = self._find_refusal(gesture, before, is_newer=is_newer)
         if refused is not None:
             return Decision(refused)
         label, pair = (gesture.label, gesture.pair) if sure else (None, None)
         understood = label is not None or pair is not None
-        self._remember(self._gestures, gesture, now, understood=understood)
+        self._remember(self._gestures, gesture, understood=understood)
         if label is not None:
             return self._decide_label(label, gesture)
         if pair is not None:
@@ -304,12 +316,12 @@ class CommandDialogue:
         refused = None
         if phrase.kind != "cancelled":
             same = before if whole else replace(before, middle=-math.inf)
-            refused = self._find_refusal(phrase, now, same, is_newer=is_newer)
+            refused = self._find_refusal(phrase, same, is_newer=is_newer)
         if refused is None and not self.table.phrase_labels:
             refused = "ignored: the language of the commands has no phrases"
         if refused is not None:
             return Decision(refused)
-        self._remember(self._messages, phrase, now, understood=whole)
+        self._remember(self._messages, phrase, understood=whole)
         pending = self.pending if self.pending and self.pending.mission else None
         in_time = self._is_repetition(pending, phrase)
         if phrase.kind == "complete" and phrase.mission:
@@ -357,20 +369,13 @@ class CommandDialogue:
             for shown in (self._gestures, self._messages):
                 for body, last in shown.items():
                     shown[body] = Shown(last.stamp + step, last.started + step, last.middle + step)
-        self._now = now if math.isfinite(now) else self._now
+        self._now = to_number(now)
 
-    def _remember(
-        self,
-        shown: OrderedDict[str, Shown],
-        input_: RecognizedGesture | RecognizedPhrase,
-        now: float,
-        *,
-        understood: bool,
-    ) -> None:
+    def _remember(self, shown: OrderedDict[str, Shown], input_: Input, *, understood: bool) -> None:
         """Store the last event of a body."""
         last = shown.pop(input_.body_id, Shown())
         # A stamp in the future must not make later events count as old.
-        stamp = now if math.isnan(input_.stamp) else min(input_.stamp, now)
+        stamp = self._now if math.isnan(input_.stamp) else min(input_.stamp, self._now)
         middle = (input_.began + stamp) / 2 if understood else last.middle
         shown[input_.body_id] = Shown(
             max(stamp, last.stamp), max(min(input_.began, stamp), last.started), middle
@@ -378,17 +383,10 @@ class CommandDialogue:
         if len(shown) > MOST_BODIES:
             shown.popitem(last=False)
 
-    def _find_refusal(
-        self,
-        input_: RecognizedGesture | RecognizedPhrase,
-        now: float,
-        before: Shown,
-        *,
-        is_newer: bool,
-    ) -> str | None:
+    def _find_refusal(self, input_: Input, before: Shown, *, is_newer: bool) -> str | None:
         """Return why a gesture or message is ignored; None where it is not."""
         what = _name(input_)
-        if refused := self._find_foreign(input_, now, self.rules.stale_seconds):
+        if refused := self._find_foreign(input_, self.rules.stale_seconds):
             return refused
         if not is_newer:
             return f"ignored: the {what} is not newer than the one before"
@@ -396,11 +394,9 @@ class CommandDialogue:
             return f"ignored: the {what} is the one before, recognised once more"
         return None
 
-    def _find_foreign(
-        self, input_: RecognizedGesture | RecognizedPhrase, now: float, oldest: float
-    ) -> str | None:
+    def _find_foreign(self, input_: Input, oldest: float) -> str | None:
         """Return why a gesture or message is not of here and now; None where it is."""
-        what, age = _name(input_), now - input_.stamp
+        what, age = _name(input_), self._now - input_.stamp
         if math.isnan(input_.stamp + input_.began):
             return f"ignored: the {what} has no stamp"
         if not abs(age) <= oldest:
@@ -409,9 +405,7 @@ class CommandDialogue:
             return f"ignored: the {what} is of another language than the commands"
         return None
 
-    def _is_repetition(
-        self, pending: Pending | None, input_: RecognizedGesture | RecognizedPhrase
-    ) -> bool:
+    def _is_repetition(self, pending: Pending | None, input_: Input) -> bool:
         """Return whether an input may confirm the pending one: in time, and of the same body."""
         return (
             pending is not None
@@ -487,5 +481,11 @@ class CommandDialogue:
         return Decision(words, label=phrase.text, answer=Answer.repeat)
 
 
-def _name(input_: RecognizedGesture | RecognizedPhrase) -> str:
+def keep_numbers(input_: Input, *names: str) -> None:
+    """Make floats of numbers from outside, and NaN of what is none; see `to_number`."""
+    for name in names:
+        object.__setattr__(input_, name, to_number(getattr(input_, name)))
+
+
+def _name(input_: Input) -> str:
     return "message" if isinstance(input_, RecognizedPhrase) else "gesture"

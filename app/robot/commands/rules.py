@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
+from numbers import Real
 
 CONFIRM_SECONDS = 20.0
 """Time for the diver to read the robot's display and repeat a gesture, salutes included. A gesture
@@ -23,6 +25,14 @@ EMERGENCY_CONFIDENCE = 0.2
 EMERGENCY_LIMIT = 0.75
 """Largest novelty of an emergency. Other gestures are accepted up to 1, because they must be shown
 twice."""
+
+
+def to_number(value: object) -> float:
+    """Return a number as a float, NaN for all else: text, truth values and infinity too."""
+    with suppress(OverflowError):
+        if isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value):
+            return float(value)
+    return math.nan
 
 
 @dataclass(frozen=True)
@@ -69,12 +79,11 @@ class Rules:
     def __post_init__(self) -> None:
         """Validate the values; a wrong one would give commands at the wrong moment."""
         for name in ("confirm_seconds", "stale_seconds", "emergency_seconds"):
-            seconds = getattr(self, name)
-            if not (math.isfinite(seconds) and seconds > 0):
-                raise ValueError(f"{name} is {seconds}; give seconds above 0")
+            if not to_number(seconds := getattr(self, name)) > 0:
+                raise ValueError(f"{name} is {seconds!r}; give seconds above 0")
         for name in ("least_confidence", "emergency_confidence"):
-            if not 0 <= (share := getattr(self, name)) <= 1:
-                raise ValueError(f"{name} is {share}; give 0 to 1")
+            if not 0 <= to_number(share := getattr(self, name)) <= 1:
+                raise ValueError(f"{name} is {share!r}; give 0 to 1")
         if both := sorted(self.cancel & self.emergency):
             raise ValueError(
                 f"{both} cancel and are emergencies as well; take them out of one of the two lists"

@@ -8,6 +8,8 @@ camera are only acknowledged.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -44,6 +46,15 @@ The target is computed from the measured depth, which pressure and waves change 
 
 IGNORE_ALL_BUT_DEPTH: Final = 0b1101_1111_1011
 """All bits of ``POSITION_TARGET_TYPEMASK`` but ``Z_IGNORE`` (4) and ``FORCE_SET`` (512)."""
+
+IGNORE_ALL_BUT_POSITION: Final = 0b1101_1111_1000
+"""The same without ``X_IGNORE`` and ``Y_IGNORE``, which ArduSub before 4.5 takes for no depth."""
+
+VERSION_4_5: Final = 4 << 24 | 5 << 16
+"""Version 4.5.0 as ``AUTOPILOT_VERSION`` gives it."""
+
+NOWHERE: Final = 2**31 - 1
+"""A latitude and longitude that there is not: beside ``ALT_HOLD`` ArduSub drops such a target."""
 
 
 @dataclass
@@ -95,6 +106,7 @@ class LightsServo:
         self._vehicle = vehicle
         self._name = f"SERVO{vehicle.lights_servo}_FUNCTION"
         self.function: int | None = None
+        self._asked = -math.inf
 
     @property
     def obstacle(self) -> str:
@@ -106,13 +118,16 @@ class LightsServo:
 
     def hear(self, message: Message) -> None:
         """Note the vehicle's answer to the question."""
-        if message.get_type() == "PARAM_VALUE" and message.param_id == self._name:
+        is_answer = message.get_type() == "PARAM_VALUE" and message.param_id == self._name
+        if is_answer and math.isfinite(message.param_value):
             self.function = round(message.param_value)
 
-    def ask(self) -> Message:
-        """Build the question what the output does."""
-        address = (self._vehicle.system, self._vehicle.component)
-        return mavlink.MAVLink_param_request_read_message(*address, self._name.encode(), -1)
+    def list_due(self, now: float) -> Iterator[Message]:
+        """Yield the question what the output does, again until it is answered."""
+        if self.function is None and now - self._asked >= self._vehicle.repeat_seconds:
+            self._asked = now
+            address = (self._vehicle.system, self._vehicle.component)
+            yield mavlink.MAVLink_param_request_read_message(*address, self._name.encode(), -1)
 
 
 @dataclass(frozen=True)
@@ -183,16 +198,17 @@ class DepthStep:
     mode = None
     moves = True
 
-    def build(self, repetition: int) -> Message:
-        """Build the message."""
+    def build(self, version: int) -> Message:
+        """Build the message for a version of ArduSub; 0: not known, as the newest takes it."""
+        is_old = 0 < version < VERSION_4_5
         return mavlink.MAVLink_set_position_target_global_int_message(
             0,
             self.system,
             self.component,
             mavlink.MAV_FRAME_GLOBAL_INT,
-            IGNORE_ALL_BUT_DEPTH,
-            0,
-            0,
+            IGNORE_ALL_BUT_POSITION if is_old else IGNORE_ALL_BUT_DEPTH,
+            NOWHERE,
+            NOWHERE,
             -self.metres,
             *(0.0,) * 8,
         )
@@ -222,10 +238,11 @@ def describe_sent(action: Action, vehicle: Vehicle) -> str:
         slot, deepest = action.metres.slot, vehicle.deepest
         shown = describe_sent(Depth(do="depth", metres=deepest), vehicle)
         return shown.replace(f"{deepest:g} m", f"{slot} m, at most {deepest:g}")
-    return ", then ".join(_describe_step(step) for step in build_steps(action, vehicle, 1))
+    return ", then ".join(describe_step(step) for step in build_steps(action, vehicle, 1))
 
 
-def _describe_step(step: Step) -> str:
+def describe_step(step: Step) -> str:
+    """Describe the message of a step, such as ``DO_SET_MODE SURFACE``."""
     match step:
         case ModeStep(mode=mode):
             return f"DO_SET_MODE {name_entry('SUB_MODE', mode)}"
@@ -234,6 +251,12 @@ def _describe_step(step: Step) -> str:
         case CommandStep(command=command, parameters=parameters):
             shown = ", ".join(f"{each:g}" for each in parameters)
             return f"{name_entry('MAV_CMD', command)} {shown}"
+
+
+def build_question(vehicle: Vehicle) -> Message:
+    """Build the question which version the autopilot has."""
+    address = (vehicle.system, vehicle.component)
+    return mavlink.MAVLink_autopilot_version_request_message(*address)
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:
@@ -251,12 +274,8 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     """
     address = (vehicle.system, vehicle.component)
     match action:
-        case Hold():
-            return (ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),)
-        case Surface():
-            return (ModeStep(mavlink.SUB_MODE_SURFACE, *address),)
-        case Mode(mode=mode):
-            return (ModeStep(getattr(mavlink, f"SUB_MODE_{mode}"), *address),)
+        case Hold() | Surface() | Mode():
+            return (ModeStep(getattr(mavlink, f"SUB_MODE_{action.mode}"), *address),)
         case Lights(percent=percent):
             pulse = round(LEAST_PWM + (MOST_PWM - LEAST_PWM) * percent / 100)
             command = mavlink.MAV_CMD_DO_SET_SERVO
@@ -267,8 +286,5 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
             return (CommandStep(command, (0.0, 0.0, 1.0, float(picture)), *camera),)
         case Depth(metres=float() as metres):
             # ArduSub accepts a target depth only in ALT_HOLD.
-            return (
-                ModeStep(mavlink.SUB_MODE_ALT_HOLD, *address),
-                DepthStep(metres, *address),
-            )
+            return (*build_steps(Hold(), vehicle, picture), DepthStep(metres, *address))
     raise ValueError(f"{action!r} has an open slot: resolve it first")

@@ -34,10 +34,10 @@ from app.robot.mavlink.orders import is_from_vehicle
 from app.robot.mavlink.table import Answers, Vehicle
 
 REPORT_SECONDS: Final = 0.1
-"""Period at which the vehicle is asked to report the value: less than half a pulse."""
+"""Seconds between two reports that the vehicle is asked for: less than half a pulse."""
 
 FRESH_SECONDS: Final = 2.0
-"""Age after which a reported value is not known to be the present one."""
+"""Seconds after which a reported value is not known to be the present one."""
 
 ASK_SECONDS: Final = 5.0
 """Seconds between two requests for reports that do not come."""
@@ -60,7 +60,7 @@ PAUSE_SECONDS: Final = 1.0
 apart."""
 
 LATEST_SECONDS: Final = 6.0
-"""Age at which an answer that could not begin is dropped: the diver has gone on."""
+"""Seconds after which an answer that could not begin is dropped: the diver has gone on."""
 
 BLINK_PULSE: Final = 1660
 """Pulse length in microseconds of a blink from low lights: 70 % of their brightness."""
@@ -186,8 +186,10 @@ class PatternPlayer:
         # Whether a pulse is on, and whether the following parts of the pattern are.
         self._is_on: bool | None = None
         self._sent = self._ticked = -math.inf
-        # Heard seconds of the present part, and those before an order's value is restored over.
-        self._lasted = self._yields = 0.0
+        # Heard seconds of the present part.
+        self._lasted = 0.0
+        # When an order for the output is given up, and the value before it may be restored.
+        self._yields = -math.inf
         # Whether the next report ends a silence, in which the pilot may have set anything.
         self._was_silent = True
         self._following: deque[bool] = deque()
@@ -219,7 +221,7 @@ class PatternPlayer:
 
     def begin(self, pulses: int, now: float) -> None:
         """Begin a pattern of so many pulses; nothing may be in its way."""
-        self._before = self._value
+        self._before, self._expected = self._value, math.nan
         self._peak = self._shown_peak = self.output.find_peak(self._value)
         self._has_shown = False
         self._following = deque([True, False] * pulses)
@@ -240,7 +242,7 @@ class PatternPlayer:
         self._following.clear()
         self._turn(False)
         # The order may be lost: until it is given up, what is reported shows who has set it.
-        self._yields = self.output.vehicle.give_up_seconds
+        self._yields = now + self.output.vehicle.give_up_seconds
         # Its answers are told from the order's by the time of the last message.
         self._sent = now
         return [self._set(self._before)]
@@ -276,7 +278,7 @@ class PatternPlayer:
         self._was_silent |= now - self._heard > FRESH_SECONDS
         last, self._value, self._heard = self._value, value, now
         if self.is_active:
-            if self._yields and self._equals(value, self._expected):
+            if self._equals(value, self._expected):
                 self._drop()
             elif not self._is_ours(value):
                 self._drop()
@@ -331,14 +333,16 @@ class PatternPlayer:
             self.stop(now)
             if now - self._asked > ASK_SECONDS:
                 self._asked = now
-                yield self._ask_for_reports()
+                vehicle, message = self.output.vehicle, float(self.output.reported_by)
+                ask = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL
+                yield build_command(vehicle, ask, message, REPORT_SECONDS * 1e6)
             # Nothing is set unseen: the pilot may have another value by now.
             return
         if self.is_active:
             self._advance(now)
         # A value that is reached is not set again, so that a pilot may change it.
         if self.is_active and now - self._sent >= AGAIN_SECONDS and not self._is_reached:
-            if self._lasted < self._yields or self.output.obstacle:
+            if now < self._yields or self.output.obstacle:
                 return
             self._sent = now
             yield self._set(self._peak if self._is_on else self._before)
@@ -348,7 +352,7 @@ class PatternPlayer:
         if not self._following:
             # A report on its way before the last message proves nothing.
             restored = self._is_reached and now - self._sent > REPORT_SECONDS
-            if restored or self._lasted > LONGEST_RESTORE + self._yields:
+            if restored or self._lasted > LONGEST_RESTORE:
                 self._drop()
                 self._rested = now
         elif self._lasted > LONGEST_LEVEL or (
@@ -357,7 +361,8 @@ class PatternPlayer:
             self._turn(self._following.popleft())
 
     def _turn(self, is_on: bool) -> None:
-        self._is_on, self._sent, self._lasted, self._yields = is_on, -math.inf, 0.0, 0.0
+        self._is_on, self._lasted = is_on, 0.0
+        self._sent = self._yields = -math.inf
 
     def _remember(self) -> None:
         self._memory.keep(self.output.key, self._before, self._peak, self._shown_peak)
@@ -365,16 +370,11 @@ class PatternPlayer:
     def _drop(self) -> None:
         self._following.clear()
         self._is_on = None
-        self._yields = 0.0
         self._memory.keep(self.output.key)
 
     def _set(self, value: float) -> Message:
         self._unanswered += 1
         return self.output.build(value)
-
-    def _ask_for_reports(self) -> Message:
-        command, message = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, float(self.output.reported_by)
-        return build_command(self.output.vehicle, command, message, REPORT_SECONDS * 1e6)
 
 
 class AnswerDesk:
@@ -386,7 +386,7 @@ class AnswerDesk:
     Parameters
     ----------
     answers, vehicle
-        The table's.
+        The table's; None: nothing is shown.
     memory
         Keeps what was before a pattern.
     servo
@@ -403,7 +403,7 @@ class AnswerDesk:
 
     def __init__(
         self,
-        answers: Answers,
+        answers: Answers | None,
         vehicle: Vehicle,
         memory: Memory | None = None,
         servo: LightsServo | None = None,
@@ -411,8 +411,10 @@ class AnswerDesk:
         lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
         outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
-        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in answers.show]
-        self._waiting: tuple[Answer, float, bool] | None = None
+        shown = () if answers is None else answers.show
+        self._players = [PatternPlayer(outputs[name], memory or Memory()) for name in shown]
+        # The answer, its pulses, when it was given, and whether to an emergency.
+        self._waiting: tuple[Answer, int, float, bool] | None = None
         self.is_take_open = False
         self.notices: list[str] = []
 
@@ -426,13 +428,14 @@ class AnswerDesk:
         """Whether nothing is shown and nothing waits to be shown."""
         return self._waiting is None and not self.is_active
 
-    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> None:
-        """Show an answer as soon as it may be shown."""
-        if self._waiting is not None and self._waiting[2] and not emergency:
-            return
-        self._waiting = (answer, now, emergency)
-        if emergency:
-            self.stop(now)
+    def give(self, answer: Answer, now: float, *, emergency: bool = False) -> int:
+        """Show an answer as soon as it may be shown; return its number of pulses, 0 for none."""
+        pulses = 0 if self._answers is None else self._answers.count_pulses(answer)
+        if pulses and (self._waiting is None or emergency or not self._waiting[3]):
+            self._waiting = (answer, pulses, now, emergency)
+            if emergency:
+                self.stop(now)
+        return pulses
 
     def stop(self, now: float) -> None:
         """End the patterns, and restore what was before."""
@@ -459,16 +462,16 @@ class AnswerDesk:
         if self.is_take_open:
             self.stop(now)
         elif self._waiting is not None and may_begin:
-            self._begin(*self._waiting[:2], now)
+            self._begin(*self._waiting[:3], now)
         for player in self._players:
             yield from player.list_due(now)
 
-    def _begin(self, answer: Answer, given: float, now: float) -> None:
+    def _begin(self, answer: Answer, pulses: int, given: float, now: float) -> None:
         obstacles = [player.find_obstacle(now) for player in self._players]
         able = [player for player, found in zip(self._players, obstacles, strict=True) if not found]
         if able and all(player.is_free(now) for player in able):
             for player in able:
-                player.begin(self._answers.count_pulses(answer), now)
+                player.begin(pulses, now)
             self._waiting = None
         elif now - given > LATEST_SECONDS:
             self._waiting = None

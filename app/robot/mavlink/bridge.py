@@ -41,39 +41,33 @@ from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
-from app.robot.mavlink.peer import VehiclePeer
+from app.robot.mavlink.peer import Sender, VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
 
 TEXT_BYTES: Final = 50
 """Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
 
 TICK_SECONDS: Final = 0.05
-"""Longest wait for a message: shorter than what a diver or a vehicle notices."""
+"""Seconds to wait for a message: shorter than what a diver or a vehicle notices."""
 
 HEARTBEAT_SECONDS: Final = 1.0
 """Seconds between two of our heartbeats, as MAVLink requires."""
 
 CLOSE_SECONDS: Final = 3.5
-"""Longest time that closing waits for the active order and the last texts, whatever the vehicle
-answers: a service that is stopped must let go of its vehicle."""
+"""Seconds that closing waits at most for the active order and the last texts, heard or not: a
+service that is stopped must let go of its vehicle."""
 
 SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
 SEVERITIES: Final = {
-    "done": mavlink.MAV_SEVERITY_NOTICE,
-    "replaced": mavlink.MAV_SEVERITY_NOTICE,
-    "cancelled": mavlink.MAV_SEVERITY_NOTICE,
+    **dict.fromkeys(("done", "replaced", "cancelled", "late"), mavlink.MAV_SEVERITY_NOTICE),
     "waits": mavlink.MAV_SEVERITY_CRITICAL,
 }
-
+"""Severity of the text about an order; that of the others is a warning."""
 
 ANSWERS: Final = {
-    "done": Answer.done,
-    "late": Answer.done,
-    "cancelled": Answer.done,
-    "refused": Answer.refused,
-    "unanswered": Answer.refused,
-    "stopped": Answer.refused,
+    **dict.fromkeys(("done", "late", "cancelled"), Answer.done),
+    **dict.fromkeys(("refused", "unanswered", "stopped"), Answer.refused),
 }
 """Answers to the diver about an order that ended; the others go on, or are told by the next one."""
 
@@ -126,11 +120,7 @@ class MavlinkBridge:
         self._now = now
         self._tell_answer = tell_answer
         self._servo = LightsServo(table.vehicle)
-        self._answers = (
-            AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
-            if table.answers is not None
-            else None
-        )
+        self._answers = AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
@@ -139,7 +129,6 @@ class MavlinkBridge:
         self._texts: list[Message] = []
         self._handed: list[Message] = []
         self._pictures = 0
-        self._asked = -math.inf
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
         self._silent = self._broken = self._is_answered = False
@@ -184,30 +173,29 @@ class MavlinkBridge:
                 case RecognitionReady():
                     self._say("ready for gestures", mavlink.MAV_SEVERITY_NOTICE)
                     self.answer(Answer.listening, "ready for gestures")
-                case StateChanged(state=state) if self._answers is not None:
+                case StateChanged(state=state):
                     self._answers.is_take_open = state is TakeState.recording
                 case OutputFailed(output=output):
                     self._say(f"{output} cannot be written", mavlink.MAV_SEVERITY_WARNING)
                 case SourceEnded(stopped=True):
                     self._report(self._desk.stop("robot is stopped"))
-                case _:
-                    pass
 
     @property
     def has_answered(self) -> bool:
         """Whether nothing is shown to the diver, or waits to be shown."""
-        return self._answers is None or self._answers.is_idle
+        return self._answers.is_idle
 
     def answer(self, answer: Answer | None, text: str, *, emergency: bool = False) -> None:
         """Show an answer to the diver, if the table says how; None: there is none."""
-        if answer is None or self._answers is None or self._table.answers is None:
+        if answer is None:
             return
         with self._lock:
-            self._answers.give(answer, clock.monotonic(), emergency=emergency)
-        self._tell_answer(answer, self._table.answers.count_pulses(answer), text)
+            pulses = self._answers.give(answer, clock.monotonic(), emergency=emergency)
+        if pulses:
+            self._tell_answer(answer, pulses, text)
 
     def close(self) -> None:
-        """Wait for the active order, at most `CLOSE_SECONDS`, and disconnect.
+        """Wait for the last order, at most `CLOSE_SECONDS`, and disconnect.
 
         Texts that were announced before are sent to the vehicle's displays first.
         """
@@ -305,12 +293,16 @@ class MavlinkBridge:
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
         is_known = self._servo.function is not None
-        if fault := self._peer.find_fault(now) or (is_known and self._find_obstacle(order)):
+        contest = self._peer.contest
+        obstacle = self._find_obstacle(order) if is_known and not contest else ""
+        if fault := self._peer.find_fault(now) or obstacle:
             self._report(Outcome(order, "stopped", fault))
             return
-        if self._answers is not None:
-            self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
+        self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
         self._report(self._desk.give(order, now))
+        if contest and self._desk.order is order:
+            where = "to both" if order.emergency else "waits"
+            self._report(Outcome(order, "waits", f"{where}, {contest}"))
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -337,8 +329,8 @@ class MavlinkBridge:
                 due = self._step(packets)
             # Though nothing can be heard, what is sent may arrive.
             try:
-                for message in due:
-                    self._link.send(message, self._peer.sender)
+                for message, receiver in due:
+                    self._link.send(message, receiver)
             except (OSError, OsgError) as error:
                 fault = str(error)
             if fault:
@@ -357,11 +349,12 @@ class MavlinkBridge:
             with self._lock:
                 self._report(self._desk.stop("robot has ended"))
             return False
-        shows = self._answers is not None and self._answers.is_active
-        return self._desk.order is not None or bool(self._texts) or shows
+        # What was stopped may be done already: the next heartbeat tells.
+        is_open = self._desk.order is not None or self._desk.is_watched
+        return is_open or bool(self._texts) or self._answers.is_active
 
-    def _step(self, packets: Sequence[Packet]) -> list[Message]:
-        """Process the received messages and return the messages to send."""
+    def _step(self, packets: Sequence[Packet]) -> list[tuple[Message, Sender | None]]:
+        """Process the received messages and return the messages to send, and to whom."""
         now = clock.monotonic()
         self._peer.expect(self._link.expected)
         for message, sender in packets:
@@ -369,8 +362,8 @@ class MavlinkBridge:
                 continue
             self._servo.hear(message)
             self._is_answered |= message.get_type() == "COMMAND_ACK"
-            if self._answers is None or not self._answers.hear(message, now):
-                self._report(self._desk.hear(message, now))
+            if not self._answers.hear(message, now):
+                self._report(self._desk.hear(message, now, proves=not self._peer.contest))
         self._report(self._desk.check_deadline(now))
         decision = self._dialogue.check_deadline(self._source_time())
         if decision is not None:
@@ -378,35 +371,31 @@ class MavlinkBridge:
             self.answer(decision.answer, decision.reason)
         self._watch_vehicle(now)
         # Orders first: an emergency does not wait for texts, of which each may take its time.
-        due = self._list_orders(now) if self._peer.is_proven(now) else []
+        own: list[Message] = []
+        shared: list[Message] = []
+        if self._peer.is_proven(now):
+            own += [*self._handed, *self._servo.list_due(now)]
+            if self._desk.order is not None and not self._find_obstacle(self._desk.order):
+                shared += self._desk.list_due(now)
         self._handed.clear()
-        due += self._texts
+        shared += self._texts
         self._texts.clear()
-        due += self._list_answers(now)
         if now - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = now
-            due.append(build_heartbeat())
-        return due
-
-    def _list_orders(self, now: float) -> list[Message]:
-        """Return the messages of orders to send now, and the question before the first light."""
-        due = [*self._handed]
-        if self._servo.function is None and now - self._asked >= self._table.vehicle.repeat_seconds:
-            self._asked = now
-            due.append(self._servo.ask())
-        if self._desk.order is not None and not self._find_obstacle(self._desk.order):
-            due += self._desk.list_due(now)
-        return due
+            shared.append(build_heartbeat())
+        due = [(message, self._peer.sender) for message in own]
+        due += [(message, each) for message in shared for each in self._peer.claimants]
+        return [*due, *((message, self._peer.sender) for message in self._list_answers(now))]
 
     def _find_obstacle(self, order: Order) -> str:
-        """Return why an order for the lights must not be sent; empty if it may."""
+        """Return why an order must not be sent; empty if it may."""
+        if contest := self._peer.contest:
+            return "" if order.emergency else contest
         sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
         return self._servo.obstacle if sets else ""
 
     def _list_answers(self, now: float) -> Iterator[Message]:
         """Yield the messages that show answers to the diver."""
-        if self._answers is None:
-            return
         is_proven = self._peer.is_proven(now)
         if self._closing.is_set() or not is_proven:
             self._answers.stop(now)
@@ -425,32 +414,27 @@ class MavlinkBridge:
         silent = self._peer.is_silent(now)
         if silent != self._silent:
             self._silent = silent
-            self._say(
-                "vehicle is silent" if silent else "vehicle is back", mavlink.MAV_SEVERITY_ALERT
-            )
+            words = "vehicle is silent" if silent else "vehicle is back"
+            self._say(words, mavlink.MAV_SEVERITY_ALERT)
         if self._desk.reboots != self._reboots:
             self._reboots = self._desk.reboots
             self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
-            if self._answers is not None:
-                self._answers.forget()
+            self._answers.forget()
 
     def _report(self, outcome: Outcome | None) -> None:
         """Announce what became of an order; None: nothing new."""
         if outcome is None:
             return
-        words = outcome.order.words
         if outcome.kind == "unanswered" and (obstacle := self._find_obstacle(outcome.order)):
             outcome = replace(outcome, kind="stopped", answer=obstacle)
-        text = {
-            "done": f"done: {words}",
-            "replaced": f"replaced: {words}",
-            "refused": f"refused ({outcome.answer}): {words}",
-            "unanswered": f"NOT DONE, no answer: {words}",
-            "late": f"done after all: {words}",
-            "cancelled": f"{', '.join(filter(None, ('cancelled', outcome.answer)))}: {words}",
-            "stopped": f"NOT DONE, {outcome.answer}: {words}",
-            "waits": f"{outcome.answer}: {words}",
-        }[outcome.kind]
+        told = {
+            "unanswered": "NOT DONE, no answer",
+            "refused": f"refused ({outcome.answer})",
+            "stopped": f"NOT DONE, {outcome.answer}",
+            "waits": outcome.answer,
+            "late": "done after all",
+        }.get(outcome.kind, outcome.kind)
+        text = f"{told}: {outcome.order.words}{f'; {outcome.sent}' if outcome.sent else ''}"
         self._say(text, SEVERITIES.get(outcome.kind, mavlink.MAV_SEVERITY_WARNING))
         self.answer(ANSWERS.get(outcome.kind), text, emergency=outcome.order.emergency)
         # A vehicle drops without a word what is signed wrongly, or with a time before the last.

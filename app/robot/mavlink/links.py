@@ -32,7 +32,7 @@ MOST_FAULTS: Final = 8
 """Faulty messages in a datagram after which the rest of it is dropped."""
 
 CONNECT_SECONDS: Final = 3.0
-"""Time to connect over TCP; a vehicle on the same boat answers within milliseconds."""
+"""Seconds to connect over TCP; a vehicle on the same boat answers within milliseconds."""
 
 UNANSWERED_MS: Final = 5000
 """Milliseconds after which a TCP connection whose other end confirms nothing is given up. The
@@ -51,7 +51,7 @@ AHEAD_SECONDS: Final = 120
 """Seconds by which the kept signature time is ahead: twice the period of its renewal."""
 
 RENEW_SECONDS: Final = 60
-"""Least seconds by which the kept time stays ahead: it is written once in a minute."""
+"""Seconds by which the kept time stays ahead at least: it is written once in a minute."""
 
 LATEST_TIME: Final = 2**47
 """Signature time in the year 2059, half the range of its 48 bits: a later one was not written by

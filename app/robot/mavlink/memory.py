@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Final
+
+from pydantic import FiniteFloat, TypeAdapter
 
 from app.robot.publishing.robot_files import write_atomically
 
 MOST_BYTES: Final = 4096
 """Largest size in bytes of a file that is read: a few numbers."""
+
+
+NUMBERS: Final = TypeAdapter(dict[str, list[FiniteFloat]])
+"""Numbers under names."""
 
 
 class Memory:
@@ -57,15 +62,9 @@ class Memory:
 
 
 def read_numbers(file: Path) -> dict[str, list[float]]:
-    """Read what a memory's file holds; nothing of it that is not numbers."""
+    """Read what a memory's file holds; nothing if it is not finite numbers throughout."""
     try:
         with file.open("rb") as opened:
-            found = json.loads(opened.read(MOST_BYTES))
-    except (OSError, ValueError, RecursionError):
+            return NUMBERS.validate_json(opened.read(MOST_BYTES), strict=True)
+    except (OSError, ValueError):
         return {}
-    return {
-        name: numbers
-        for name, numbers in (found.items() if isinstance(found, dict) else ())
-        if isinstance(numbers, list)
-        and all(isinstance(each, float) and math.isfinite(each) for each in numbers)
-    }

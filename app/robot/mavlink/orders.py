@@ -6,18 +6,29 @@ request.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.actions import OUR_COMPONENT, Message, Reported, Step, name_entry
+from app.robot.mavlink.actions import (
+    OUR_COMPONENT,
+    DepthStep,
+    Message,
+    Reported,
+    Step,
+    build_question,
+    describe_step,
+    name_entry,
+)
+from app.robot.mavlink.heard import LONGEST_GAP, SILENT_SECONDS, HeardClock
 from app.robot.mavlink.table import Vehicle
 
 EMERGENCY_SECONDS: Final = 60.0
-"""Seconds for which an emergency is repeated; after that the vehicle has another pilot or is
-lost."""
+"""Heard seconds for which an emergency is repeated; after that the vehicle has another pilot. A
+lost link uses up none: what saves a diver is sent when the vehicle is back."""
 
 REBOOT_MS: Final = 1000
 """Milliseconds by which packets out of order may set back the vehicle's time since boot."""
@@ -29,17 +40,16 @@ GO_ON: Final = (
 )
 """Results after which a command is repeated until it is done; all others refuse it."""
 
-SHOW_SECONDS: Final = 1.5
-"""Seconds for an accepted mode to show: half again the period of the vehicle's heartbeat. Until
-then it is not requested again."""
+SHOW_SECONDS: Final = LONGEST_GAP
+"""Heard seconds for an accepted mode to show. Until then it is not requested again."""
 
 MOST_OVERRIDES: Final = 2
 """Accepted requests of a mode that did not show it, after which the order ends: a pilot may set the
 old one. The first answer may be a late one to an earlier request."""
 
 LATE_SECONDS: Final = 10.0
-"""Seconds after a request, or heard seconds after it was given up, in which the vehicle may still
-take that mode, for an order that was cancelled or replaced meanwhile: no pilot has set it then."""
+"""Heard seconds after a request, or after it was given up, in which the vehicle may still take that
+mode, for an order that was cancelled or replaced meanwhile: no pilot has set it then."""
 
 OTHER_PILOT: Final = "the pilot changed the mode"
 
@@ -86,17 +96,19 @@ class Outcome:
     kind
         ``done``: proven by the vehicle. ``refused``: by the vehicle. ``unanswered``: not proven in
         time. ``replaced``: by a newer order. ``cancelled``: by the diver. ``stopped``:
-        for the reason in `answer`. Of these three `answer` says if the order was sent before, so
-        that the vehicle may still do it. ``waits``: it goes on, in spite of the reason in `answer`.
+        for the reason in `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
         ``late``: the vehicle shows what was given up, after all.
     answer
         Result of a refusal, such as ``DENIED``, or the reason.
+    sent
+        What was sent of an order that is not proven, and how often: the vehicle may still do it.
 
     """
 
     order: Order
     kind: OutcomeKind
     answer: str = ""
+    sent: str = ""
 
 
 class OrderDesk:
@@ -105,8 +117,9 @@ class OrderDesk:
     Parameters
     ----------
     vehicle
-        Address of the vehicle, and how long to try. Every method takes the time in seconds of a
-        steady clock.
+        Address of the vehicle, and how long to try: an order counts all seconds, because nothing
+        may be done long after its request, an emergency heard seconds. Every method takes the time
+        in seconds of a steady clock.
 
     Attributes
     ----------
@@ -123,19 +136,20 @@ class OrderDesk:
         self.reboots = 0
         self._position = 0
         self._sent = 0
-        self._next = 0.0
-        self._deadline = 0.0
+        self._sendings: Counter[Step] = Counter()
+        self._given = self._next = self._deadline = 0.0
+        self._clock = HeardClock()
         self._reported = Reported()
         self._uptime = 0
-        self._refused = False
         self._mode: int | None = None
         self._requested: dict[int, float] = {}
         self._armed: bool | None = None
-        self._waits = False
+        self._told: set[OutcomeKind] = set()
         self._watch = ModeWatch(None)
         self._late: Order | None = None
-        self._heard = self._late_by = 0.0
-        self._is_heard = False
+        self._late_by = 0.0
+        self._version = 0
+        self._proves = True
 
     def give(self, order: Order, now: float) -> Outcome | None:
         """Begin an order.
@@ -151,13 +165,20 @@ class OrderDesk:
                 return Outcome(order, "stopped", "EMERGENCY goes on")
             if order.moves and self._armed is False:
                 return Outcome(order, "stopped", DISARMED)
-        replaced = None if self.order is None else Outcome(self.order, "replaced")
-        seconds = EMERGENCY_SECONDS if order.emergency else self._vehicle.give_up_seconds
-        self.order, self._late = order, None
-        self._refused = self._waits = False
-        self._deadline = now + seconds * len(order.steps)
+        replaced = None if self.order is None else self._give_up("replaced")
+        self.order, self._late, self._given = order, None, now
+        self._told.clear()
+        self._sendings.clear()
+        self._deadline = now + self._vehicle.give_up_seconds * len(order.steps)
+        if order.emergency:
+            self._deadline = self._clock.seconds + EMERGENCY_SECONDS
         self._begin(0, now)
         return replaced
+
+    def _begin_again(self, now: float) -> None:
+        """Begin the active order again: what was heard until now proves nothing."""
+        if self.order is not None:
+            self._begin(0, now)
 
     def cancel(self) -> Outcome | None:
         """Drop the active order unless it is an emergency; return what became of it."""
@@ -171,12 +192,22 @@ class OrderDesk:
         """Drop the active order, also an emergency, for a reason; return its outcome."""
         return None if self.order is None else self._give_up("stopped", reason)
 
-    def _give_up(self, kind: OutcomeKind, *reasons: str) -> Outcome:
+    def _give_up(self, kind: OutcomeKind, reason: str = "") -> Outcome:
         """End an order before it is proven; if it was sent, watch whether it is done after all."""
-        order, was_sent = self.order, self._sent > 0 or self._position > 0
-        outcome = self._end(kind, ", ".join([*reasons, *["but it was sent"] * was_sent]))
-        self._late, self._late_by = (order if was_sent else None), self._heard + LATE_SECONDS
+        order, sendings = self.order, self._sendings.items()
+        numbers = ((describe_step(step), number) for step, number in sendings)
+        sent = ", ".join(
+            f"{step} was sent {'once' if number == 1 else f'{number} times'}"
+            for step, number in numbers
+        )
+        outcome = replace(self._end(kind, reason), sent=sent)
+        self._late, self._late_by = (order if sent else None), self._clock.seconds + LATE_SECONDS
         return self._find_late() or outcome
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether an order was given up that the vehicle may still do, in heard seconds."""
+        return self._late is not None and self._clock.seconds <= self._late_by
 
     def _find_late(self) -> Outcome | None:
         """Return that an order which was given up is done, once mode and depth show it."""
@@ -191,30 +222,41 @@ class OrderDesk:
 
     def list_due(self, now: float) -> Sequence[Message]:
         """Return the messages to send now."""
-        if self.order is None or now < self._next or now > self._deadline:
+        if self.order is None or now < self._next or self._is_over(now) or self._watch.keeps_back:
             return ()
-        # What a vehicle has not answered waits there, and would be obeyed late, once for each.
-        waits = self._sent > 0 and not self._is_heard and not self.order.emergency
-        if self._watch.keeps_back or waits:
+        # What a vehicle has not answered waits there, and would be obeyed late, once for each. It
+        # was lost if the vehicle is heard since. An emergency may need no way back, for a while.
+        heard = self._clock.last
+        is_urgent = self.order.emergency and now - max(heard, self._given) <= SILENT_SECONDS
+        if self._sent > 0 and heard < self._next and not is_urgent:
             return ()
         step = self.order.steps[self._position]
-        message = step.build(self._sent)
         if step.mode is not None:
-            self._requested[step.mode] = now
-        self._sent, self._is_heard = self._sent + 1, False
+            self._requested[step.mode] = self._clock.seconds
+        due = [step.build(self._version if isinstance(step, DepthStep) else self._sent)]
+        # Asked while the mode is set, so that the depth knows the answer.
+        if not self._version and any(isinstance(each, DepthStep) for each in self.order.steps):
+            due.append(build_question(self._vehicle))
+        self._sent += 1
+        self._sendings[step] += 1
         self._next = now + self._vehicle.repeat_seconds
-        return (message,)
+        return due
+
+    def _is_over(self, now: float) -> bool:
+        """Return whether the active order has had its time."""
+        assert self.order is not None
+        return (self._clock.seconds if self.order.emergency else now) > self._deadline
 
     def check_deadline(self, now: float) -> Outcome | None:
         """Return the outcome of an order that the vehicle has not done in time."""
-        if self.order is None or now <= self._deadline:
+        if self.order is None or not self._is_over(now):
             return None
         if self.order.moves and self._armed is False:
             return self._end("stopped", DISARMED)
         return self._give_up("unanswered")
 
-    def hear(self, message: Message, now: float) -> Outcome | None:
-        """Process a message of the vehicle.
+    def hear(self, message: Message, now: float, *, proves: bool = True) -> Outcome | None:
+        """Process a message of the vehicle; `proves`: it comes from the vehicle for certain.
 
         Returns
         -------
@@ -224,27 +266,38 @@ class OrderDesk:
         """
         if not is_from_vehicle(message, self._vehicle):
             return None
-        # The time in which an order may be done late goes on only while the vehicle is heard.
-        self._late_by += max(now - self._heard - SHOW_SECONDS, 0)
-        self._heard, self._is_heard = now, True
+        self._clock.hear(now)
+        if proves != self._proves:
+            self._proves = proves
+            self._begin_again(now)
+        if not proves:
+            return None
         self._note_state(message, now)
         if self.order is None:
-            return self._find_late() if now <= self._late_by else None
-        if self.order.moves and self._armed is False and (outcome := self._wait_for_arming()):
+            return self._find_late() if self.is_watched else None
+        if (
+            self.order.moves
+            and self._armed is False
+            and (outcome := self._go_on("stopped", "waits", DISARMED))
+        ):
             return outcome
         if self._watch.contradiction:
             return self._end("stopped", self._watch.contradiction)
-        if not self._sent:
-            return None
+        return self._hear_answer(message, now) if self._sent else None
+
+    def _hear_answer(self, message: Message, now: float) -> Outcome | None:
+        """Process what may prove or refuse the present step."""
+        assert self.order is not None
         step = self.order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(now)
         answered = message.get_type() == "COMMAND_ACK" and message.command == step.command
         if answered and message.result == mavlink.MAV_RESULT_ACCEPTED:
-            self._watch.accept(now)
+            self._watch.accept(self._clock.seconds)
         if not answered or message.result in GO_ON:
             return None
-        return self._refuse(message.result)
+        answer = name_entry("MAV_RESULT", message.result) or str(message.result)
+        return self._go_on("refused", "refused", answer)
 
     def _note_state(self, message: Message, now: float) -> None:
         """Note what a message says of the vehicle's state."""
@@ -254,26 +307,20 @@ class OrderDesk:
                 self._note_uptime(message.time_boot_ms, now)
                 self._watch.hear_clock()
             case "HEARTBEAT":
-                self._mode = message.custom_mode
+                self._mode = int(message.custom_mode)
                 self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-                self._watch.hear_mode(message.custom_mode, now, sent=self._sent > 0)
+                self._watch.hear_mode(self._mode, self._clock.seconds, sent=self._sent > 0)
+            case "AUTOPILOT_VERSION":
+                self._version = message.flight_sw_version
 
-    def _wait_for_arming(self) -> Outcome | None:
-        """End an ordinary order of a disarmed vehicle; an emergency goes on, which is said once."""
+    def _go_on(self, kind: OutcomeKind, told: OutcomeKind, answer: str) -> Outcome | None:
+        """End an ordinary order as `kind`; an emergency goes on, and is told as `told` once."""
         assert self.order is not None
         if not self.order.emergency:
-            return self._end("stopped", DISARMED)
-        told, self._waits = self._waits, True
-        return None if told else Outcome(self.order, "waits", DISARMED)
-
-    def _refuse(self, result: int) -> Outcome | None:
-        """End a refused order; an emergency goes on, and only its first refusal is reported."""
-        assert self.order is not None
-        answer = name_entry("MAV_RESULT", result) or str(result)
-        if not self.order.emergency:
-            return self._end("refused", answer)
-        told, self._refused = self._refused, True
-        return None if told else Outcome(self.order, "refused", answer)
+            return self._end(kind, answer)
+        is_new = told not in self._told
+        self._told.add(told)
+        return Outcome(self.order, told, answer) if is_new else None
 
     def _note_uptime(self, uptime: int, now: float) -> None:
         """Detect a restart of the vehicle, which has then lost its orders."""
@@ -281,8 +328,7 @@ class OrderDesk:
             self.reboots += 1
             self._reported = Reported()
             self._mode = None
-            if self.order is not None:
-                self._begin(0, now)
+            self._begin_again(now)
         self._uptime = uptime
 
     def _advance(self, now: float) -> Outcome | None:
@@ -301,7 +347,8 @@ class OrderDesk:
         self._reported = Reported()
         modes = [step.mode for step in self.order.steps[: position + 1] if step.mode is not None]
         is_shown = bool(modes) and self.order.steps[position].mode is None
-        late = [mode for mode, sent in self._requested.items() if now - sent <= LATE_SECONDS]
+        least = self._clock.seconds - LATE_SECONDS
+        late = [mode for mode, sent in self._requested.items() if sent >= least]
         self._watch = ModeWatch(
             modes[-1] if modes else None, (self._mode, *late), is_shown=is_shown
         )
@@ -318,7 +365,7 @@ class ModeWatch:
 
     A heartbeat may be older than the request by its period, so the first one after it proves
     nothing. A mode that contradicts the order counts once the vehicle's clock shows that it did not
-    start again, or half a second later.
+    start again, or `DOUBT_SECONDS` later. All its times are heard seconds.
 
     Parameters
     ----------
@@ -338,6 +385,7 @@ class ModeWatch:
     """
 
     DOUBT_SECONDS: Final = 0.5
+    """Heard seconds after which a contradicting mode counts though no clock was heard."""
 
     def __init__(
         self, wanted: int | None, before: Iterable[int | None] = (), *, is_shown: bool = False
@@ -390,7 +438,7 @@ class ModeWatch:
         self._accepted = None
         self._overrides += 1
         if self._overrides >= MOST_OVERRIDES:
-            self.contradiction = f"stays in {name_mode(mode)}"
+            self.contradiction = f"stays in {name_entry('SUB_MODE', mode) or f'mode {mode}'}"
 
 
 def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
@@ -402,8 +450,3 @@ def is_from_vehicle(message: Message, vehicle: Vehicle) -> bool:
     ours = ((0, 0), (vehicle.system, OUR_COMPONENT))
     answering = ((vehicle.system, part) for part in (vehicle.component, vehicle.camera_component))
     return sender in answering and (message.target_system, message.target_component) in ours
-
-
-def name_mode(mode: int) -> str:
-    """Return the name of one of ArduSub's modes, or its number."""
-    return name_entry("SUB_MODE", mode) or f"mode {mode}"

@@ -3,6 +3,9 @@
 The peer is the address from which a heartbeat of the table's system and component came, of a
 submarine with ArduPilot. It stays the peer while it is heard. A heartbeat of another kind ends
 that, until one of a submarine comes again. All else is dropped and counted.
+
+A second submarine with the same ids is a rival, unless the table or the link names the address:
+nobody knows then which one is the vehicle.
 """
 
 from __future__ import annotations
@@ -13,19 +16,23 @@ from typing import Any, Final
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.mavlink.actions import Message, name_entry
+from app.robot.mavlink.heard import SILENT_SECONDS, HeardClock
 from app.robot.mavlink.orders import REBOOT_MS
 from app.robot.mavlink.table import Vehicle
 
 Sender = tuple[Any, ...]
 """Address of a socket; empty for a connection that has one sender alone."""
 
-SILENT_SECONDS: Final = 5.0
-"""Seconds without a heartbeat after which the vehicle counts as lost."""
-
 NO_ARDUSUB: Final = "no ArduSub"
 
-RIVAL_SECONDS: Final = 60.0
-"""Seconds without a second vehicle after which the next one is announced again."""
+AGAIN_SECONDS: Final = 60.0
+"""Seconds without a sender that is ignored after which the next one is announced again."""
+
+RIVAL_SECONDS: Final = 10.0
+"""Heard seconds after the last heartbeat of a rival in which it still counts as one."""
+
+MOST_RIVALS: Final = 4
+"""Rivals that are kept, so that a flood of addresses is no flood of commands."""
 
 
 class VehiclePeer:
@@ -55,8 +62,11 @@ class VehiclePeer:
         self.sender: Sender | None = None
         self.dropped = 0
         self._heard = now
-        self._refused = self._rival = self._contradicted = -math.inf
-        self._fault = ""
+        self._two = f"two vehicles with system {vehicle.system}"
+        # A rival's last heartbeat, in heard seconds; None: it has the vehicle's own address.
+        self._rivals: dict[Sender | None, float] = {}
+        self._heard_clock = HeardClock()
+        self._refused = self._ignored = self._contradicted = -math.inf
         self._faulty: Sender | None = None
         self._clock: tuple[int, float] | None = None
         self._set_back = False
@@ -66,12 +76,22 @@ class VehiclePeer:
         """Set the only address that may be the vehicle's; a new one has to prove itself."""
         if sender != self._expected:
             self._expected, self.sender = sender, None
+            self._rivals.clear()
 
     def find_fault(self, now: float) -> str:
         """Return, in few words, why nothing may be sent to the vehicle; empty for no fault."""
-        if self.sender not in (None, self._faulty) or now - self._refused > SILENT_SECONDS:
-            return ""
-        return self._fault
+        is_faulty = self.sender in (None, self._faulty)
+        return NO_ARDUSUB if is_faulty and now - self._refused <= SILENT_SECONDS else ""
+
+    @property
+    def claimants(self) -> list[Sender | None]:
+        """Addresses of the vehicle and its rivals; None while nothing is known."""
+        return [self.sender, *(rival for rival in self._rivals if rival is not None)]
+
+    @property
+    def contest(self) -> str:
+        """Why nothing that is heard proves anything: there is a rival; empty for none."""
+        return self._two if self._rivals else ""
 
     def is_proven(self, now: float) -> bool:
         """Return whether commands may be sent."""
@@ -107,46 +127,61 @@ class VehiclePeer:
         # A vehicle of another kind at another address takes the place of nobody.
         is_stranger = bool(kind) and self.sender not in (None, sender)
         if is_stranger or not self._may_be(sender, now, busy=busy):
-            if beats:
-                self._note_rival(sender, now)
+            if beats and not kind and self._is_named(sender):
+                self._note_rival(sender)
+            elif beats:
+                self._note_ignored(sender, now)
             self.dropped += 1
             return False
         if kind:
-            self._refuse(NO_ARDUSUB, f"vehicle is no ArduSub but {kind}", sender, now)
-            self.sender = None
+            if not self.find_fault(now):
+                self._notices.append(f"vehicle is no ArduSub but {kind}; nothing is sent")
+            self._faulty, self._refused, self.sender = sender, now, None
         elif beats and not (sender == self._faulty and self.find_fault(now)):
             if sender != self.sender:
+                if self._rivals.pop(sender, None) is not None:
+                    self._rivals[self.sender] = self._heard_clock.seconds
                 self.sender, self._clock = sender, None
             self._heard = now
+            self._heard_clock.hear(now)
+            least = self._heard_clock.seconds - RIVAL_SECONDS
+            self._rivals = {each: last for each, last in self._rivals.items() if last >= least}
         if is_its and message.get_type() == "SYSTEM_TIME" and sender == self.sender:
-            self._watch_clock(message.time_boot_ms, sender, now)
+            self._watch_clock(message.time_boot_ms, now)
         admitted = sender == self.sender and self.is_proven(now)
         self.dropped += not admitted
         return admitted
 
-    def _may_be(self, sender: Sender, now: float, *, busy: bool) -> bool:
-        """Return whether an address is, or may become, that of the vehicle."""
+    def _is_named(self, sender: Sender) -> bool:
+        """Return whether neither the link nor the table names another address."""
         if self._expected is not None:
             return sender == self._expected
+        named = self._vehicle.address
+        return named is None or sender[:1] == (str(named),)
+
+    def _may_be(self, sender: Sender, now: float, *, busy: bool) -> bool:
+        """Return whether an address is, or may become, that of the vehicle."""
+        if not self._is_named(sender) or self._expected is not None:
+            return self._is_named(sender)
         if self.sender is None or sender == self.sender:
             return True
         return self.is_silent(now) and (not busy or sender[:1] == self.sender[:1])
 
-    def _note_rival(self, sender: Sender, now: float) -> None:
-        """Announce a second sender with the vehicle's ids, once while it is heard."""
-        if now - self._rival > RIVAL_SECONDS:
-            address = ":".join(str(part) for part in sender[:2])
-            number = self._vehicle.system
-            self._notices.append(f"two vehicles with system {number}: {address} is ignored")
-        self._rival = now
+    def _note_rival(self, sender: Sender | None) -> None:
+        """Keep a second submarine with the same ids, and announce it once while it is heard."""
+        if sender not in self._rivals:
+            if len(self._rivals) == MOST_RIVALS:
+                return
+            self._notices.append(f"{self._two}, orders wait{name_address(sender)}")
+        self._rivals[sender] = self._heard_clock.seconds
 
-    def _refuse(self, fault: str, words: str, sender: Sender, now: float) -> None:
-        """Withdraw the proof of an address while the fault is seen there, and say why once."""
-        if fault != self.find_fault(now):
-            self._notices.append(f"{words}; nothing is sent")
-        self._fault, self._faulty, self._refused = fault, sender, now
+    def _note_ignored(self, sender: Sender, now: float) -> None:
+        """Announce a sender with the vehicle's ids that is none, once while it is heard."""
+        if now - self._ignored > AGAIN_SECONDS:
+            self._notices.append(f"{self._two}{name_address(sender)} is ignored")
+        self._ignored = now
 
-    def _watch_clock(self, uptime: int, sender: Sender, now: float) -> None:
+    def _watch_clock(self, uptime: int, now: float) -> None:
         """Detect two vehicles behind one address: their clocks jump back and forth.
 
         A vehicle that starts again goes back and never returns; one late packet does both once.
@@ -160,9 +195,13 @@ class VehiclePeer:
         elif self._set_back and uptime - before[0] > passed + REBOOT_MS:
             self._set_back = False
             if now - self._contradicted <= SILENT_SECONDS:
-                words = f"two vehicles with system {self._vehicle.system}"
-                self._refuse("two vehicles", words, sender, now)
+                self._note_rival(None)
             self._contradicted = now
+
+
+def name_address(sender: Sender | None) -> str:
+    """Return an address for a line, such as ``: 192.168.2.2:14550``; empty for None."""
+    return "" if sender is None else f": {':'.join(str(part) for part in sender[:2])}"
 
 
 def describe_other_kind(heartbeat: Message) -> str:

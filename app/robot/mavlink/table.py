@@ -10,10 +10,11 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, IPvAnyAddress, ValidationError, model_validator
 from typing_extensions import Self
 
 from app.recognition import Language
@@ -25,6 +26,7 @@ from app.robot.commands.rules import (
     EMERGENCY_CONFIDENCE,
     STALE_SECONDS,
     Rules,
+    to_number,
 )
 
 if sys.version_info >= (3, 11):
@@ -35,8 +37,8 @@ else:
 FORMAT: Final = "osg-studio/vehicle-table"
 
 GIVE_UP_SECONDS: Final = 10.0
-"""Seconds for the vehicle to carry out an action: ten heartbeats and twenty repetitions, enough
-when a fifth of all packets is lost. After that the diver has given up too."""
+"""Seconds, heard or not, for the vehicle to carry out an action: ten heartbeats and twenty
+repetitions, enough when a fifth of all packets is lost. Then the diver has given up too."""
 
 DEEPEST: Final = 30.0
 """Largest depth in metres, unless a table sets its own limit: a number below the depths of sport
@@ -64,7 +66,8 @@ level, and the detection of motors."""
 
 
 class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Strict: a number is no text or truth value, as in Rules.
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class Hold(_Entry):
@@ -72,6 +75,7 @@ class Hold(_Entry):
 
     do: Literal["hold"] = "hold"
 
+    mode: ClassVar[str] = "ALT_HOLD"
     words: ClassVar[str] = "hold"
 
 
@@ -80,6 +84,7 @@ class Surface(_Entry):
 
     do: Literal["surface"] = "surface"
 
+    mode: ClassVar[str] = "SURFACE"
     words: ClassVar[str] = "surface"
 
 
@@ -147,6 +152,8 @@ class Vehicle(_Entry):
     ----------
     system, component
         MAVLink ids of the autopilot.
+    address
+        IP address from which the vehicle sends to ``udpin``; None: from any.
     camera_component
         MAVLink id of the component that takes pictures; by default the autopilot, which triggers a
         camera.
@@ -155,9 +162,9 @@ class Vehicle(_Entry):
     deepest
         Largest depth that an action may ask for, in metres.
     repeat_seconds
-        Time between two repetitions of a command that was not acknowledged.
+        Seconds between two repetitions of a command that was not acknowledged.
     give_up_seconds
-        Time after which an action that the vehicle has not done counts as failed.
+        Seconds, heard or not, after which an action that the vehicle has not done counts as failed.
     key_file
         File of the key that signs all messages (MAVLink 2), beside the table; None: no signatures.
 
@@ -165,6 +172,7 @@ class Vehicle(_Entry):
 
     system: Annotated[int, Field(ge=1, le=255)] = 1
     component: Annotated[int, Field(ge=1, le=255)] = 1
+    address: IPvAnyAddress | None = None
     camera_component: Annotated[int, Field(ge=1, le=255)] = 1
     lights_servo: Annotated[int, Field(ge=1, le=32)] = 13
     deepest: Annotated[float, Field(gt=0, le=1000)] = DEEPEST
@@ -189,7 +197,7 @@ class Answers(_Entry):
 
     """
 
-    show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1)]
+    show: Annotated[tuple[Literal["lights", "tilt"], ...], Field(min_length=1, strict=False)]
     listening: Pulses = PULSES[Answer.listening]
     repeat: Pulses = PULSES[Answer.repeat]
     one_of_two: Pulses = PULSES[Answer.one_of_two]
@@ -238,7 +246,7 @@ class VehicleTable(_Entry):
     gestures: dict[str, Action] = {}
     phrases: dict[str, Action] = {}
     emergency: dict[str, Literal["hold", "surface"]] = {}
-    cancel: tuple[str, ...] = ()
+    cancel: Annotated[tuple[str, ...], Field(strict=False)] = ()
     confirm_seconds: Annotated[float, Field(ge=1, le=300)] = CONFIRM_SECONDS
     stale_seconds: Annotated[float, Field(ge=0.1, le=60)] = STALE_SECONDS
     least_confidence: Annotated[float, Field(ge=0, le=1)] = 0.0
@@ -311,11 +319,9 @@ class VehicleTable(_Entry):
         if not (isinstance(action, Depth) and isinstance(action.metres, SlotName)):
             return action
         shown = slots.get(action.metres.slot)
-        try:
-            metres = float(shown) if isinstance(shown, int | float | str) else None
-        except ValueError:
-            metres = None
-        if metres is None or not 0 < metres <= self.vehicle.deepest:
+        with suppress(ValueError):
+            shown = float(shown) if isinstance(shown, str) else shown
+        if not 0 < (metres := to_number(shown)) <= self.vehicle.deepest:
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 

@@ -2387,12 +2387,12 @@ export interface components {
             findings: string[];
             /**
              * Fault
-             * @description Why the keypoints are too poor to judge; null: they are not.
+             * @description Why there is no recognition: the keypoints are too poor to judge, or no second trigger ended the take; null: there is one.
              */
             fault: string | null;
             /**
              * Fault Kind
-             * @description The kind of fault; null without one.
+             * @description The kind of the keypoints' fault, or null.
              */
             fault_kind: ("few_frames" | "nothing_seen" | "not_followed" | "leaps" | "unseen_hand") | null;
             /** Voters */

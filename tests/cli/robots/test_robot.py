@@ -30,6 +30,7 @@ from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of, spoken
 from tests.robot.mjpeg_server import MjpegServer
 from tests.robot.rtp_camera import free_port
+from tests.short_clips import thinned
 from tests.test_layers import modules_of, requirements_of
 
 DOCUMENTED = [split_ros_arguments(command)[0] for command in documented()]
@@ -124,6 +125,26 @@ def test_of_a_clip_the_robot_says_what_recognize_says_and_needs_no_web_app(
     ]
     assert events[-1]["event"] == "source_ended"
     assert f"{said[0]['label']} (" in error
+
+
+@pytest.mark.slow
+def test_of_a_take_that_nobody_ended_robot_and_recognize_say_the_same(
+    osg_studio: OsgStudio, sample_clips: Path, installed_models: None, tmp_path: Path
+) -> None:
+    clip = thinned(sample_clips / "circle-test-1.mp4", tmp_path / "open.mp4", share=0.6)
+    language = sample_clips.parent / "osg-table-2.json"
+    with running("robot", "--language", language, "--source", clip) as process:
+        out, _ = process.communicate()
+    assert process.returncode == 1
+    said = [json.loads(line) for line in out.splitlines()]
+    (rejected,) = [each for each in said if each["event"].startswith("take_")]
+    recognized = osg_studio("recognize", clip, "--language", language, "--json")
+    assert recognized.code == 1
+    (take,) = json.loads(recognized.out)["takes"]
+    assert (rejected["event"], rejected["closed"]) == ("take_rejected", False)
+    assert (take["label"], take["closed"]) == (None, False)
+    assert take["fault"] == "no second salute ended it"
+    assert (rejected["nearest"], rejected["confidence"]) == (take["nearest"], take["confidence"])
 
 
 @pytest.mark.slow
@@ -272,54 +293,6 @@ def test_a_reader_that_stalls_keeps_no_emergency_from_a_vehicle(
     assert process.returncode == 4
     assert vehicle.obeyed == ["SURFACE"]
     assert f"{stalled} cannot be written" in vehicle.texts
-
-
-@pytest.mark.slow
-def test_sigterm_ends_a_robot_whose_vehicle_does_not_answer(
-    installed_models: None, sample_clips: Path, thin_clip: Callable[[str], Path], tmp_path: Path
-) -> None:
-    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
-    table = tmp_path / "vehicle.toml"
-    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
-    language = sample_clips.parent / "osg-table-2.json"
-    with running(
-        *("robot", "--language", language, "--source", thin_clip("line-test-1")),
-        *("--mavlink", "udpout:127.0.0.1:9", "--vehicle", table),
-    ) as process:
-        until(process, "take_recognized")
-        process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=30)  # it was 60 seconds and more
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
-def test_a_signal_while_the_bridge_closes_ends_the_robot_in_order(
-    installed_models: None,
-    sample_clips: Path,
-    thin_clip: Callable[[str], Path],
-    tmp_path: Path,
-    number: signal.Signals,
-) -> None:
-    """The vehicle denies the emergency, so the bridge goes on with it at the end of the clip."""
-    pytest.importorskip("pymavlink", reason="needs the extra mavlink")
-    from tests.robot.mavlink.vehicle import sailing
-
-    table = tmp_path / "vehicle.toml"
-    table.write_text(EMERGENCY_TABLE.replace("circle", "line"))
-    language = sample_clips.parent / "osg-table-2.json"
-    with (
-        sailing(refused=frozenset({176})) as vehicle,  # MAV_CMD_DO_SET_MODE
-        running(
-            *("robot", "--language", language, "--source", thin_clip("line-test-1")),
-            *("--mavlink", f"udpout:127.0.0.1:{vehicle.port}", "--vehicle", table),
-        ) as process,
-    ):
-        until(process, "source_ended")
-        time.sleep(0.3)
-        process.send_signal(number)
-        _, error = process.communicate(timeout=30)
-    assert process.returncode == 0, error
-    assert "NOT DONE, robot has ended" in error
 
 
 @pytest.mark.slow

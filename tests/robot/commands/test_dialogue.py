@@ -290,13 +290,31 @@ def test_an_emergency_has_a_limit_of_its_own(novelty: float, command: str | None
     assert [made.decide(each, each.stamp).command for each in ordinary] == [None, "photo"]
 
 
+NO_NUMBERS = [math.nan, math.inf, -math.inf, True, "0.9", "1", None, [0.9], 10**400]
+
+
 @pytest.mark.parametrize("field", ["confidence", "novelty", "start", "stamp"])
-def test_a_gesture_with_a_number_that_is_none_commands_nothing(field: str) -> None:
+@pytest.mark.parametrize("number", NO_NUMBERS, ids=lambda number: str(number)[:8])
+def test_a_gesture_with_a_number_that_is_none_commands_nothing(field: str, number: object) -> None:
+    if (field, number) == ("start", None):  # it is not known
+        return
     made = dialogue()
+    missing: dict[str, Any] = {field: number}
     for label in ("line", "circle", "circle"):
-        missing: dict[str, Any] = {field: math.nan}
         broken = replace(shown(label, 1), **missing)
         assert made.decide(broken, 1).command is None
+        assert made.pending is None
+
+
+@pytest.mark.parametrize("field", ["confidence", "start", "stamp"])
+@pytest.mark.parametrize("number", NO_NUMBERS, ids=lambda number: str(number)[:8])
+def test_a_message_with_a_number_that_is_none_commands_nothing(field: str, number: object) -> None:
+    made = CommandDialogue(RULES)
+    made.set_table(replace(TABLE, phrase_labels=frozenset({"circle"})))
+    whole = replace(phrase_of(("peak", "line"), 2), kind="complete", mission="[1]", pair=None)
+    missing: dict[str, Any] = {field: number}
+    for _ in range(2):
+        assert made.decide_phrase(replace(whole, **missing), 2).command is None
         assert made.pending is None
 
 

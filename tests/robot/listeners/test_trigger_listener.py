@@ -116,7 +116,7 @@ def test_an_open_take_is_not_asked_about() -> None:
     (rejected,) = listener.finish()
     assert isinstance(rejected, TakeRejected)
     assert rejected.recognition is not None
-    assert (rejected.recognition.outcome, rejected.pair) == ("pair", None)
+    assert (rejected.recognition.label, rejected.recognition.pair) == (None, None)
 
 
 def test_a_take_that_nobody_ends_is_rejected_when_the_stream_does() -> None:
@@ -129,6 +129,11 @@ def test_a_take_that_nobody_ends_is_rejected_when_the_stream_does() -> None:
     assert (rejected.start, rejected.end, rejected.closed) == (take.start, take.end, False)
     assert rejected.reason == "the stream ended before a second salute"
     assert rejected.nearest == "circle"
+    # Who reads the recording says the same.
+    read = listener.language.recognizer.recognize_take(take)
+    assert rejected.recognition is not None
+    assert rejected.recognition.to_dict() == read.to_dict()
+    assert (read.label, read.nearest, read.fault) == (None, "circle", "no second salute ended it")
     assert len(listener) == 0
 
 

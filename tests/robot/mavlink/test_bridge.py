@@ -240,7 +240,8 @@ def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> Non
         diver.confirm("deep")
         wait_until(lambda: diver.vehicle.asked > 0)
         diver.show("no")
-        assert diver.wait_for("cancelled", "nothing") == "cancelled, but it was sent: depth 5 m"
+        said = diver.wait_for("cancelled", "nothing")
+        assert said.startswith("cancelled: depth 5 m; DO_SET_MODE ALT_HOLD was sent ")
         asked = diver.vehicle.asked
         diver.vehicle.is_slow = False
         wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
@@ -249,7 +250,7 @@ def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> Non
         assert diver.wait_for("cancelled", "nothing") == "nothing to cancel"
     assert diver.vehicle.asked <= asked + 1
     assert diver.vehicle.obeyed == ["ALT_HOLD"]
-    assert "cancelled, but it was sent: depth 5 m" in diver.vehicle.texts
+    assert fit_text(said).decode() in diver.vehicle.texts
 
 
 def test_a_cancel_never_stops_an_emergency() -> None:
@@ -383,7 +384,8 @@ def test_a_refusal_and_silence_are_told_and_not_taken_for_obedience() -> None:
         assert diver.wait_for("refused") == "refused (DENIED): lights 50 %"
         diver.vehicle.loss = 1.0
         diver.confirm("stop")
-        assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+        said = diver.wait_for("NOT DONE")
+        assert said.startswith("NOT DONE, no answer: hold; DO_SET_MODE ALT_HOLD was sent ")
     assert diver.vehicle.obeyed == []
 
 
@@ -476,5 +478,5 @@ def test_the_cancel_of_the_phrases_drops_an_order_unless_it_is_an_emergency(
         assert [line for line in lines if "cancelled" in line] == []
         assert vehicle.obeyed == ["SURFACE"]
     else:
-        assert {"cancelled: hold", "cancelled, but it was sent: hold"} & {*lines}
+        assert [line for line in lines if line.startswith("cancelled: hold")]
         assert vehicle.obeyed == []

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack, closing
+
 import pytest
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
-from tests.robot.mavlink.test_bridge import DONE, diving
+from app.robot import TriggerListener
+from app.robot.commands.answers import PULSES, Answer
+from app.robot.mavlink.bridge import MavlinkBridge
+from app.robot.mavlink.links import open_link
+from app.robot.mavlink.table import VehicleTable
+from app.robot.runtime import build_language_changed
+from tests.api.recordings import recording_of
+from tests.robot.languages import run_listener, spoken
+from tests.robot.mavlink.mavlink2rest import serving
+from tests.robot.mavlink.test_bridge import DONE, TABLE, diving, wait_until
+from tests.robot.mavlink.vehicle import sailing
 
 
 def test_the_showing_after_a_pair_is_obeyed() -> None:
@@ -60,3 +72,48 @@ def test_an_ordinary_command_never_replaces_an_emergency() -> None:
         diver.confirm("free")
         assert diver.wait_for("done") == "done: mode STABILIZE"
     assert diver.vehicle.obeyed == ["SURFACE", "STABILIZE"]
+
+
+@pytest.mark.parametrize("link", ["udp", "tcp", "mavlink2rest"])
+@pytest.mark.parametrize(
+    ("second", "said", "obeyed"),
+    [
+        ("circle", "done: hold", ["ALT_HOLD"]),
+        ("square", "done: depth 5 m", ["ALT_HOLD", "depth 5"]),
+        ("line", "is cancelled", []),
+        ("rounded square", "not understood; begin again", []),
+    ],
+)
+def test_circle_or_square_is_asked_of_the_diver_whose_answer_is_obeyed(
+    link: str, second: str, said: str, obeyed: list[str]
+) -> None:
+    """From the landmarks of a rounded square to the vehicle, over real sockets."""
+    language = spoken("circle", "square", "line")
+    gestures = {"circle": {"do": "hold"}, "square": {"do": "depth", "metres": 5}}
+    changes = {"gestures": gestures, "emergency": {}, "cancel": ["line"]}
+    table = VehicleTable.model_validate({**TABLE, **changes, "answers": {"show": ["lights"]}})
+    first, shown = (
+        run_listener(TriggerListener(language), recording_of("rounded square", *further))
+        for further in ((), (second,))
+    )
+    lines: list[str] = []
+    with sailing(kind="tcpin" if link == "tcp" else "udpin") as vehicle, ExitStack() as opened:
+        address = {
+            "udp": f"udpout:127.0.0.1:{vehicle.port}",
+            "tcp": f"tcp:127.0.0.1:{vehicle.port}",
+        }.get(link) or opened.enter_context(serving(vehicle.port))
+        bridge = MavlinkBridge(table, open_link(address, 1, 1), lambda: language, lines.append)
+        with closing(bridge):
+            wait_until(lambda: bool(vehicle.reports) and bridge._servo.function == 0)
+            bridge.publish(build_language_changed(0.0, language))
+            for event in first:
+                bridge.publish(event)
+            wait_until(lambda: len(vehicle.shown) == 2 * PULSES[Answer.one_of_two])
+            wait_until(lambda: bridge.has_answered)
+            assert any(line.endswith("? show it again") for line in lines)
+            assert [each for each in vehicle.obeyed if not each.startswith("servo")] == []
+            for event in shown[len(first) :]:
+                bridge.publish(event)
+            wait_until(lambda: any(said in line for line in lines))
+    assert [each for each in vehicle.obeyed if not each.startswith("servo")] == obeyed
+    assert "circle or square? show it again" in vehicle.texts

@@ -46,7 +46,7 @@ def begun(*actions: Action, emergency: bool = False) -> OrderDesk:
     """Return a desk whose order was sent once."""
     desk = OrderDesk(VEHICLE)
     desk.give(order(*actions, emergency=emergency), 0.0)
-    assert len(desk.list_due(0.0)) == 1
+    assert desk.list_due(0.0)[0].get_type() == "COMMAND_LONG"
     return desk
 
 
@@ -88,7 +88,7 @@ def test_a_camera_is_proven_by_its_own_answer_alone() -> None:
 def test_a_depth_is_proven_by_the_vehicles_target() -> None:
     desk = begun(Depth(do="depth", metres=5.0))
     assert kinds(desk, answer(), heartbeat(HOLD)) == []
-    (sent,) = desk.list_due(1.0)
+    sent = desk.list_due(1.0)[0]
     assert (sent.get_type(), sent.alt) == ("SET_POSITION_TARGET_GLOBAL_INT", -5.0)
     shown = from_vehicle(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -2.0, 0))
     away = from_vehicle(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, -1, 0, 0))
@@ -102,12 +102,15 @@ def test_it_is_repeated_until_it_is_given_up() -> None:
     assert desk.list_due(0.4) == ()
     # Nothing is repeated to a vehicle that says nothing: it would obey all of it later.
     assert desk.list_due(0.5) == ()
+    # What was on its way before the vehicle could answer is no sign that the request was lost.
+    desk.hear(heartbeat(0), 0.4)
+    assert desk.list_due(0.5) == ()
     desk.hear(heartbeat(0), 0.5)
     assert [message.confirmation for message in desk.list_due(0.5)] == [1]
     assert desk.check_deadline(10.0) is None
     ended = desk.check_deadline(10.1)
     assert isinstance(ended, Outcome)
-    assert ended.kind == "unanswered"
+    assert (ended.kind, ended.sent) == ("unanswered", "DO_SET_MODE ALT_HOLD was sent 2 times")
     assert desk.list_due(10.2) == ()
 
 
@@ -144,8 +147,14 @@ def test_a_newer_order_replaces_the_one_on_its_way() -> None:
     assert replaced is not None
     assert replaced.kind == "replaced"
     assert desk.list_due(1.0)[0].param2 == SURFACE
-    assert desk.check_deadline(60.9) is None
-    assert desk.check_deadline(61.1) is not None
+    # An emergency counts heard seconds: a lost link uses up none.
+    desk.hear(heartbeat(0), 1.0)
+    assert desk.check_deadline(601.0) is None
+    for second in range(602, 659):
+        desk.hear(heartbeat(0), second)
+        assert desk.check_deadline(second) is None
+    desk.hear(heartbeat(0), 661)
+    assert desk.check_deadline(661) is not None
 
 
 @pytest.mark.parametrize("is_cancelled", [False, True])
@@ -190,4 +199,40 @@ def test_of_a_cancelled_order_it_is_said_whether_the_vehicle_may_have_got_it() -
     desk = OrderDesk(VEHICLE)
     desk.give(order(Hold()), 0.0)
     assert desk.cancel() == Outcome(order(Hold()), "cancelled")
-    assert begun(Hold()).cancel() == Outcome(order(Hold()), "cancelled", "but it was sent")
+    sent = "DO_SET_MODE ALT_HOLD was sent once"
+    assert begun(Hold()).cancel() == Outcome(order(Hold()), "cancelled", sent=sent)
+    stopped = begun(Hold()).stop("robot is stopped")
+    assert stopped == Outcome(order(Hold()), "stopped", "robot is stopped", sent)
+
+
+def test_an_emergency_is_repeated_for_five_seconds_though_nothing_is_heard() -> None:
+    desk = begun(Surface(), emergency=True)
+    sent = [second for tick in range(1, 1200) if desk.list_due(second := tick / 2)]
+    assert sent == [tick / 2 for tick in range(1, 11)]
+    desk.hear(heartbeat(mavlink.SUB_MODE_MANUAL), 600.0)
+    assert len(desk.list_due(600.0)) == 1
+
+
+VERSIONS = [(4, 0, 3), (4, 1, 2), (4, 5, 3), (4, 6, 0)]
+
+
+@pytest.mark.parametrize("version", [None, *VERSIONS])
+def test_a_depth_is_sent_as_the_vehicles_version_takes_it(
+    version: tuple[int, int, int] | None,
+) -> None:
+    desk = OrderDesk(VEHICLE)
+    desk.give(order(Depth(do="depth", metres=5.0)), 0.0)
+    asked = [message.get_type() for message in desk.list_due(0.0)]
+    assert asked == ["COMMAND_LONG", "AUTOPILOT_VERSION_REQUEST"]
+    if version is not None:
+        major, minor, patch = version
+        number = major << 24 | minor << 16 | patch << 8
+        rest = (number, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
+        assert kinds(desk, from_vehicle(mavlink.MAVLink_autopilot_version_message(0, *rest))) == []
+    assert kinds(desk, answer(), heartbeat(HOLD)) == []
+    sent, *questions = desk.list_due(1.0)
+    assert bool(questions) == (version is None)
+    ignored = sent.type_mask & 7
+    assert ignored == (0 if version in ((4, 0, 3), (4, 1, 2)) else 3)
+    # In any mode but ALT_HOLD the vehicle drops a target at a latitude that there is not.
+    assert sent.lat_int > 90e7

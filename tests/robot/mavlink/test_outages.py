@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import math
 import time
 from contextlib import closing
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Literal
 
@@ -17,7 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot import SourceEnded
 from app.robot.commands.answers import Answer
 from app.robot.mavlink import answers
-from app.robot.mavlink.actions import CommandStep
+from app.robot.mavlink.actions import CommandStep, LightsServo
 from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
@@ -88,13 +90,13 @@ class Dive:
         while self.value == BEFORE[self.shown]:
             self.wait(STEP)
 
-    def order(self) -> int:
+    def order(self, value: float = 1400.0) -> int:
         """Give an order for the same output, whose messages are lost; return its command."""
         command: int = {
             "lights": mavlink.MAV_CMD_DO_SET_SERVO,
             "tilt": mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW,
         }[self.shown]
-        self.obey(*self.desk.hand_over(CommandStep(command, (13.0, 1400.0), 1, 1), self.now))
+        self.obey(*self.desk.hand_over(CommandStep(command, (13.0, value), 1, 1), self.now))
         return command
 
 
@@ -116,7 +118,8 @@ def test_what_was_before_a_pattern_is_restored_after_any_outage(
     dive.wait(seconds)
     assert dive.value != BEFORE[shown]
     dive.linked = True
-    dive.wait(0.5 if state != "order" else 11)
+    # An order has its ten seconds, heard or not, before the value before it is restored.
+    dive.wait(0.5 if state != "order" or seconds > 10 else 6)
     assert dive.value == BEFORE[shown]
     dive.wait(5)
     assert dive.value == BEFORE[shown]
@@ -140,6 +143,7 @@ def test_what_the_pilot_sets_during_an_outage_stays(shown: Shown, seconds: float
 @pytest.mark.parametrize("ends", ["alone", "cancel", "stop"])
 def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -> None:
     changes = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 1}}
+    sent = "hold; DO_SET_MODE ALT_HOLD was sent once"
     with diving(changes=changes) as diver:
         wait_until(lambda: diver.bridge._desk._mode is not None)
         diver.vehicle.hangs = True
@@ -149,13 +153,12 @@ def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -
         time.sleep(0.5)
         if ends == "cancel":
             diver.show("no")
-            assert diver.wait_for("cancelled") == "cancelled, but it was sent: hold"
+            assert diver.wait_for("cancelled") == f"cancelled: {sent}"
         elif ends == "stop":
             diver.bridge.publish(SourceEnded(diver.time, 100, 0, True))
-            said = diver.wait_for("NOT DONE")
-            assert said == "NOT DONE, robot is stopped, but it was sent: hold"
+            assert diver.wait_for("NOT DONE") == f"NOT DONE, robot is stopped: {sent}"
         else:
-            assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+            assert diver.wait_for("NOT DONE") == f"NOT DONE, no answer: {sent}"
         diver.vehicle.hangs = False
         assert diver.wait_for("done") == "done after all: hold"
         assert diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD
@@ -172,6 +175,15 @@ def test_an_order_in_a_pulse_is_not_proven_by_the_answers_to_the_pulse(shown: Sh
     # Of the pulse, of what restores the value before it, of the order.
     heard = [dive.desk.hear(answer, dive.now) for _ in range(3)]
     assert heard == [True, True, False]
+
+
+def test_a_lost_order_for_the_value_of_a_pulse_ends_no_later_pattern() -> None:
+    dive = Dive("lights")
+    dive.order(1100.0)
+    dive.wait(12)
+    dive.begin_pulse()
+    dive.wait(10)
+    assert dive.value == 1800
 
 
 def test_nothing_is_set_while_nothing_is_reported() -> None:
@@ -235,6 +247,14 @@ def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
     assert diver.vehicle.obeyed == []
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_a_function_that_is_no_number_is_unknown_and_ends_nothing(value: float) -> None:
+    servo = LightsServo(Vehicle())
+    kind = mavlink.MAV_PARAM_TYPE_INT16
+    servo.hear(mavlink.MAVLink_param_value_message(b"SERVO13_FUNCTION", value, kind, 900, 77))
+    assert servo.obstacle == "function of output 13 unknown"
+
+
 def test_a_pilot_sets_lights_a_little_less_bright_than_the_pulse() -> None:
     dive = Dive("lights")
     dive.value = 1100.0
@@ -265,3 +285,18 @@ def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_pat
         diver.show(None)
         assert "cannot be written" in diver.wait_for(str(tmp_path))
         wait_until(lambda: len(diver.vehicle.shown) == 2)
+
+
+def test_every_limit_says_which_seconds_it_counts() -> None:
+    limits = {}
+    for file in Path(answers.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(node, ast.Module | ast.ClassDef):
+                continue
+            for limit, text in pairwise([*node.body, ast.Pass()]):
+                target = limit.target if isinstance(limit, ast.AnnAssign) else None
+                if isinstance(target, ast.Name) and target.id.endswith("_SECONDS"):
+                    said = ast.unparse(text).lstrip("'\"")
+                    limits[target.id] = said.startswith(("Seconds", "Heard seconds"))
+    assert len(limits) > 20
+    assert [name for name, says in limits.items() if not says] == []

@@ -44,6 +44,31 @@ def test_a_signed_vehicle_is_obeyed_and_an_unsigned_one_is_not_heard(tmp_path: A
             assert (link.dropped > 0) == (key != KEY)
 
 
+@pytest.mark.parametrize("seconds", [3600, -3600])
+def test_a_clock_that_is_set_an_hour_during_the_dive_changes_nothing(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seconds: float
+) -> None:
+    """The system's clock of robot and vehicle steps between an order, and during an emergency."""
+    table, real = VehicleTable.model_validate(TABLE), time.time
+    with sailing(key=KEY) as vehicle:
+        address = f"udpout:127.0.0.1:{vehicle.port}"
+        diver = Diver(vehicle, "", table, open_link(address, 1, 1, KEY, tmp_path / "time"))
+        with closing(diver.bridge):
+            diver.confirm("stop")
+            assert diver.wait_for("done", "NOT DONE") == "done: hold"
+            vehicle.is_slow = True
+            diver.show("help")
+            wait_until(lambda: vehicle.asked > 1)
+            monkeypatch.setattr(time, "time", lambda: real() + seconds)
+            time.sleep(0.2)
+            vehicle.is_slow = False
+            assert diver.wait_for("done", "NOT DONE") == "done: surface"
+            diver.confirm("free")
+            assert diver.wait_for("done", "NOT DONE") == "done: mode STABILIZE"
+            assert not [line for line in list(diver.lines.queue) if "silent" in line]
+    assert vehicle.obeyed == ["ALT_HOLD", "SURFACE", "STABILIZE"]
+
+
 @pytest.mark.parametrize("seconds", [3600, 40 * 86400])
 def test_a_vehicle_hears_a_signed_robot_that_starts_again_with_an_earlier_clock(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seconds: float
@@ -115,7 +140,7 @@ def test_a_vehicle_that_rejects_our_signature_is_named() -> None:
         signing = create_signing(KEY)
         vehicle.send_always(lambda: [packed(beat(), signing=signing)], 0.02)
         diver.confirm("stop")
-        assert diver.wait_for("NOT DONE") == "NOT DONE, no answer: hold"
+        assert diver.wait_for("NOT DONE").startswith("NOT DONE, no answer: hold; ")
         assert diver.wait_for("the vehicle rejects our signature") == bridge.SIGNATURE_REJECTED
         wait_until(lambda: bridge.SIGNATURE_REJECTED in vehicle.texts)
 

@@ -51,6 +51,12 @@ def read(tmp_path: Path, text: str) -> VehicleTable:
         ('[gestures]\na = { do = "hold" }\n[emergency]\na = "hold"', "['a'] have two meanings"),
         ('cancel = ["a"]\n[gestures]\na = { do = "hold" }', "['a'] have two meanings"),
         ('[gestures]\na = { do = "hold" }\n[vehicle]\nsystem = 256', "vehicle.system"),
+        ('confirm_seconds = "20"\n[emergency]\na = "hold"', "confirm_seconds"),
+        ('least_confidence = true\n[emergency]\na = "hold"', "least_confidence"),
+        ('stale_seconds = inf\n[emergency]\na = "hold"', "stale_seconds"),
+        ('emergency_confidence = nan\n[emergency]\na = "hold"', "emergency_confidence"),
+        ('[gestures]\na = { do = "depth", metres = true }', "gestures.a.depth.metres"),
+        ('[gestures]\na = { do = "lights", percent = "80" }', "gestures.a.lights.percent"),
         ('confirmed = false\n[gestures]\na = { do = "hold" }', "confirmed: Extra inputs"),
     ],
 )
@@ -94,7 +100,7 @@ def test_emergencies_are_actions_that_need_no_repetition(tmp_path: Path) -> None
     assert table.rules.confirmed
 
 
-@pytest.mark.parametrize("shown", [None, "deep", 0, -1, 31, [5], "nan"])
+@pytest.mark.parametrize("shown", [None, "deep", 0, -1, 31, [5], "nan", True, "inf", 10**400])
 def test_a_depth_that_is_none_is_not_gone_to(tmp_path: Path, shown: object) -> None:
     table = read(tmp_path, '[phrases]\ngo = { do = "depth", metres = { slot = "m" } }')
     with pytest.raises(VehicleError, match="no depth"):

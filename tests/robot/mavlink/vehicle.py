@@ -1,4 +1,8 @@
-"""A vehicle like ArduSub, by pymavlink's connections: obeys, refuses, loses packets, restarts."""
+"""A vehicle like ArduSub, by pymavlink's connections: obeys, refuses, loses packets, restarts.
+
+It obeys what ArduSub's source obeys and nothing else. Each rule names the file of
+https://github.com/ArduPilot/ardupilot with the commit or branch and the lines, or the function.
+"""
 
 from __future__ import annotations
 
@@ -21,6 +25,17 @@ SYSTEM, COMPONENT = 1, 1
 BEAT_SECONDS = 0.01
 DEPTH = 1.0
 MODES: dict[int, str] = mavutil.mode_mapping_sub
+NEEDS_POSITION = ("AUTO", "GUIDED", "CIRCLE", "POSHOLD")
+"""Modes that need a position: `requires_GPS` in ArduSub/mode.h, as asked in ArduSub/mode.cpp at
+00d5b0f84fc2, lines 88-93. Before pull request 29996 SURFACE needed one as well."""
+
+FREE_OUTPUTS = (0, 1, *range(51, 67))
+"""Functions of outputs that a command may set: none, manual, and the 16 inputs passed through.
+libraries/AP_ServoRelayEvents/AP_ServoRelayEvents.cpp at 13c39969d86c, `do_set_servo`, lines 35-44;
+the numbers are those of libraries/SRV_Channel/SRV_Channel.h. `Lights1` (181) is none of them."""
+
+X_OR_Y_OR_Z_IGNORED, Z_IGNORED = 0b111, 0b100
+"""`MAVLINK_SET_POS_TYPE_MASK_POS_IGNORE` and `..._Z_IGNORE` in ArduSub/defines.h."""
 
 
 @dataclass
@@ -41,6 +56,10 @@ class Ardusub:
         Number of requests received.
     texts
         Texts that it was shown.
+    version
+        Of its ArduSub: major, minor, patch.
+    has_position
+        Whether it knows its position, as by a DVL.
     restarts_at_next
         Whether the next command makes it restart instead of being answered.
     vehicle_type, autopilot
@@ -75,6 +94,8 @@ class Ardusub:
     obeyed: list[str] = field(default_factory=list)
     asked: int = 0
     texts: list[str] = field(default_factory=list)
+    version: tuple[int, int, int] = (4, 7, 0)
+    has_position: bool = False
     restarts_at_next: bool = False
     vehicle_type: int = mavlink.MAV_TYPE_SUBMARINE
     autopilot: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
@@ -92,6 +113,11 @@ class Ardusub:
 
     def __post_init__(self) -> None:
         self._chance = random.Random(self.seed)
+        self._accepted: int | None = None
+        self._boot()
+        self._connect()
+
+    def _connect(self) -> None:
         kind, _, port = self.kind.partition(":")
         self._connection: Any = mavutil.mavlink_connection(
             f"{kind}:127.0.0.1:{port or 0}", source_system=SYSTEM, source_component=COMPONENT
@@ -101,8 +127,6 @@ class Ardusub:
         if self.key is not None:
             self._connection.setup_signing(self.key, sign_outgoing=True)
         self._closing = threading.Event()
-        self._accepted: int | None = None
-        self._boot()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -115,7 +139,10 @@ class Ardusub:
     @property
     def uptime(self) -> float:
         """Seconds since its start."""
-        return clock.monotonic() - self._began
+        return self._now() - self._began
+
+    def _now(self) -> float:
+        return clock.monotonic()
 
     def _boot(self) -> None:
         self.mode: int = mavlink.SUB_MODE_MANUAL
@@ -123,7 +150,7 @@ class Ardusub:
         self.pulse = self.lights
         self.pitch = 0.0
         self._picture = 0.0
-        self._began = clock.monotonic() - 10
+        self._began = self._now() - 10
 
     def _run(self) -> None:
         beat = 0.0
@@ -179,7 +206,7 @@ class Ardusub:
         pulse = min(pulse, self.brightest)
         if self.pulse != pulse:
             self.pulse = pulse
-            self.shown.append((clock.monotonic(), "lights", pulse))
+            self.shown.append((self._now(), "lights", pulse))
 
     def _hear(self, message: Any) -> None:
         match message.get_type():
@@ -194,15 +221,37 @@ class Ardusub:
                 self._send(mavlink.MAVLink_param_value_message(name, self.function, kind, 900, 77))
             case "SET_POSITION_TARGET_GLOBAL_INT":
                 self.asked += 1
-                if self.mode == mavlink.SUB_MODE_ALT_HOLD and self.target != message.alt:
-                    self.target = message.alt
-                    self.obeyed.append(f"depth {-message.alt:g}")
+                self._hear_target(message)
+            case "AUTOPILOT_VERSION_REQUEST":
+                # libraries/GCS_MAVLink/GCS_Common.cpp, `handle_send_autopilot_version`.
+                major, minor, patch = self.version
+                number = major << 24 | minor << 16 | patch << 8 | 255
+                rest = ([0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
+                self._send(mavlink.MAVLink_autopilot_version_message(0, number, 0, 0, 0, *rest))
+
+    def _hear_target(self, message: Any) -> None:
+        """Take a depth in ALT_HOLD; in all other modes a target needs a place on Earth.
+
+        Sub-4.0, ArduSub/GCS_Mavlink.cpp, lines 657-717: none of X, Y and Z may be ignored. From
+        4.5 on, ArduSub/GCS_MAVLink_Sub.cpp, `SET_POSITION_TARGET_GLOBAL_INT`: only Z counts.
+        """
+        refusing = X_OR_Y_OR_Z_IGNORED if self.version < (4, 5, 0) else Z_IGNORED
+        if self.mode == mavlink.SUB_MODE_ALT_HOLD:
+            if not message.type_mask & refusing and self.target != message.alt:
+                self.target = message.alt
+                self.obeyed.append(f"depth {-message.alt:g}")
+            return
+        # `check_latlng`, libraries/AP_Math/location.cpp.
+        is_place = abs(message.lat_int) <= 90e7 and abs(message.lon_int) <= 180e7
+        takes = self.mode == mavlink.SUB_MODE_GUIDED and not message.type_mask & X_OR_Y_OR_Z_IGNORED
+        if takes and is_place:
+            self.obeyed.append(f"swims to {message.lat_int}, {message.lon_int}")
 
     def _hear_command(self, message: Any) -> None:
         if self.restarts_at_next:
             self.restarts_at_next = False
             self._boot()
-            self._began = clock.monotonic()
+            self._began = self._now()
             return
         if message.command in self.refused:
             result = mavlink.MAV_RESULT_DENIED
@@ -214,22 +263,36 @@ class Ardusub:
         asker = (message.get_srcSystem(), message.get_srcComponent())
         self._send(mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *asker))
 
+    def _set_mode(self, message: Any) -> int:
+        # libraries/GCS_MAVLink/GCS_Common.cpp, `_set_mode_common`: custom modes alone.
+        if not int(message.param1) & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
+            return int(mavlink.MAV_RESULT_DENIED)
+        # ArduSub/mode.cpp at 00d5b0f84fc2, `Sub::set_mode`, lines 82-93.
+        name = MODES.get(int(message.param2))
+        older = (4, 5, 0) <= self.version < (4, 7, 0)
+        needs = name in NEEDS_POSITION or (name == "SURFACE" and older)
+        if name is None or (needs and not self.has_position):
+            return int(mavlink.MAV_RESULT_FAILED)
+        self._accepted = int(message.param2)
+        if not self.is_slow:
+            self._take_mode(self._accepted)
+        return int(mavlink.MAV_RESULT_ACCEPTED)
+
     def _obey(self, message: Any) -> int:
         done = ""
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
-            if int(message.param2) not in MODES:
+            return self._set_mode(message)
+        if message.command == mavlink.MAV_CMD_DO_SET_SERVO:
+            # libraries/GCS_MAVLink/GCS_ServoRelay.cpp at 0a9d1f1fb365, lines 12-19.
+            if message.param1 != self.servo or self.function not in (None, *FREE_OUTPUTS):
                 return int(mavlink.MAV_RESULT_FAILED)
-            self._accepted = int(message.param2)
-            if not self.is_slow:
-                self._take_mode(self._accepted)
-        elif message.command == mavlink.MAV_CMD_DO_SET_SERVO:
             done = f"servo {message.param1:g} {message.param2:g}"
             done = "" if self.pulse == message.param2 else done
             self.turn_lights(message.param2)
         elif message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
             if self.pitch != message.param1:
                 self.pitch = message.param1
-                self.shown.append((clock.monotonic(), "tilt", message.param1))
+                self.shown.append((self._now(), "tilt", message.param1))
         elif message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self.reports.add(int(message.param1))
         elif message.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
