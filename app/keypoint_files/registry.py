@@ -21,6 +21,7 @@ Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
 
 READERS: Mapping[str, Reader] = {
     ".csv": read_mediapipe_table,
+    ".tsv": read_mediapipe_table,
     ".json": read_mediapipe_json,
     ".slp": read_sleap,
     ".h5": read_sleap,
@@ -60,7 +61,7 @@ def find_reader(path: Path) -> Reader:
     return reader
 
 
-Ending = Literal[".csv", ".json", ".slp", ".h5", ".pose", ".zip"]
+Ending = Literal[".csv", ".tsv", ".json", ".slp", ".h5", ".pose", ".zip"]
 """Endings by which `app.keypoint_files.read_keypoints` chooses the reader; an archive holds a
 folder of OpenPose."""
 
@@ -82,5 +83,5 @@ def keypoint_ending(head: bytes, name: str) -> Ending | None:
     if head.startswith(_HDF5):
         return ".slp" if lower.endswith(".slp") else ".h5"
     named = next((ending for ending in get_args(Ending) if lower.endswith(ending)), None)
-    is_text = b"\0" not in head or (named == ".csv" and is_utf16(head))
-    return named if named in (".csv", ".json") and is_text else None
+    is_text = b"\0" not in head or (named in (".csv", ".tsv") and is_utf16(head))
+    return named if named in (".csv", ".tsv", ".json") and is_text else None
