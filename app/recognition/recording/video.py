@@ -26,7 +26,7 @@ from typing_extensions import Self
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.file_kinds import find_file_kind
-from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
+from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
 __all__ = [
@@ -225,7 +225,7 @@ class FrameReader(Iterator[VideoFrame]):
         """Problems of the frames read so far, as sentences."""
         found = []
         read = f"{self._count} of {self.info.frames or 'an unknown number of'} frames were read"
-        stated = self.info.duration or 0.0
+        stated = (self.info.duration or 0.0) - sum(self._clock.jumps)
         if self._broken or self._faults:
             found.append(f"the clip is damaged: {read}, {self._faults} pieces of data were not")
         elif self._ended and stated - self._time > max(MISSING_SECONDS, MISSING_SHARE * stated):
@@ -238,7 +238,7 @@ class FrameReader(Iterator[VideoFrame]):
                 f"{self._clock.repaired} of {self._count} frames had no usable timestamp; "
                 "their time is estimated"
             )
-        return tuple(found)
+        return (*found, *tell_jumps(self._clock.jumps))
 
     def _check_statement(self) -> None:
         """Check the limits against the metadata, before decoding."""
