@@ -1,6 +1,7 @@
 """Clip sources: the kinds of files and folders that clips are made of, one module each."""
 
 from app.clip_sources.registry import (
+    COPIES,
     SOURCES,
     VIDEO,
     is_take,
@@ -21,6 +22,7 @@ from app.clip_sources.source import (
 )
 
 __all__ = [
+    "COPIES",
     "SOURCES",
     "VIDEO",
     "ClipFacts",

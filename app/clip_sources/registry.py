@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 from app.clip_sources.bag import BagSource
 from app.clip_sources.keypoint_file import KeypointFileSource
@@ -16,6 +17,10 @@ VIDEO = VideoSource()
 
 SOURCES: tuple[ClipSource, ...] = (VIDEO, BagSource(), KeypointFileSource())
 """All kinds of files that become clips, in the order in which they are tried."""
+
+
+COPIES: Final = frozenset({".lrv", ".lrf", ".part", ".crdownload"})
+"""Endings of copies, which are read only by name."""
 
 
 def source_named(name: str) -> ClipSource:
@@ -53,8 +58,11 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
 
 
 def is_take(path: Path) -> bool:
-    """Return whether `path`, in a folder of labelled takes, is a take."""
-    return any(source.is_take(path) for source in SOURCES)
+    """Return whether `path`, in a folder of takes, is one, and no copy of one.
+
+    Cameras write a small copy beside a clip (``.LRV``), browsers one that is not yet complete.
+    """
+    return path.suffix.lower() not in COPIES and any(source.is_take(path) for source in SOURCES)
 
 
 def supported_kinds(kind: FileKind | None = None) -> str:

@@ -117,7 +117,9 @@ def _load(path: Path) -> Any:
     except json.JSONDecodeError as error:
         if not content.strip():
             raise KeypointFileError(f"{path} is empty; write it again") from error
-        if error.pos >= len(error.doc.rstrip()) or error.doc.rstrip()[-1] not in "]}":
+        text = error.doc.strip()
+        cut = text[-1] not in "]}" or error.pos >= len(error.doc.rstrip())
+        if cut and text[0] in "[{":
             raise KeypointFileError(
                 f"{path} breaks off at byte {size}, as where a program was stopped while it wrote; "
                 "write it again to its end"

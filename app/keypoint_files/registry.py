@@ -14,6 +14,7 @@ from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.pose_format import BEGINNINGS, read_pose_format
 from app.keypoint_files.sleap import read_sleap
 from app.recognition.errors import KeypointFileError
+from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.strict_json import is_utf16
 
@@ -56,6 +57,10 @@ def find_reader(path: Path) -> Reader:
             f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
             f"folders of OpenPose"
         )
+    with path.open("rb") as file:
+        kind = find_file_kind(file.read(HEAD_BYTES))
+    if kind is not None:
+        raise KeypointFileError(f"{path} is {kind.name} and no keypoint file; {kind.remedy}")
     if reader is read_mediapipe_table and is_deeplabcut(path):
         return read_deeplabcut
     return reader
