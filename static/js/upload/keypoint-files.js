@@ -4,9 +4,9 @@ import { ask } from "../core/dialogs.js";
 
 const HEAD = 65536; // bytes at the beginning of a file, which show its kind.
 
-// A list, or an object with a list of frames, of people (MMPose, COCO) or of their images.
-const LISTS =
-  /^\s*(\[|\{[^]*?"(frames|poses|data|results|instance_info|annotations|images|categories)"\s*:\s*\[)/;
+// Keys of a list of frames, of people (MMPose, COCO) or of their images.
+const KEYS = "frames|poses|data|results|instance_info|annotations|images|categories";
+const LISTS = new RegExp(`^\\s*(\\[|\\{[^]*?"(${KEYS})"\\s*:\\s*\\[)`);
 
 /**
  * The kind of a .json file: "language", "keypoints", or "frame", one frame of OpenPose.
