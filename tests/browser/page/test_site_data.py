@@ -20,7 +20,7 @@ STORES = {
     "all refused": REFUSED % "['localStorage', 'sessionStorage', 'indexedDB']",
     "one refused": REFUSED % "['sessionStorage']",
     "absent": "Object.defineProperty(window, 'localStorage', { get: () => null });",
-    "full": "Storage.prototype.setItem = () => { throw new DOMException('', 'QuotaExceededError') }",
+    "full": "Storage.prototype.setItem = () => { throw new DOMException('', 'QuotaExceeded') }",
 }
 
 
