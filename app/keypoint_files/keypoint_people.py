@@ -15,11 +15,12 @@ from app.keypoint_files.keypoint_table import (
     KeypointOptions,
     KeypointTable,
     Times,
+    hands_of,
     mask_unseen,
     visibility_of,
 )
 from app.recognition.errors import KeypointFileError
-from app.recognition.poses.frame import SIDES, Hand, Side
+from app.recognition.poses.frame import Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import (
@@ -65,18 +66,16 @@ class Person:
         return float(visibility_of(self.points).mean())
 
     def find_hands(self, kind: KeypointSet) -> tuple[Hand, ...]:
-        """Return the hands of which all keypoints are seen, which a salute needs, larger first."""
-        found = []
-        for side in SIDES:
-            points = self.hands.get(side)
-            if points is None and side in kind.hands:
-                points = self.points[kind.hands[side] :][: len(HAND_LANDMARKS)]
-            if points is None or len(points) != len(HAND_LANDMARKS):
-                continue
-            scores = visibility_of(points)
-            if np.isfinite(mask_unseen(points[:, :2], scores, 0.0)).all() and np.ptp(points[:, :2]):
-                found.append(Hand(points[:, :2], side, float(scores.mean())))
-        return tuple(sorted(found, key=lambda hand: -hand.size))
+        """Return the hands of which all keypoints are seen, larger first."""
+        within = {side: self.points[first:] for side, first in kind.hands.items()}
+        found = {
+            side: points[: len(HAND_LANDMARKS)] for side, points in {**within, **self.hands}.items()
+        }
+        whole = [side for side, points in found.items() if len(points) == len(HAND_LANDMARKS)]
+        if not whole:
+            return ()
+        hands = hands_of(np.concatenate([found[side] for side in whole])[None], whole)
+        return () if hands is None else hands[0]
 
 
 def name_points(

@@ -200,11 +200,11 @@ class KeypointTable:
 
         """
         known = np.abs(self.xy[np.isfinite(self.xy)])
-        limit = np.array(size or (0, 0)) * LARGEST_FRACTION
-        if self.in_fractions:
-            limit = np.array([LARGEST_FRACTION] * 2)
-        elif size is None and len(known):
-            limit = np.array([max(LARGEST_PICTURE, FAR * float(np.median(known)))] * 2)
+        if not len(known):
+            return self
+        limit = max(LARGEST_PICTURE, FAR * float(np.median(known)))
+        if self.in_fractions or size is not None:
+            limit = LARGEST_FRACTION * (1 if self.in_fractions or size is None else max(size))
         beyond = np.abs(self.xy) > limit
         far = beyond[..., 0] | beyond[..., 1]
         if not far.any():
@@ -241,29 +241,32 @@ def visibility_of(points: FloatArray) -> FloatArray:
 
 
 def hands_of(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...], ...] | None:
-    """Return the hands of each frame of which all points are seen.
+    """Return the hands of each frame of which all points are seen, as a salute needs them.
 
     Parameters
     ----------
     points
-        ``(T, 21 * len(sides), 2)``; NaN, or all at 0, 0: not seen.
+        ``(T, 21 * len(sides), 3)`` x, y and score, see `visibility_of`.
     sides
         Side of each hand.
 
     Returns
     -------
-    T tuples, or None if no hand is seen in any frame.
+    T tuples, the larger hand first, or None if no hand is seen in any frame.
 
     """
-    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 2)
-    seen = np.isfinite(groups).all(axis=(2, 3)) & (groups != 0).any(axis=(2, 3))
+    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 3)
+    scores = visibility_of(groups)
+    xy = mask_unseen(groups[..., :2], scores, 0.0)
+    seen = np.isfinite(xy).all(axis=(2, 3)) & (np.ptp(xy, axis=2) > 0).any(axis=2)
     if not seen.any():
         return None
-    return tuple(
-        tuple(
-            Hand(groups[row, place], side, 1.0)
+    frames = (
+        [
+            Hand(xy[row, place], side, float(scores[row, place].mean()))
             for place, side in enumerate(sides)
             if seen[row, place]
-        )
+        ]
         for row in range(len(groups))
     )
+    return tuple(tuple(sorted(hands, key=lambda hand: -hand.size)) for hands in frames)

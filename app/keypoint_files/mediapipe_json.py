@@ -15,7 +15,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
@@ -59,8 +59,12 @@ HANDS: Final = ("{side}HandLandmarks", "{side}_hand_landmarks", "{side}_hand", "
 ORDER: Final = ("x", "y", "z", "v")
 """Order of the numbers in a landmark that is a list; three numbers are x, y and z."""
 
-DEEP: Final = re.compile("3d|world|position", re.IGNORECASE)
-"""Keys of places in space, as Azure Kinect's ``joint_positions``, in which there is no picture."""
+DEEP: Final = re.compile(r'("\w*(?:3d|world|position)\w*"):', re.IGNORECASE)
+"""Keys of places in space, as Azure Kinect's ``joint_positions``."""
+
+IN_SPACE: Final = (
+    "holds places in space, 3D and not of a picture; write the keypoints of the picture, in pixels"
+)
 
 
 def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimits) -> KeypointTable:
@@ -84,14 +88,12 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
             "landmarks with x and y, or the results of MMPose, AlphaPose or COCO"
         ) from error
     if not names or len(names) > MOST_LANDMARKS:
-        key = next((key for key in _keys(frames[:1]) if not names and DEEP.search(key)), None)
-        what = f"{len(names)} landmarks in {len(frames)} frames"
+        key = DEEP.search(json.dumps(frames[:100]))
+        if key and not names:
+            raise KeypointFileError(f"{path}: {key[1]} {IN_SPACE}")
         raise KeypointFileError(
-            f"{path} holds {what}; expected up to {MOST_LANDMARKS}, as in MediaPipe's "
-            "pose_landmarks"
-            if key is None
-            else f"{path} holds places in space ({key}), 3D and not of a picture; write the "
-            "keypoints of the picture, in pixels"
+            f"{path} holds {len(names)} landmarks in {len(frames)} frames; expected up to "
+            f"{MOST_LANDMARKS}, as in MediaPipe's pose_landmarks"
         )
     people = [
         [
@@ -161,17 +163,6 @@ def _about(content: Any) -> tuple[KeypointOptions, str, tuple[str, ...]]:
     return options, str(meta.get("dataset_name", "")), tuple(map(str, named))
 
 
-def _keys(content: Any) -> Iterator[str]:
-    """Return the keys in the first entries of nested content."""
-    while isinstance(content, list | Mapping) and content:
-        if isinstance(content, Mapping):
-            yield from map(str, content)
-            lists = [each for each in content.values() if isinstance(each, list | Mapping)]
-            content = lists[0] if lists else None
-        else:
-            content = content[0]
-
-
 def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
     """Return the names, else the numbers, and ``(N, 3)`` x, y and visibility of a person.
 
@@ -199,10 +190,7 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
     points = np.array([_point(each) for each in values], dtype=np.float64).reshape(-1, 3)
     if isinstance(frame, Mapping) and "keypoint_scores" in frame:
         if len(values[0]) > 2:
-            raise KeypointFileError(
-                "the keypoints are places in space, 3D and not of a picture; write the keypoints "
-                "of the picture, in pixels"
-            )
+            raise KeypointFileError(f"the key keypoints {IN_SPACE}")
         points[:, 2] = frame["keypoint_scores"]
     return tuple(map(str, names)), points
 
@@ -235,9 +223,10 @@ def _hands(frame: Any) -> dict[Side, FloatArray]:
 
 def _group(frames: list[Any], content: Any, limits: VideoLimits) -> tuple[list[list[Any]], Times]:
     """Return the people of each frame, in the order of time, and the times."""
-    if not frames or not all(isinstance(frame, Mapping) for frame in frames):
-        return [[frame] for frame in frames], _times(frames)
-    if all("image_id" in frame for frame in frames):
+    shared = set.intersection(
+        *(set(each) if isinstance(each, Mapping) else set() for each in frames or [()])
+    )
+    if "image_id" in shared:
         people: dict[int, list[Any]] = {}
         numbers = _number_images(frames, content)
         for frame in frames:
@@ -247,8 +236,8 @@ def _group(frames: list[Any], content: Any, limits: VideoLimits) -> tuple[list[l
             wanted = _fill(wanted, limits)
         times = Times(np.array(wanted, dtype=np.float64), counted=True)
         return [people.get(number, []) for number in wanted], times
-    if all("instances" in frame for frame in frames):
-        if all("frame_id" in frame for frame in frames):
+    if "instances" in shared:
+        if "frame_id" in shared:
             frames = sorted(frames, key=lambda frame: int(frame["frame_id"]))
         return [list(frame["instances"]) for frame in frames], _times(frames)
     return [[frame] for frame in frames], _times(frames)

@@ -137,7 +137,7 @@ def _wide(
         points[:, : len(names)],
         times_of(moments, columns.unit),
         path,
-        hands_of(points[:, len(names) :, :2], sides),
+        hands_of(points[:, len(names) :], sides),
     )
     return replace(
         table,
