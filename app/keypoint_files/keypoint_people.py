@@ -38,6 +38,9 @@ EYES_AND_EARS: Final = [1, 2, 3, 4]
 LARGEST_FACE: Final = 0.35
 """Largest share of a body's extent that is between eyes and ears, also without legs in view."""
 
+LEAST_HAND: Final = 0.3
+"""Least mean score of a hand among a whole body's keypoints: its model places both hands always."""
+
 
 @dataclass(frozen=True, eq=False)
 class Person:
@@ -71,7 +74,12 @@ class Person:
         found = {
             side: points[: len(HAND_LANDMARKS)] for side, points in {**within, **self.hands}.items()
         }
-        whole = [side for side, points in found.items() if len(points) == len(HAND_LANDMARKS)]
+        whole = [
+            side
+            for side, points in found.items()
+            if len(points) == len(HAND_LANDMARKS)
+            and (side in self.hands or visibility_of(points).mean() >= LEAST_HAND)
+        ]
         if not whole:
             return ()
         hands = hands_of(np.concatenate([found[side] for side in whole])[None], whole)

@@ -173,12 +173,11 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
         given = next((frame[key] for key in LANDMARKS if key in frame), None)
     if not given:
         return (), np.empty((0, 3))
+    if isinstance(given, list) and isinstance(given[0], int | float):
+        points = np.array(given, dtype=np.float64).reshape(-1, 3)
+        return tuple(map(str, range(len(points)))), points
     if isinstance(given, Mapping):
         names, values = list(given), list(given.values())
-    elif isinstance(given[0], int | float):
-        values = np.array(given, dtype=np.float64).reshape(-1, 3).tolist()
-        values = [{"x": x, "y": y, "v": score} for x, y, score in values]
-        names = [*range(len(values))]
     else:
         # MediaPipe Tasks gives a list of people, the highest score first.
         nested = isinstance(given[0], list) and isinstance((given[0] or [0])[0], Mapping | list)

@@ -203,6 +203,17 @@ def test_hands_of_a_whole_body_are_kept_and_show_a_salute(
     assert not any("left out" in note for note in read.recording.warnings)
 
 
+def test_hands_that_the_model_of_a_whole_body_only_supposes_are_none(tmp_path: Path) -> None:
+    points = points_of(WHOLE[133])
+    points[:3, LEFT_HAND[133] : LEFT_HAND[133] + len(HAND_LANDMARKS)] = SHOWN
+    path = alphapose(tmp_path, points)
+    people = json.loads(path.read_text())
+    for person in people:
+        person["keypoints"][3 * LEFT_HAND[133] + 2 :: 3] = [0.1] * (133 - LEFT_HAND[133])
+    read = read_keypoints(write_json(tmp_path, people), OPTIONS)
+    assert not read.recording.salute.any()
+
+
 def test_hands_beside_the_body_are_kept_and_show_a_salute(tmp_path: Path) -> None:
     points = points_of(COCO_17).tolist()
     tasks = [
