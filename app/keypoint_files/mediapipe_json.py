@@ -189,7 +189,7 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
     points = np.array([_point(each) for each in values], dtype=np.float64).reshape(-1, 3)
     if isinstance(frame, Mapping) and "keypoint_scores" in frame:
         if len(values[0]) > 2:
-            raise KeypointFileError(f"the key keypoints {IN_SPACE}")
+            raise KeypointFileError(f'"keypoints" {IN_SPACE}')
         points[:, 2] = frame["keypoint_scores"]
     return tuple(map(str, names)), points
 
@@ -239,7 +239,13 @@ def _group(frames: list[Any], content: Any, limits: VideoLimits) -> tuple[list[l
         if "frame_id" in shared:
             frames = sorted(frames, key=lambda frame: int(frame["frame_id"]))
         return [list(frame["instances"]) for frame in frames], _times(frames)
-    return [[frame] for frame in frames], _times(frames)
+    return [frame if _is_people(frame) else [frame] for frame in frames], _times(frames)
+
+
+def _is_people(frame: Any) -> bool:
+    """Return whether a frame is a list of people and not of landmarks."""
+    first = frame[0] if isinstance(frame, list) and frame else None
+    return isinstance(first, Mapping) and "keypoints" in first
 
 
 def _number_images(frames: list[Any], content: Any) -> dict[str, int]:

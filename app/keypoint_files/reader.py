@@ -20,6 +20,7 @@ from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
+from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.wording import list_some
 
@@ -78,7 +79,9 @@ def read_keypoints(
     source, given = Path(path), options or KeypointOptions()
     allowed = limits or VideoLimits()
     table = _table(source, given, allowed)
-    time = _seconds(table, given, source)
+    time, clock = _seconds(table, given, source), FrameClock()
+    if not table.times.counted:
+        time = np.array([clock.seconds(each) for each in time.tolist()])
     allowed.require_seconds(float(time[-1] - time[0]))
     landmarks, columns, notes = _map_names(table.names, given.landmarks, source)
     size = _frame_size(table, given, source)
@@ -97,7 +100,13 @@ def read_keypoints(
         poses=poses,
         hands=hands,
         salute=np.array([best_salute(frame) for frame in hands]),
-        warnings=(*table.notes, *notes, *_gaps(poses, people), *_direction(poses)),
+        warnings=(
+            *table.notes,
+            *notes,
+            *_gaps(poses, people),
+            *_direction(poses),
+            *tell_jumps(clock.jumps),
+        ),
         people=people,
     )
     return ReadKeypoints(recording, table.hands is not None)

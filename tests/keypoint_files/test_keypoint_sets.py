@@ -347,3 +347,23 @@ def test_a_table_of_tabs_and_quoted_names_after_spaces_are_read(tmp_path: Path) 
         path = tmp_path / name
         path.write_text("\n".join(separator.join(map(str, row)) for row in [heads, *rows]))
         np.testing.assert_allclose(wrists_of(read_keypoints(path, OPTIONS)), RIGHT)
+
+
+@pytest.mark.parametrize("since", [0, 1.7e9])
+def test_a_clock_that_is_set_while_keypoints_are_written_is_told(
+    tmp_path: Path, since: float
+) -> None:
+    points = points_of(COCO_17)
+    times = [since + at / 25 + (3600 if at > 4 else 0) for at in range(len(points))]
+    heads = ["time", *(f"{name}_{axis}" for name in COCO_17 for axis in "xy")]
+    rows = [[time, *each.ravel().tolist()] for time, each in zip(times, points, strict=True)]
+    read = read_keypoints(write_rows(tmp_path / "pose.csv", [heads, *rows]), OPTIONS)
+    np.testing.assert_allclose(read.recording.poses.time, np.arange(10) / 25, atol=1e-5)
+    assert any("ahead by 3600 s" in told for told in read.recording.warnings)
+
+
+def test_people_in_lists_without_keys_are_followed(tmp_path: Path) -> None:
+    points = points_of(COCO_17)
+    people = [[{"keypoints": (each / 5).tolist()}, {"keypoints": each.tolist()}] for each in points]
+    read = read_keypoints(write_json(tmp_path, people), OPTIONS)
+    np.testing.assert_allclose(wrists_of(read), RIGHT)
