@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 CONVERT: Final = "convert it to MP4 with H.264"
@@ -140,3 +141,23 @@ def _is_transport_stream(head: bytes) -> bool:
             if len(packets) >= least and set(packets) == {0x47}:
                 return True
     return False
+
+
+def describe_unreadable(path: Path) -> str:
+    """Return, in a sentence, why a file cannot be read as a video, and what to do."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except OSError as error:
+        return f"{path.name} cannot be read ({error.strerror}); check the path"
+    if (kind := find_file_kind(head)) is not None:
+        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
+    if video_type(head) is not None:
+        return (
+            f"{path.name} is not a readable video: its index is cut off, or it is damaged; record "
+            "or export it again"
+        )
+    return (
+        f"{path.name} is not a readable video: it begins as no MP4, MOV, MKV, WebM, AVI or MPEG-TS "
+        "file does; export it as one of them, or name a table of keypoints .csv or .json"
+    )

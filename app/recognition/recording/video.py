@@ -26,7 +26,7 @@ from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind, video_type
+from app.recognition.recording.file_kinds import describe_unreadable
 from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -249,7 +249,10 @@ class FrameReader(Iterator[VideoFrame]):
         context = self._stream.codec_context
         self._limits.require_pixels(context.width, context.height)
         self._limits.require_frames(self._stream.frames)
-        self._limits.require_seconds(_stated_seconds(self._container, self._stream) or 0.0)
+        stated = _stated_seconds(self._container, self._stream) or 0.0
+        if stated > self._limits.seconds:
+            stated -= _measure_jumps(self._path, self._limits)
+        self._limits.require_seconds(stated)
 
     def _decode(self) -> Generator[DecodedFrame, None, None]:
         """Decode frames, counting those that cannot be decoded."""
@@ -353,26 +356,7 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
             "memory, or record or export it again"
         ) from error
     except (av.error.FFmpegError, OSError) as error:
-        raise VideoError(_describe_unreadable(path)) from error
-
-
-def _describe_unreadable(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            head = file.read(HEAD_BYTES)
-    except OSError as error:
-        return f"{path.name} cannot be read ({error.strerror}); check the path"
-    if (kind := find_file_kind(head)) is not None:
-        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
-    if video_type(head) is not None:
-        return (
-            f"{path.name} is not a readable video: its index is cut off, or it is damaged; record "
-            "or export it again"
-        )
-    return (
-        f"{path.name} is not a readable video: it begins as no MP4, MOV, MKV, WebM, AVI or MPEG-TS "
-        "file does; export it as one of them, or name a table of keypoints .csv or .json"
-    )
+        raise VideoError(describe_unreadable(path)) from error
 
 
 def _video_stream(container: InputContainer, path: Path) -> VideoStream:
@@ -443,6 +427,18 @@ def _stated_seconds(
         begun = float(first.pts * _time_base(first, stream))
     # Matroska counts from 0, not from its first frame.
     return whole - begun if "matroska" in container.format.name and 0 < begun < whole else whole
+
+
+def _measure_jumps(path: Path, limits: VideoLimits) -> float:
+    """Return by how many seconds the clock of a clip is set ahead, without decoding it."""
+    clock = FrameClock()
+    with suppress(av.error.FFmpegError, OSError), _open(path, limits) as container:
+        for packet in container.demux(_video_stream(container, path)):
+            if packet.dts is None or packet.time_base is None:
+                continue
+            if clock.seconds(float(packet.dts * packet.time_base)) > limits.seconds:
+                break
+    return sum(clock.jumps)
 
 
 def _info(

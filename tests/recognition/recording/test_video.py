@@ -240,12 +240,16 @@ def test_a_complete_recording_that_begins_late_is_not_cut_short(tmp_path: Path, 
     assert "of the 2.0 s" in read(cut)[1][0]
 
 
-def test_a_clock_that_is_set_in_a_clip_is_told(tmp_path: Path) -> None:
-    times = [0.04 * index + (300 if index >= 25 else 0) for index in range(50)]
-    frames, warnings = read(write_clip(tmp_path / "clip.mkv", frames=50, times=times))
+@pytest.mark.parametrize(
+    ("name", "jump"),
+    [("clip.mkv", 300), ("clip.mkv", 1_700_000_000), ("clip.mp4", 3600), ("clip.ts", 3600)],
+)
+def test_a_clock_that_is_set_in_a_clip_is_told(tmp_path: Path, name: str, jump: int) -> None:
+    times = [0.04 * index + (jump if index >= 25 else 0) for index in range(50)]
+    frames, warnings = read(write_clip(tmp_path / name, frames=50, times=times))
     assert frames[-1].time == pytest.approx(1.96, abs=1e-3)
     assert [told.split(";")[0] for told in warnings] == [
-        "the clock was set while it was recorded, ahead by 300 s"
+        f"the clock was set while it was recorded, ahead by {jump} s"
     ]
 
 
