@@ -219,8 +219,8 @@ def _convert_points(
         if (name := translate_landmark(said)) is None:
             continue
         given.add(name)
-        # NaN fails both comparisons.
-        if abs(x) <= farthest and abs(y) <= farthest:
+        # NaN fails both comparisons, and -1, -1 is not found.
+        if abs(x) <= farthest and abs(y) <= farthest and not x == y < 0:
             row = POSE_LANDMARKS.index(name)
             xy[row] = x, y
             confidence[row] = 1.0 if np.isnan(belief) else min(max(belief, 0.0), 1.0)

@@ -6,39 +6,24 @@ import re
 from collections.abc import Iterator
 from typing import Final
 
-GOPRO: Final = re.compile(
-    r"(?P<kind>G[HXL])(?P<chapter>\d\d)(?P<number>\d{4})(?P<ending>\.\w+)", re.IGNORECASE
-)
-"""Names since 2017: the chapters of one recording share the number."""
-
-OLD_GOPRO: Final = re.compile(
-    r"G(?:OPR|P(?P<chapter>\d\d))(?P<number>\d{4})(?P<ending>\.\w+)", re.IGNORECASE
-)
-
-
-def list_neighbours(name: str) -> tuple[str | None, str | None]:
-    """Return the names of the chapters before and after a file, None where there is none."""
-    before, after = None, None
-    if match := GOPRO.fullmatch(name):
-        chapter = int(match["chapter"])
-        kind, rest = match["kind"], f"{match['number']}{match['ending']}"
-        before = f"{kind}{chapter - 1:02d}{rest}" if chapter > 1 else None
-        after = f"{kind}{chapter + 1:02d}{rest}"
-    elif match := OLD_GOPRO.fullmatch(name):
-        chapter, rest = int(match["chapter"] or 0), f"{match['number']}{match['ending']}"
-        if chapter:
-            before = f"GP{chapter - 1:02d}{rest}" if chapter > 1 else f"GOPR{rest}"
-        after = f"GP{chapter + 1:02d}{rest}"
-    return before, after
+GOPRO: Final = re.compile(r"(G[HXLP])(\d\d)(\d{4}\.\w+)|GOPR(\d{4}\.\w+)", re.IGNORECASE)
+"""GoPro's names: kind, chapter and number, which the chapters share. Until 2017 the first chapter
+was called ``GOPR``, and the next one ``GP01``."""
 
 
 def tell_chapters(name: str) -> Iterator[str]:
     """Return a sentence where a clip's name says that a take may begin or end in another file."""
-    before, after = list_neighbours(name)
-    if after is None:
+    match = GOPRO.fullmatch(name)
+    if match is None:
         return
-    parts = f"begins in {before}" if before else f"may go on in {after}"
+    kind, chapter, rest = match[1] or "GP", int(match[2] or 0), match[3] or match[4]
+    is_old = kind.upper() == "GP"
+    if chapter > (0 if is_old else 1):
+        before = f"GOPR{rest}" if is_old and chapter == 1 else f"{kind}{chapter - 1:02d}{rest}"
+        where = f"begins in {before}"
+    else:
+        where = f"may go on in {kind}{chapter + 1:02d}{rest}"
     yield (
-        f"{name} is a chapter of a recording that {parts}; a take across them is read once they "
+        f"{name} is a chapter of a recording that {where}; a take across them is read once they "
         "are joined into one file, as by ffmpeg -f concat"
     )
