@@ -12,7 +12,7 @@ from typing import Any, Final
 from app import __version__
 from app.cli.clip_argument import ClipReading, recognize_clip
 from app.cli.terminal import batch_bar, describe_error, people
-from app.clip_sources import COPIES, SOURCES, VIDEO, is_take, source_of
+from app.clip_sources import SOURCES, VIDEO, is_copy, is_take, source_of
 from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError
@@ -59,7 +59,7 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
 
 
 def _why_left(path: Path) -> str:
-    if path.suffix.lower() in COPIES:
+    if is_copy(path):
         return COPY
     return "keypoints already" if _is_clip(path) else "no clip by its first bytes"
 
@@ -82,7 +82,7 @@ def _walk(folder: Path) -> Iterator[Path]:
 
 
 def _is_clip(path: Path) -> bool:
-    if path.suffix.lower() in COPIES:
+    if is_copy(path):
         return False
     return is_take(path) or any(source.accepts(path, None) for source in SOURCES)
 

@@ -1,9 +1,9 @@
 """Clip sources: the kinds of files and folders that clips are made of, one module each."""
 
 from app.clip_sources.registry import (
-    COPIES,
     SOURCES,
     VIDEO,
+    is_copy,
     is_take,
     source_named,
     source_of,
@@ -22,7 +22,6 @@ from app.clip_sources.source import (
 )
 
 __all__ = [
-    "COPIES",
     "SOURCES",
     "VIDEO",
     "ClipFacts",
@@ -33,6 +32,7 @@ __all__ = [
     "RecordedClip",
     "Refusal",
     "UnsupportedFile",
+    "is_copy",
     "is_take",
     "source_named",
     "source_of",

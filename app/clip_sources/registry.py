@@ -20,7 +20,7 @@ SOURCES: tuple[ClipSource, ...] = (VIDEO, BagSource(), KeypointFileSource())
 
 
 COPIES: Final = frozenset({".lrv", ".lrf", ".part", ".crdownload"})
-"""Endings of copies, which are read only by name."""
+"""Endings of copies that cameras (small) and browsers (unfinished) write beside a clip."""
 
 
 def source_named(name: str) -> ClipSource:
@@ -57,12 +57,20 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
     return VIDEO
 
 
-def is_take(path: Path) -> bool:
-    """Return whether `path`, in a folder of takes, is one, and no copy of one.
+def is_copy(path: Path) -> bool:
+    """Return whether a file is a small or unfinished copy of a clip that lies beside it."""
+    if path.suffix.lower() not in COPIES:
+        return False
+    name = path.name.split(".")[0]
+    # GoPro's copy of GX010042.MP4 is GL010042.LRV.
+    stems = {name, *(kind + name[2:] for kind in ("GX", "GH") if name.startswith("GL"))}
+    endings = [*VIDEO.endings, *(ending.upper() for ending in VIDEO.endings)]
+    return any(path.with_name(stem + end).is_file() for stem in stems for end in endings)
 
-    Cameras write a small copy beside a clip (``.LRV``), browsers one that is not yet complete.
-    """
-    return path.suffix.lower() not in COPIES and any(source.is_take(path) for source in SOURCES)
+
+def is_take(path: Path) -> bool:
+    """Return whether `path`, in a folder of labelled takes, is a take, and no copy of one."""
+    return not is_copy(path) and any(source.is_take(path) for source in SOURCES)
 
 
 def supported_kinds(kind: FileKind | None = None) -> str:
