@@ -148,19 +148,20 @@ def _about(content: Any) -> tuple[KeypointOptions, str, tuple[str, ...]]:
     """Return size and rate of the video, and what its keypoints are, if the file states them."""
     if not isinstance(content, Mapping):
         return KeypointOptions(), "", ()
-    video = next(iter(content.get("images", [])), content)
+    video = next(iter(content.get("images") or []), content)
     rate, width, height = content.get("fps"), video.get("width"), video.get("height")
     options = KeypointOptions(
         frame_rate=None if rate is None else float(rate),
         frame_size=None if width is None or height is None else (int(width), int(height)),
     )
-    meta = content.get("meta_info", content.get("meta", {}))
-    named = next((each["keypoints"] for each in content.get("categories", [])), None)
-    if named is None:
-        named = meta.get("keypoint_id2name") or []
+    stated = [content.get("meta_info"), content.get("meta"), *(content.get("categories") or [])]
+    about = {
+        key: value for each in stated if isinstance(each, Mapping) for key, value in each.items()
+    }
+    named = about.get("keypoints") or about.get("keypoint_id2name") or []
     if isinstance(named, Mapping):
         named = [named[key] for key in sorted(named, key=int)]
-    return options, str(meta.get("dataset_name", "")), tuple(map(str, named))
+    return options, str(about.get("dataset_name", "")), tuple(map(str, named))
 
 
 def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
@@ -188,7 +189,7 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
         ]
     points = np.array([_point(each) for each in values], dtype=np.float64).reshape(-1, 3)
     if isinstance(frame, Mapping) and "keypoint_scores" in frame:
-        if len(values[0]) > 2:
+        if isinstance(values[0], list) and len(values[0]) > 2:
             raise KeypointFileError(f'"keypoints" {IN_SPACE}')
         points[:, 2] = frame["keypoint_scores"]
     return tuple(map(str, names)), points
@@ -222,9 +223,8 @@ def _hands(frame: Any) -> dict[Side, FloatArray]:
 
 def _group(frames: list[Any], content: Any, limits: VideoLimits) -> tuple[list[list[Any]], Times]:
     """Return the people of each frame, in the order of time, and the times."""
-    shared = set.intersection(
-        *(set(each) if isinstance(each, Mapping) else set() for each in frames or [()])
-    )
+    keys = [set(each) if isinstance(each, Mapping) else set[str]() for each in frames]
+    shared = set.intersection(*keys) if keys else set[str]()
     if "image_id" in shared:
         people: dict[int, list[Any]] = {}
         numbers = _number_images(frames, content)
@@ -252,8 +252,8 @@ def _number_images(frames: list[Any], content: Any) -> dict[str, int]:
     """Return the number of each image by its name, also of those that are known to be empty."""
     named = {str(frame["image_id"]): str(frame["image_id"]) for frame in frames}
     if isinstance(content, Mapping):
-        for image in content.get("images", []):
-            told = next(image[key] for key in ("frame_id", "file_name", "id") if key in image)
+        for image in content.get("images") or []:
+            told = image.get("frame_id", image.get("file_name", image["id"]))
             named[str(image["id"])] = str(told)
     numbers = {name: frame_number(told) for name, told in named.items()}
     by_number: dict[int | None, str] = {None: ""}

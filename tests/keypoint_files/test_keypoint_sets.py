@@ -142,6 +142,7 @@ H36M_NAMES = {place: name or f"other_{place}" for place, name in enumerate(H36M_
         (H36M_17, {"categories": [{"keypoints": [*H36M_NAMES.values()]}]}),
         (CROWDPOSE_14, {"meta_info": {"dataset_name": "crowdpose"}}),
         (HALPE_26, {"meta_info": {"dataset_name": "x"}}),
+        (HALPE_26, {"meta": "of a dive", "categories": [{"name": "person"}], "images": None}),
     ],
 )
 @pytest.mark.parametrize("write", [alphapose, mmpose])
