@@ -61,7 +61,7 @@ MODELS: Final[dict[ModelName, InstalledFile]] = {
 HAND_FINDER: Final = InstalledFile(
     "hand_finder",
     "hand_finder.onnx",
-    "afbc627d2c9fbc06768863b63f497810b3caf5ff2de205402f32f20899c735aa",
+    "126da0610476325158fd61b48d980d7a5fad6d6e59db75a3557540b14df0d09d",
 )
 """The finder of divers' hands, part of the package itself; its card lies beside it."""
 

@@ -63,13 +63,16 @@ detected even with two tracked hands, because one of them may be false."""
 PLACE_SCORE: Final = 0.5
 """Least score of a place of a hand that is new."""
 
+LOOKED_SCORE: Final = 0.4
+"""Least score of a place at which an examination looks for fingers; without them it is none."""
+
 KEPT_SCORE: Final = 0.3
 """Least score of a place at which a hand was in the frame before."""
 
 MOST_PLACES: Final = 3
 """Places at which fingers are looked for in a search."""
 
-MOST_NOTED: Final = 8
+MOST_NOTED: Final = 16
 """Hands of examinations that are kept until they are followed."""
 
 SAME_PLACE: Final = 0.5
@@ -85,9 +88,9 @@ FINGERS_PRESENCE: Final = 0.8
 FINGERS_SCALE: Final = 1.1
 """Side of the region in which fingers are looked for, over the side of the place's box."""
 
-QUARTERS: Final = 4
-"""Quarter turns in which fingers are looked for, another one at each look: a glove does not show
-which way it points."""
+TURNS: Final = 8
+"""Turns in which fingers are looked for, all of them in an examination, else another one at each
+look: a glove does not show which way it points."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -142,7 +145,7 @@ class HandTracker:
         self._tracked: tuple[SeenHand, ...] = ()
         self._most = MOST_HANDS
         self._until_palms = 0
-        self._turn = self._quarter = 0
+        self._turn = self._turned = 0
         self._bodies: tuple[Body, ...] = ()
         self._free: list[Arm] = []
         self._arms: list[ArmPace] = []
@@ -161,7 +164,9 @@ class HandTracker:
         """Return the hands in `image` alone; tracking is left as it is until `adopt`."""
         alone = self.renew()
         found = alone.complete(image, alone.follow(image), bodies)
-        self._noted.extend(alone._tracked)
+        places = alone._find_places(image, parts_of(image), LOOKED_SCORE)
+        seen = [alone._look_for_fingers(image, place, TURNS) for place in places[:1]]
+        self._noted.extend((*alone._tracked, *(one for one in seen if one is not None)))
         return found
 
     def adopt(self, image: Image) -> FrameLandmarks:
@@ -216,26 +221,35 @@ class HandTracker:
             return SeenHand.at(place, tracked.looked)
         return self._look_for_fingers(image, place) or SeenHand.at(place, time)
 
-    def _look_for_fingers(self, image: Image, place: HandPlace) -> SeenHand | None:
+    def _look_for_fingers(self, image: Image, place: HandPlace, turns: int = 1) -> SeenHand | None:
         """Return the hand at a place with its landmarks, None where they are not seen."""
         box = place.box
-        self._quarter = (self._quarter + 1) % QUARTERS
-        rotation = box.rotation + self._quarter * np.pi / 2
-        region = replace(box, side=FINGERS_SCALE * box.side, rotation=rotation)
-        seen = self._model.look_twice(image, region)
-        if seen is None or seen.hand.score < FINGERS_PRESENCE:
-            return None
-        return replace(seen, box=box) if _known(seen, [SeenHand.at(place)]) else None
+        for _ in range(turns):
+            self._turned = (self._turned + 1) % TURNS
+            rotation = box.rotation + self._turned * 2 * np.pi / TURNS
+            region = replace(box, side=FINGERS_SCALE * box.side, rotation=rotation)
+            seen = self._model.look_twice(image, region)
+            if seen is None or seen.hand.score < FINGERS_PRESENCE:
+                continue
+            if _known(seen, [SeenHand.at(place)]):
+                return replace(seen, box=box)
+        return None
+
+    def _find_places(
+        self, image: Image, regions: Iterable[Region], least: float
+    ) -> list[HandPlace]:
+        """Return the places that the finder finds in regions with a score from `least`."""
+        if self._finder is None:
+            return []
+        places = self._finder.search(image, regions, least)
+        fitting = [one for one in places if all(one.fits(body) for body in self._bodies)]
+        return fitting[:MOST_PLACES]
 
     def _search_places(self, image: Image, regions: Iterable[Region]) -> list[SeenHand]:
         """Return the hands, with or without fingers, that the finder finds in regions."""
-        if self._finder is None:
-            return []
-        places = self._finder.search(image, regions, PLACE_SCORE)
-        fitting = [one for one in places if all(one.fits(body) for body in self._bodies)]
         return [
             self._look_for_fingers(image, place) or SeenHand.at(place)
-            for place in fitting[:MOST_PLACES]
+            for place in self._find_places(image, regions, PLACE_SCORE)
         ]
 
     def _detect(self, image: Image) -> Iterator[SeenHand]:
