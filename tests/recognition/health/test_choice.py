@@ -12,6 +12,7 @@ from app.recognition.health import choice
 from app.recognition.health.choice import (
     describe_people,
     find_replacements,
+    join_candidates,
     measure_confusions,
 )
 from app.recognition.poses.sequence import FloatArray
@@ -77,6 +78,28 @@ def test_exchange_finds_what_trying_all_finds(monkeypatch: pytest.MonkeyPatch) -
     assert len({*exchanged}) == 4
     assert confusions.measure_cost(exchanged) <= 1.1 * best
     assert confusions.choose(9) == list(range(9))
+
+
+def test_gestures_that_stay_push_out_what_is_like_them() -> None:
+    confusions = measure_confusions(language())
+    ring, circle_at, line_at, wedge_at = range(4)
+    assert confusions.labels[ring] == "ring"
+    assert confusions.choose(2, fixed=[ring]) == [line_at, wedge_at]
+    assert confusions.choose(9, fixed=[ring]) == [circle_at, line_at, wedge_at]
+
+
+def test_people_are_counted_whose_demonstrations_others_repeat() -> None:
+    alone = [replace(gesture, diver="Ann") for gesture in language().gestures]
+    candidates = [shown("another", stairs)]
+    joined = join_candidates(replace(language(), gestures=alone), candidates)
+    assert measure_confusions(joined).people == 1
+
+
+def test_a_candidate_never_takes_a_label_of_the_language() -> None:
+    named = replace(shown("x", circle), label="candidate 0")
+    joined = join_candidates(Language("pool", [named]), [shown("a", line), shown("b", wedge)])
+    assert joined.labels[0] == "candidate 0"
+    assert len({*joined.labels}) == 3
 
 
 def test_known_takes_count_as_people_do() -> None:
