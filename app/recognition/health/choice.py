@@ -187,6 +187,8 @@ class Replacement:
         Estimated share of takes of all gestures that is not read right: now, and with it.
     alike
         Pairs of gestures that would be nearly alike, those that are mixed up most first.
+    people
+        By how many people's demonstrations of the language this is known.
 
     """
 
@@ -194,6 +196,7 @@ class Replacement:
     before: float
     after: float
     alike: tuple[ConfusedPair, ...]
+    people: int
 
 
 def join_candidates(language: Language, candidates: Sequence[Gesture]) -> Language:
@@ -232,7 +235,8 @@ def find_replacements(
     most; each of them was measured in the gesture's place.
 
     """
-    before = measure_confusions(language, known, advance=advance).measure_misread()
+    now = measure_confusions(language, known, advance=advance)
+    before = now.measure_misread()
     # Takes of the gesture show the movement that it would no longer have.
     known = [take for take in known if take.label != label]
     pool = measure_confusions(join_candidates(language, candidates), known, advance=advance)
@@ -246,7 +250,8 @@ def find_replacements(
         changed = language.with_changed(replace(candidates[at], label=label))
         confusions = measure_confusions(changed, known, advance=advance)
         alike = tuple(pair for pair in confusions.list_pairs() if pair.is_alike)
-        found.append(Replacement(at, before, confusions.measure_misread(), alike))
+        after = confusions.measure_misread()
+        found.append(Replacement(at, before, after, alike, now.people))
     return tuple(sorted((one for one in found if one.after < before), key=lambda one: one.after))
 
 
