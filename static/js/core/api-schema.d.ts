@@ -2571,10 +2571,10 @@ export interface components {
              */
             index: number | null;
             /**
-             * Meaning
-             * @description What divers mean by it, or how it looks; may be empty
+             * Sign
+             * @description What divers mean by it, where that is not the gesture's label; null: nothing
              */
-            meaning: string;
+            sign: string | null;
             /**
              * Image
              * @description Trajectory image with its direction, a data URI of a PNG

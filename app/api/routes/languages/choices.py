@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
 
@@ -33,8 +33,8 @@ from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
 from app.recognition.health.choice import (
-    ConfusedPair,
     Confusions,
+    Replacement,
     describe_people,
     find_replacements,
     join_candidates,
@@ -49,7 +49,10 @@ MOST_COMPARED = 300
 """Most demonstrations of a language and candidates: each is compared with every gesture, for
 seconds."""
 
-SAMPLES = ("osg-table-2", known_signs_file().stem)
+SIGNS = known_signs_file().stem
+"""Sample language of the signs that divers know."""
+
+SAMPLES = ("osg-table-2", SIGNS)
 """Sample languages whose gestures are candidates."""
 
 router = APIRouter(prefix="/languages", tags=["languages"])
@@ -105,7 +108,9 @@ class ReplacementView(BaseModel):
     sample: str | None = Field(description="Sample language that has it; null: a take of a clip")
     gesture: str = Field(description="Its label in the sample language or in the request")
     index: int | None = Field(description="Its place among the request's takes; null: a sample's")
-    meaning: str = Field(description="What divers mean by it, or how it looks; may be empty")
+    sign: str | None = Field(
+        description="What divers mean by it, where that is not the gesture's label; null: nothing"
+    )
     image: str = Field(description="Trajectory image with its direction, a data URI of a PNG")
     before: float = Field(description="Estimated share of takes that is not read right now, 0 to 1")
     after: float = Field(description="The same with this movement")
@@ -160,9 +165,9 @@ async def propose_replacements(
 ) -> ReplacementsView:
     """Return the movements that fit best in the place of a gesture; nothing is written.
 
-    Candidates are the figures and divers' signs of the samples that the language does not have, as
-    far as they are movements where the gesture is one and held hand shapes where it is one, and the
-    takes of the request.
+    Candidates are the figures of the samples that the language does not have, movements for a
+    movement and held hand shapes for a held one, and the takes of the request; where none is told
+    apart better, also the signs by which divers mean something else.
     """
 
     def compute(advance: Callable[[], None]) -> ReplacementsView:
@@ -244,50 +249,60 @@ def _propose(
 ) -> ReplacementsView:
     language = studio.language(state)
     own = gesture_in(language, wanted.label)
-    samples = list(_list_samples(studio, language, held=own.is_held))
+    samples = list(_list_samples(studio, language, own))
     _require_few(language, len(samples) + len(wanted.gestures))
     candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
     known = _load_known(studio, state, language)
-    found = find_replacements(
-        language, wanted.label, [gesture for *_, gesture in candidates], known, advance=advance
-    )
-    views = []
-    for each in found:
-        sample, index, gesture = candidates[each.candidate]
-        views.append(
-            ReplacementView(
-                sample=sample,
-                gesture=gesture.label,
-                index=index,
-                meaning=gesture.description,
-                image=data_url(mark_gesture(gesture)),
-                before=each.before,
-                after=each.after,
-                alike=[_view_pair(pair) for pair in each.alike],
-            )
-        )
+    views: list[ReplacementView] = []
+    found: tuple[Replacement, ...] = ()
+    # A robot would act on a sign that one diver shows to another, so others are proposed first.
+    for signs in (False, True):
+        among = [each for each in candidates if (each.sign is not None) == signs]
+        if found or not among:
+            continue
+        gestures = [each.gesture for each in among]
+        found = find_replacements(language, wanted.label, gestures, known, advance=advance)
+        views = [among[each.candidate].view(each) for each in found]
     people = describe_people(found[0].people) if found else None
     return ReplacementsView(label=wanted.label, people=people, replacements=views)
 
 
-def _view_pair(pair: ConfusedPair) -> AlikeView:
-    return AlikeView(gestures=pair.gestures, words=pair.words)
+@dataclass(frozen=True)
+class _Candidate:
+    """A gesture of a sample language, or of a take of the request at an index."""
+
+    gesture: Gesture
+    sample: str | None = None
+    index: int | None = None
+    sign: str | None = None
+
+    def view(self, found: Replacement) -> ReplacementView:
+        """Return it as the API shows it."""
+        return ReplacementView(
+            sample=self.sample,
+            gesture=self.gesture.label,
+            index=self.index,
+            sign=self.sign,
+            image=data_url(mark_gesture(self.gesture)),
+            before=found.before,
+            after=found.after,
+            alike=[AlikeView(gestures=pair.gestures, words=pair.words) for pair in found.alike],
+        )
 
 
-def _list_samples(
-    studio: Studio, language: Language, *, held: bool
-) -> Iterator[tuple[str | None, int | None, Gesture]]:
-    """Yield sample, no index, and gesture of those samples whose movement a language lacks."""
-    own = [shown.trajectory for each in language.gestures for shown in each.single_demonstrations()]
-    known = [each.xy for each in own if each is not None]
+def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:
+    """Yield the samples' gestures of the kind of `own` whose movement a language lacks."""
+    shown = [each for gesture in language.gestures for each in gesture.trajectories]
     samples = studio.samples.languages()
     for name in SAMPLES:
         for gesture in samples[name].gestures if name in samples else ():
-            shown = gesture.trajectory
-            if shown is None or gesture.is_held != held:
+            movement = gesture.trajectory
+            if movement is None or gesture.is_held != own.is_held:
                 continue
-            if not any(np.array_equal(shown.xy, each, equal_nan=True) for each in known):
-                yield name, None, gesture
+            if any(np.array_equal(movement.xy, each.xy, equal_nan=True) for each in shown):
+                continue
+            means_other = name == SIGNS and gesture.label.casefold() != own.label.casefold()
+            yield _Candidate(gesture, name, sign=gesture.description if means_other else None)
 
 
 def _list_takes(
@@ -295,15 +310,15 @@ def _list_takes(
     drafts: Sequence[GestureDraft],
     language: Language,
     advance: Callable[[], None],
-) -> Iterator[tuple[str | None, int | None, Gesture]]:
-    """Yield no sample, index and gesture of those drafts that can become gestures."""
+) -> Iterator[_Candidate]:
+    """Yield the gestures of those drafts that can become one."""
     for index, draft in enumerate(drafts):
         advance()
         try:
             ((gesture, _),) = gestures_from(studio, [draft], language.trigger)
         except (ProblemError, NotFound):
             continue
-        yield None, index, gesture
+        yield _Candidate(gesture, index=index)
 
 
 def _load_known(studio: Studio, state: LanguageState, language: Language) -> list[KnownTake]:

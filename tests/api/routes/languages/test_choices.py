@@ -109,6 +109,7 @@ def test_a_replacement_keeps_what_the_gesture_means_and_undo_takes_it_back(
     assert 0 <= first["after"] < first["before"] <= 1
     assert all(first["after"] <= each["after"] for each in others)
     assert first["alike"] == []
+    assert {each["sign"] for each in found["replacements"]} == {None}
     assert b64decode(first["image"].partition(",")[2]).startswith(b"\x89PNG")
     before = client.get(alike).json()
     body = {"label": "rounded square", "sample": first["sample"], "gesture": first["gesture"]}
@@ -157,6 +158,18 @@ def test_known_takes_of_other_gestures_count(
     takes = [{"clip_id": clip, "expected": "line"}]
     assert client.post(f"{alike}/test-set", json={"takes": takes}).status_code == 201
     assert misread() > without
+
+
+def test_signs_of_divers_are_proposed_for_their_own_meaning_or_where_nothing_else_is(
+    client: httpx.Client, samples: Path, alike: str
+) -> None:
+    (samples / "osg-table-2.json").write_bytes(Language("none", []).to_json().encode())
+    signs = propose(client, alike, "rounded square")["replacements"]
+    assert "I am out of air" in [each["sign"] for each in signs]
+    body = {"label": "Out of air"}
+    client.patch(f"{alike}/gestures", params={"label": "rounded square"}, json=body)
+    (own,) = propose(client, alike, "Out of air")["replacements"]
+    assert (own["gesture"], own["sign"]) == ("out of air", None)
 
 
 @pytest.mark.usefixtures("samples")
