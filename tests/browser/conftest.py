@@ -54,7 +54,7 @@ SHELL = "chromium-headless-shell"
 """Debian's Chromium without a window: it takes a third of the processor time, but has no camera
 permission."""
 
-PATIENCE_MS = 9_000
+PATIENCE_MS = 90_000
 """Longest wait for an expected element: enough for a loaded machine."""
 
 IMAGES = ROOT / "docs" / "images"

@@ -237,7 +237,6 @@ def test_of_rows_that_are_alike_the_best_are_kept_and_the_others_say_why(
     left_out = dialog.get_by_role("listitem").filter(has_text="Left out; nearest is")
     expect(left_out).to_contain_text("nearly alike")
     assert faults(page) == []
-    page.screenshot(path="/tmp/choose_table.png")
     left_out.get_by_role("checkbox").check()
     expect(left_out).to_have_count(0)
     expect(dialog).to_contain_text("of 3")
