@@ -2557,7 +2557,7 @@ export interface components {
         ReplacementView: {
             /**
              * Sample
-             * @description Sample language that has it; null: a take of a clip
+             * @description Sample language that has it, or `strokes`; null: a take of a clip
              */
             sample: string | null;
             /**

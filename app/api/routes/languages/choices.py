@@ -29,6 +29,7 @@ from app.api.services.gesture_edits import demonstration_at, gesture_in, gesture
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.sample_library import STROKES
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
@@ -52,8 +53,8 @@ seconds."""
 SIGNS = known_signs_file().stem
 """Sample language of the signs that divers know."""
 
-SAMPLES = ("osg-table-2", SIGNS)
-"""Sample languages whose gestures are candidates."""
+SAMPLES = ("osg-table-2", STROKES, SIGNS)
+"""Samples whose gestures are candidates."""
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -105,7 +106,9 @@ class AlikeView(BaseModel):
 class ReplacementView(BaseModel):
     """Another movement for a gesture, and what it would do to the language."""
 
-    sample: str | None = Field(description="Sample language that has it; null: a take of a clip")
+    sample: str | None = Field(
+        description="Sample language that has it, or `strokes`; null: a take of a clip"
+    )
     gesture: str = Field(description="Its label in the sample language or in the request")
     index: int | None = Field(description="Its place among the request's takes; null: a sample's")
     sign: str | None = Field(
@@ -165,9 +168,9 @@ async def propose_replacements(
 ) -> ReplacementsView:
     """Return the movements that fit best in the place of a gesture; nothing is written.
 
-    Candidates are the figures of the samples that the language does not have, movements for a
-    movement and held hand shapes for a held one, and the takes of the request; where none is told
-    apart better, also the signs by which divers mean something else.
+    Candidates are the figures of the samples and single strokes that the language does not have,
+    movements for a movement and held hand shapes for a held one, and the takes of the request;
+    where none is told apart better, also the signs by which divers mean something else.
     """
 
     def compute(advance: Callable[[], None]) -> ReplacementsView:
@@ -190,9 +193,9 @@ def replace_gesture(
     """Give a gesture another movement in one revision; label, command and description stay."""
     where, shown = draft.demonstration, None
     if where is None:
-        sample = studio.samples.languages().get(draft.sample or "")
+        sample = studio.samples.movements().get(draft.sample or "")
         if sample is None:
-            raise ProblemError(404, "not_found", f"there is no sample language {draft.sample!r}")
+            raise ProblemError(404, "not_found", f"there are no samples {draft.sample!r}")
         other = gesture_in(sample, draft.gesture or "")
     else:
         shown = demonstration_at(studio, where, trigger_of(studio, language_id))
@@ -293,7 +296,7 @@ class _Candidate:
 def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:
     """Yield the samples' gestures of the kind of `own` whose movement a language lacks."""
     shown = [each for gesture in language.gestures for each in gesture.trajectories]
-    samples = studio.samples.languages()
+    samples = studio.samples.movements()
     for name in SAMPLES:
         for gesture in samples[name].gestures if name in samples else ():
             movement = gesture.trajectory

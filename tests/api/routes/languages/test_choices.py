@@ -1,5 +1,6 @@
 """Choices over HTTP: which takes to make gestures of, and another movement for a gesture."""
 
+import shutil
 from base64 import b64decode
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.api.routes.languages.choices import SAMPLES
+from app.api.routes.languages.choices import SIGNS
 from app.api.services.running_studio import Studio
 from app.recognition import Language
 from app.recognition.features.png import decode_png
@@ -24,7 +25,7 @@ from tests.conftest import ROOT
 def samples(settings: Settings) -> Iterator[Path]:
     """Put the sample languages into the server's folder for one test, and return it."""
     settings.samples_dir.mkdir(exist_ok=True)
-    files = [settings.samples_dir / f"{name}.json" for name in SAMPLES]
+    files = [settings.samples_dir / f"{name}.json" for name in ("osg-table-2", SIGNS)]
     for file in files:
         file.write_bytes((ROOT / "languages" / file.name).read_bytes())
     yield settings.samples_dir
@@ -158,6 +159,21 @@ def test_known_takes_of_other_gestures_count(
     takes = [{"clip_id": clip, "expected": "line"}]
     assert client.post(f"{alike}/test-set", json={"takes": takes}).status_code == 201
     assert misread() > without
+
+
+@pytest.mark.usefixtures("samples")
+def test_a_stroke_of_the_palette_can_take_a_place(
+    client: httpx.Client, settings: Settings, alike: str
+) -> None:
+    palette = settings.samples_dir / "palette" / "strokes.json"
+    palette.parent.mkdir()
+    palette.write_bytes((ROOT / "languages" / "palette" / "strokes.json").read_bytes())
+    found = propose(client, alike, "rounded square")["replacements"]
+    shutil.rmtree(palette.parent)
+    assert "strokes" in [each["sample"] for each in found]
+    # The palette is no language that somebody would add.
+    listed = [each["name"] for each in client.get("/api/v1/samples/languages").json()]
+    assert "strokes" not in listed
 
 
 def test_signs_of_divers_are_proposed_for_their_own_meaning_or_where_nothing_else_is(
