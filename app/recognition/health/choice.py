@@ -34,7 +34,7 @@ MOST_TRIED: Final = 20_000
 """Most choices of which every one is tried; of more, one gesture after the other is exchanged."""
 
 MOST_PROPOSED: Final = 6
-"""Most replacements of a gesture that are measured in its place and proposed."""
+"""Most replacements of a gesture that are proposed."""
 
 
 @dataclass(frozen=True)
@@ -108,9 +108,10 @@ class Confusions:
         rows = np.array(chosen, dtype=np.intp)
         return float(self.rates[np.ix_(rows, rows)].sum() / max(len(rows), 1))
 
-    def measure_misread(self) -> float:
+    def measure_misread(self, chosen: Sequence[int]) -> float:
         """Return the mean over gestures of the estimated share of takes that is not read right."""
-        return float(1 - np.prod(1 - self.rates, axis=1).mean()) if self.labels else 0.0
+        rows = np.array(chosen, dtype=np.intp)
+        return float(1 - np.prod(1 - self.rates[np.ix_(rows, rows)], axis=1).mean())
 
     def list_pairs(self, among: Sequence[int] | None = None) -> list[ConfusedPair]:
         """Return the pairs of gestures, those that are mixed up most first."""
@@ -232,27 +233,27 @@ def find_replacements(
     Returns
     -------
     Those with which fewer takes are not read right than now, the best first, `MOST_PROPOSED` at
-    most; each of them was measured in the gesture's place.
+    most. Novelties depend on how far the gestures of a language are apart, so all are measured in
+    one language of gestures and candidates, and what changes there is told as a share of now.
 
     """
-    now = measure_confusions(language, known, advance=advance)
-    before = now.measure_misread()
-    # Takes of the gesture show the movement that it would no longer have.
-    known = [take for take in known if take.label != label]
-    pool = measure_confusions(join_candidates(language, candidates), known, advance=advance)
+    own = measure_confusions(language, known, advance=advance)
+    size = len(language.gestures)
     others = [at for at, each in enumerate(language.labels) if each != label]
-    size = len(language.labels)
-    cheapest = sorted(
-        range(len(candidates)), key=lambda at: pool.measure_cost([*others, size + at])
-    )
+    joined = join_candidates(language, candidates)
+    pool = measure_confusions(joined, known, advance=advance)
+    now, before = own.measure_misread(range(size)), pool.measure_misread(range(size))
+    kept = tuple(pair for pair in own.list_pairs(others) if pair.is_alike)
     found = []
-    for at in cheapest[:MOST_PROPOSED]:
-        changed = language.with_changed(replace(candidates[at], label=label))
-        confusions = measure_confusions(changed, known, advance=advance)
-        alike = tuple(pair for pair in confusions.list_pairs() if pair.is_alike)
-        after = confusions.measure_misread()
-        found.append(Replacement(at, before, after, alike, now.people))
-    return tuple(sorted((one for one in found if one.after < before), key=lambda one: one.after))
+    for at in range(len(candidates)):
+        after = now * pool.measure_misread([*others, size + at]) / max(before, 1e-9)
+        pairs = (pool.list_pairs([size + at, other])[0] for other in others)
+        alike = [
+            replace(pair, gestures=(label, pair.gestures[1])) for pair in pairs if pair.is_alike
+        ]
+        found.append(Replacement(at, now, after, (*kept, *alike), own.people))
+    better = sorted((each for each in found if each.after < now), key=lambda each: each.after)
+    return tuple(better[:MOST_PROPOSED])
 
 
 def measure_confusions(

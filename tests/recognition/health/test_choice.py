@@ -16,6 +16,7 @@ from app.recognition.health.choice import (
     measure_confusions,
 )
 from app.recognition.poses.sequence import FloatArray
+from app.resources import samples_dir
 from tests.recognition.explanation.test_causes import stairs
 from tests.recognition.strategies import Shape, circle, line, recording, wedge
 
@@ -123,6 +124,21 @@ def test_a_gesture_is_replaced_by_what_is_told_apart_best() -> None:
     # Another line is nearly alike to the line, by the name of the gesture that it would replace.
     again = [each for each in others if each.candidate == 2]
     assert all({*pair.gestures} == {"ring", "line"} for each in again for pair in each.alike)
+
+
+def test_a_movement_far_from_all_others_is_proposed_first() -> None:
+    # Among far gestures a language's own distances shrink, which is no fault of the far one.
+    figures = Language.load(samples_dir() / "osg-table-2.json")
+    own = [figures.gesture(label) for label in ("circle", "triangle", "three", "square")]
+    candidates = [figures.gesture(label) for label in ("infinity", "sweep", "wedge")]
+    first, *_ = find_replacements(Language("pool", own), "square", candidates)
+    assert candidates[first.candidate].label == "sweep"
+
+
+def test_gestures_without_a_demonstration_get_no_replacement() -> None:
+    imported = [replace(each, trajectory=None) for each in language().gestures]
+    candidates = [shown("a", stairs)]
+    assert find_replacements(Language("images", imported), "ring", candidates) == ()
 
 
 def test_a_language_without_confusions_needs_no_replacement() -> None:
