@@ -125,6 +125,7 @@ release: $(VENV)/.development models  ## Build wheel and sdist twice from the la
 
 languages: models  ## Rebuild the sample languages from their clips
 	$(BIN)/python -m languages.build
+	$(BIN)/python -m languages.strokes
 
 lock:  ## Pin the dependencies again (needs uv; UPGRADE=--upgrade for newer versions)
 	$(LOCK) $(FOR_STUDIO) --group build --extra studio --output-file requirements.txt

@@ -56,6 +56,7 @@ from app.api.routes.clips import (
 from app.api.routes.gestures import demonstrations, gestures, previews
 from app.api.routes.languages import (
     checks,
+    choices,
     invitations,
     language_files,
     language_settings,
@@ -167,6 +168,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         language_settings.router,
         triggers.router,
         pair_differences.router,
+        choices.router,
         gestures.router,
         demonstrations.router,
         phrases.router,

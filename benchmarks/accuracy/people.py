@@ -19,12 +19,17 @@ With ``--forecasts`` instead: what the health check foretells from the demonstra
 and five people (each person's read by those of the others), beside what the takes of the people who
 show nothing are read as with the same language; of one person only the latter.
 
+With ``--choose`` instead: half of the classes, chosen by three people's demonstrations, by those of
+one of them, and at random. The same three show these languages to everybody else; gains are means
+over draws of the share right, in points, with their 95 % interval.
+
 Shares are of all draws together; the interval is Wilson's, which does not know that takes of one
 draw share demonstrations. ``--json`` also has every draw's counts, so that two versions of the
 recogniser can be compared draw by draw.
 
     python -m benchmarks.accuracy.people ../shared/data --draws 8 --queries 60
     python -m benchmarks.accuracy.people ../shared/data --draws 20 --queries 60 --forecasts
+    python -m benchmarks.accuracy.people ../shared/data --draws 50 --queries 40 --choose
 """
 
 from __future__ import annotations
@@ -32,7 +37,7 @@ from __future__ import annotations
 import json
 from argparse import Namespace
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -47,12 +52,12 @@ from app.recognition import (
     GestureError,
     Language,
     PoseError,
-    PoseSequence,
     Recognition,
     Recognizer,
 )
 from app.recognition.decision.rejection import ASK_RATIO
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
+from app.recognition.health.choice import measure_confusions
 from app.recognition.health.forecast import (
     ENOUGH_PEOPLE,
     OUTCOMES,
@@ -61,11 +66,10 @@ from app.recognition.health.forecast import (
     measure_curve,
 )
 from app.recognition.health.forecast import judge as find_outcome
-from app.recognition.matching.dtw import dtw_distances
-from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.trajectory import Trajectory
 from benchmarks.arguments import set_arguments
 from benchmarks.methods.ours import gesture_of
+from benchmarks.methods.plain_dtw import plain_dtw
+from benchmarks.sets.held_signs import HAND_LETTERS, hand_letters_set
 from benchmarks.sets.one_shot_draws import Draw, SeveralPeople, draw_several, draws
 from benchmarks.sets.recorded_sets import SETS, RecordedSet, recorded_sets
 from benchmarks.sets.simulated_bodies import CARRIED, carried_sets
@@ -100,64 +104,11 @@ MEASURES = (
 )
 """Rows of the table."""
 
-STEPS, BAND = 32, 8
-"""Steps that a recording is resampled to in time, and the band of DTW in steps."""
-
-MOVING = ("elbow", "wrist", "hand", "hand_tip", "thumb", "index")
-"""Parts of the body that plain DTW follows."""
-
 Found = Iterator[tuple[str, int]]
 """Measures of one query: name and value, 0 or 1, or the size of the answer."""
 
 Counts = dict[tuple[str, str], dict[int, list[int]]]
 """Values of a set by column and measure, by number of the draw."""
-
-
-def positions(poses: PoseSequence) -> FloatArray:
-    """Return ``(N, D)`` positions of arms in time: torso lengths from the shoulders' mean place.
-
-    Without a torso they are normalised by place and size.
-    """
-    trajectory = Trajectory.from_poses(poses)
-    arms = [name for name in trajectory.landmarks if name.split("_", 1)[-1] in MOVING]
-    centre, length = poses.torso_centre(), poses.torso_length()
-    if centre is None or length is None:
-        paths = trajectory.select(arms or trajectory.landmarks).fill_gaps().resample_in_time(STEPS)
-        free = np.nan_to_num(paths.xy - np.nanmean(paths.xy, axis=0))
-        return np.asarray(free.reshape(STEPS, -1) / max(float(np.sqrt((free**2).mean())), 1e-9))
-    shoulders = (poses.column("left_shoulder") + poses.column("right_shoulder")) / 2
-    fixed = replace(poses.select(arms), xy=poses.select(arms).xy - np.nanmedian(shoulders, axis=0))
-    paths = replace(trajectory.select(arms), xy=fixed.xy / length).fill_gaps()
-    return np.asarray(np.nan_to_num(paths.resample_in_time(STEPS).xy).reshape(STEPS, -1))
-
-
-def velocities(poses: PoseSequence) -> FloatArray:
-    """Return ``(N, D)`` velocities of arms in time, scaled by their own energy."""
-    speed = np.gradient(positions(poses), axis=0)
-    return np.asarray(speed / max(float(np.sqrt((speed**2).mean())), 1e-9))
-
-
-def plain_dtw(templates: Sequence[PoseSequence]) -> Callable[[PoseSequence], dict[str, FloatArray]]:
-    """Return a function that measures a take's distances to all templates, by method.
-
-    Distances are over their median between templates.
-    """
-
-    def measured(
-        describe: Callable[[PoseSequence], FloatArray],
-    ) -> Callable[[PoseSequence], FloatArray]:
-        references = np.stack([describe(each) for each in templates])
-        between = [dtw_distances(each, references, BAND) for each in references]
-        typical = float(np.median(np.array(between)[np.triu_indices(len(references), 1)]))
-        return lambda poses: dtw_distances(describe(poses), references, BAND) / typical
-
-    of_positions, of_velocities = measured(positions), measured(velocities)
-
-    def compare(poses: PoseSequence) -> dict[str, FloatArray]:
-        place, speed = of_positions(poses), of_velocities(poses)
-        return {"DTW positions": place, "DTW velocities": speed, "DTW of both": place + speed}
-
-    return compare
 
 
 def define(recorded: RecordedSet, takes: Sequence[int]) -> Gesture:
@@ -326,6 +277,8 @@ def all_sets(folder: Path, names: Sequence[str] | None) -> Iterator[RecordedSet]
     yield from recorded_sets(folder, [name for name in wanted if name in SETS])
     yield from whole_body_sets(folder, [name for name in wanted if name in ARM_CLASSES])
     yield from carried_sets(folder, [name for name in wanted if name in CARRIED])
+    if HAND_LETTERS in wanted:
+        yield hand_letters_set(folder)
 
 
 Outcomes = dict[str, Counter[Outcome]]
@@ -440,6 +393,59 @@ def asks_more(recorded: RecordedSet, several: SeveralPeople, people: int) -> boo
     return replace(forecast, curve=measure_curve(language, forecast)).asks_more
 
 
+CHOOSING = ("digits", "letters", "commands", "utd_other", "utd_signals", HAND_LETTERS)
+"""Sets of which halves are chosen."""
+
+
+def measure_halves(
+    recorded: RecordedSet, several: SeveralPeople, queries: int, seed: int
+) -> dict[str, float]:
+    """Return the per cent read right of half of the classes, by who has chosen the half."""
+    one, three = (
+        Language(recorded.name, [define(recorded, row) for row in several.rows(people)])
+        for people in (1, 3)
+    )
+    count = max(2, len(three.gestures) // 2)
+    halves = {
+        "three people": measure_confusions(three).choose(count),
+        "one person": measure_confusions(one).choose(count),
+        "random": np.random.default_rng(seed).permutation(len(three.gestures))[:count].tolist(),
+    }
+    order = np.random.default_rng(seed).permutation(several.queries)
+    right = {}
+    for name, half in halves.items():
+        language = Language(recorded.name, [three.gestures[index] for index in sorted(half)])
+        asked = order[np.isin(recorded.labels[order].astype(str), language.labels)][:queries]
+        results = recognize(Recognizer(language, "full"), recorded, asked)
+        right[name] = 100 * float(np.mean([find_outcome(*each)[0] == "right" for each in results]))
+    return right
+
+
+def format_gain(gains: Sequence[float]) -> str:
+    """Format the mean of draws' gains, and its 95 % interval by the normal distribution."""
+    mean = float(np.mean(gains))
+    half = 1.96 * float(np.std(gains, ddof=1)) / np.sqrt(len(gains)) if len(gains) > 1 else np.nan
+    return f"{mean:+.1f} ({mean - half:+.1f} to {mean + half:+.1f})"
+
+
+def compare_choices(sets: Iterator[RecordedSet], given: Namespace) -> None:
+    """Print what further people reach with a chosen half of the classes, and with a random one."""
+    print("| set | draws | three people | one person | random | gain | over one person's choice |")
+    print("| --- " * 7 + "|")
+    for recorded in sets:
+        found: list[dict[str, float]] = []
+        for seed, chosen in enumerate(draws(recorded, given.draws, 1, given.seed), given.seed):
+            several = draw_several(recorded, chosen, 3, len(recorded.recordings), seed)
+            if len(several.takes) == 3:
+                found.append(measure_halves(recorded, several, given.queries, seed))
+        if found:
+            three, one, random = (np.array([each[name] for each in found]) for name in found[0])
+            means = [f"{values.mean():.1f}" for values in (three, one, random)]
+            gains = [format_gain(three - other) for other in (random, one)]
+            cells = [recorded.name, len(found), *means, *gains]
+            print(f"| {' | '.join(map(str, cells))} |", flush=True)
+
+
 def main() -> None:
     """Print the table of every set, and write the JSON file after each."""
     parser = set_arguments(__doc__, draws=8, queries=60)
@@ -447,8 +453,14 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="file for all counts, draw by draw")
     parser.add_argument("--forecasts", action="store_true", help="forecasts alone")
     parser.add_argument("--stops", action="store_true", help="number of people asked for, alone")
+    parser.add_argument(
+        "--choose", action="store_true", help="choice of half of the classes, alone"
+    )
     given = parser.parse_args()
     folder = given.data / "trajectories"
+    if given.choose:
+        compare_choices(all_sets(folder, given.sets or CHOOSING), given)
+        return
     if given.stops:
         compare_stops(all_sets(folder, given.sets), given)
         return

@@ -10,9 +10,12 @@ import numpy.typing as npt
 
 from app.recognition import PoseSequence
 from app.recognition.poses.sequence import HANDS_SHAPE
+from benchmarks.sets.recorded_sets import RecordedSet
 
 FILE = "scuba_hands.npz"
-LETTERS_FILE = "hand_letters.npz"
+HAND_LETTERS = "hand_letters"
+"""Name of the set of letters."""
+LETTERS_FILE = f"{HAND_LETTERS}.npz"
 SHARED_LETTERS = "BCILOUVWY"
 """Letters that all seven alphabets show with the same hand shape."""
 COPY = "fsl"
@@ -89,6 +92,12 @@ def read_hand_letters(folder: Path, letters: str = SHARED_LETTERS) -> HandLetter
         for index in chosen.tolist()
     ]
     return HandLetters(takes, shown[chosen], signers[chosen])
+
+
+def hand_letters_set(folder: Path) -> RecordedSet:
+    """Return the takes of `read_hand_letters` as a set."""
+    read = read_hand_letters(folder)
+    return RecordedSet(HAND_LETTERS, read.takes, read.letters, read.signers)
 
 
 def _read(places: npt.NDArray[np.float32]) -> PoseSequence:

@@ -57,6 +57,8 @@ MEANINGS = {
     "test_run_cancelled": "the run of the test set was cancelled by another request",
     "test_set_full": "the test set of the language holds as many takes as it may",
     "token_required": "the token is missing, wrong or withdrawn, or the session has ended",
+    "too_many_gestures": "the language and the candidates have more demonstrations than a choice "
+    "compares at once",
     "too_large": "the body is above the limit for its kind",
     "quota_exceeded": "this name may keep no more clips, or bytes of them; 413 for a clip that is "
     "larger than the whole quota",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import filecmp
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -16,6 +17,9 @@ from app.store import LanguageStore
 
 SEEDED = "Sample language"
 """Change of the first revision of a sample, for its history."""
+
+STROKES = "strokes"
+"""Name of the palette of single strokes, which is no sample language of its own."""
 
 CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 
@@ -48,7 +52,8 @@ class Samples:
     Parameters
     ----------
     folder
-        Holds languages as ``*.json`` and their clips in ``clips/``.
+        Holds languages as ``*.json``, their clips in ``clips/``, and a palette of strokes in
+        ``palette/``.
 
     """
 
@@ -74,8 +79,17 @@ class Samples:
 
     def languages(self) -> dict[str, Language]:
         """Return the languages by name, in order; one that cannot be read is left out."""
+        return self._read(sorted(self._folder.glob("*.json")))
+
+    def movements(self) -> dict[str, Language]:
+        """Return the languages and the palette of strokes by name."""
+        palette = self._folder / "palette" / f"{STROKES}.json"
+        return self.languages() | self._read([palette] if palette.is_file() else [])
+
+    @staticmethod
+    def _read(paths: Sequence[Path]) -> dict[str, Language]:
         found = {}
-        for path in sorted(self._folder.glob("*.json")):
+        for path in paths:
             try:
                 found[path.stem] = _read_language(path, path.stat().st_mtime_ns)
             except (LanguageError, OSError):

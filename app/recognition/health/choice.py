@@ -24,6 +24,7 @@ from app.recognition.health.forecast import compare_people
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
+from app.recognition.text.look_alikes import find_confusable
 
 SPREAD: Final = 0.4
 """How far apart two novelties must be for one of two gestures to be read mostly: people's takes
@@ -31,6 +32,9 @@ scatter as much. Chosen of four values with sets left out (`docs/results.md`, *C
 
 MOST_TRIED: Final = 20_000
 """Most choices of which every one is tried; of more, one gesture after the other is exchanged."""
+
+MOST_PROPOSED: Final = 6
+"""Most replacements of a gesture that are proposed."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,8 @@ class ConfusedPair:
     @property
     def words(self) -> str:
         """What is known of the pair, in words."""
-        alike = "nearly alike" if self.is_alike else "rather alike"
+        apart = "rather alike" if self.mixed else "told apart"
+        alike = "nearly alike" if self.is_alike else apart
         if not self.compared:
             return f"{alike}, distance {self.distance:.2f}"
         return f"{alike}, {self.mixed} of {self.compared} takes are nearer to the other one"
@@ -103,6 +108,11 @@ class Confusions:
         rows = np.array(chosen, dtype=np.intp)
         return float(self.rates[np.ix_(rows, rows)].sum() / max(len(rows), 1))
 
+    def measure_misread(self, chosen: Sequence[int]) -> float:
+        """Return the mean over gestures of the estimated share of takes that is not read right."""
+        rows = np.array(chosen, dtype=np.intp)
+        return float(1 - np.prod(1 - self.rates[np.ix_(rows, rows)], axis=1).mean())
+
     def list_pairs(self, among: Sequence[int] | None = None) -> list[ConfusedPair]:
         """Return the pairs of gestures, those that are mixed up most first."""
         both = (self.rates + self.rates.T) / 2
@@ -119,41 +129,44 @@ class Confusions:
         ]
         return sorted(found, key=lambda each: -each.rate)
 
-    def choose(self, count: int) -> list[int]:
-        """Return the `count` gestures of least cost, in their order.
+    def choose(self, count: int, fixed: Sequence[int] = ()) -> list[int]:
+        """Return the `count` gestures of least cost beside the `fixed` ones, in their order.
 
         All choices are tried where they are few; else gestures are added one by one and exchanged
         as long as that helps.
         """
-        size = len(self.labels)
-        if count >= size:
-            return list(range(size))
-        if math.comb(size, count) <= MOST_TRIED:
-            rows = np.array(list(combinations(range(size), count)))
-            costs = self.rates[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
-            return [int(each) for each in rows[int(costs.argmin())]]
+        free = [index for index in range(len(self.labels)) if index not in {*fixed}]
         both = self.rates + self.rates.T
-        np.fill_diagonal(both, np.diag(self.rates))
-        chosen: list[int] = []
-        for _ in range(count):
-            chosen.append(self._find_cheapest(both, chosen))
-        for _ in range(size):
-            before = self.measure_cost(chosen)
-            tried = [
-                [*rest, self._find_cheapest(both, rest)]
-                for rest in (chosen[:at] + chosen[at + 1 :] for at in range(count))
-            ]
-            best = min(tried, key=self.measure_cost)
-            if self.measure_cost(best) >= before - 1e-12:
-                break
-            chosen = best
-        return sorted(chosen)
+        costs = both[np.ix_(free, free)] / 2
+        costs += np.diag(both[np.ix_(free, list(fixed))].sum(axis=1))
+        return [free[at] for at in _choose_cheapest(costs, min(count, len(free)))]
 
-    def _find_cheapest(self, both: FloatArray, chosen: Sequence[int]) -> int:
-        """Return the gesture that adds least to the cost of those chosen."""
-        cost = both[:, chosen].sum(axis=1) + np.diag(both)
-        cost[list(chosen)] = np.inf
-        return int(cost.argmin())
+
+def _choose_cheapest(costs: FloatArray, count: int) -> list[int]:
+    """Return the `count` rows whose square of symmetric ``(G, G)`` costs has the least sum."""
+    size = len(costs)
+    if math.comb(size, count) <= MOST_TRIED:
+        rows = np.array(list(combinations(range(size), count)), dtype=np.intp)
+        sums = costs[rows[:, :, None], rows[:, None, :]].sum(axis=(1, 2))
+        return [int(each) for each in rows[int(sums.argmin())]]
+
+    def add(chosen: Sequence[int]) -> list[int]:
+        added = 2 * costs[:, chosen].sum(axis=1) + np.diag(costs)
+        added[list(chosen)] = np.inf
+        return [*chosen, int(added.argmin())]
+
+    def measure(chosen: Sequence[int]) -> float:
+        return float(costs[np.ix_(chosen, chosen)].sum())
+
+    chosen: list[int] = []
+    for _ in range(count):
+        chosen = add(chosen)
+    for _ in range(size):
+        best = min((add(chosen[:at] + chosen[at + 1 :]) for at in range(count)), key=measure)
+        if measure(best) >= measure(chosen) - 1e-12:
+            break
+        chosen = best
+    return sorted(chosen)
 
 
 def describe_people(people: int) -> str:
@@ -175,6 +188,8 @@ class Replacement:
         Estimated share of takes of all gestures that is not read right: now, and with it.
     alike
         Pairs of gestures that would be nearly alike, those that are mixed up most first.
+    people
+        By how many people's demonstrations of the language this is known.
 
     """
 
@@ -182,6 +197,18 @@ class Replacement:
     before: float
     after: float
     alike: tuple[ConfusedPair, ...]
+    people: int
+
+
+def join_candidates(language: Language, candidates: Sequence[Gesture]) -> Language:
+    """Return a language without phrases, with candidates under labels of no meaning at its end."""
+    named = []
+    for index, each in enumerate(candidates):
+        label = f"candidate {index}"
+        while find_confusable(label, language.labels) is not None:
+            label += "'"
+        named.append(replace(each, label=label))
+    return replace(language, gestures=[*language.gestures, *named], grammar=None)
 
 
 def find_replacements(
@@ -205,30 +232,28 @@ def find_replacements(
 
     Returns
     -------
-    Those with which fewer takes are not read right than now, the best first.
+    Those with which fewer takes are not read right than now, the best first, `MOST_PROPOSED` at
+    most. Novelties depend on how far the gestures of a language are apart, so all are measured in
+    one language of gestures and candidates, and what changes there is told as a share of now.
 
     """
+    own = measure_confusions(language, known, advance=advance)
     size = len(language.gestures)
-    named = [replace(each, label=f"{at} of candidates") for at, each in enumerate(candidates)]
-    joined = replace(language, gestures=[*language.gestures, *named], grammar=None)
-    confusions = measure_confusions(joined, known, advance=advance)
-    own = list(range(size))
-    before = confusions.measure_cost(own)
-    others = [at for at in own if language.labels[at] != label]
-    names = dict(zip(joined.labels, joined.labels, strict=True)) | {
-        each.label: label for each in named
-    }
+    others = [at for at, each in enumerate(language.labels) if each != label]
+    joined = join_candidates(language, candidates)
+    pool = measure_confusions(joined, known, advance=advance)
+    now, before = own.measure_misread(range(size)), pool.measure_misread(range(size))
+    kept = tuple(pair for pair in own.list_pairs(others) if pair.is_alike)
     found = []
     for at in range(len(candidates)):
-        chosen = [*others, size + at]
+        after = now * pool.measure_misread([*others, size + at]) / max(before, 1e-9)
+        pairs = (pool.list_pairs([size + at, other])[0] for other in others)
         alike = [
-            replace(pair, gestures=(names.get(one, one), names.get(other, other)))
-            for pair in confusions.list_pairs(chosen)
-            for one, other in [pair.gestures]
-            if pair.is_alike
+            replace(pair, gestures=(label, pair.gestures[1])) for pair in pairs if pair.is_alike
         ]
-        found.append(Replacement(at, before, confusions.measure_cost(chosen), tuple(alike)))
-    return tuple(sorted((one for one in found if one.after < before), key=lambda one: one.after))
+        found.append(Replacement(at, now, after, (*kept, *alike), own.people))
+    better = sorted((each for each in found if each.after < now), key=lambda each: each.after)
+    return tuple(better[:MOST_PROPOSED])
 
 
 def measure_confusions(
@@ -264,7 +289,7 @@ def measure_confusions(
         nearest[own] = np.fmin(nearest[own], novelty)
         shown[own] += 1
     rates /= np.maximum(shown, 1)[:, None]
-    return Confusions(tuple(language.labels), rates, nearest, mixed, compared, people)
+    return Confusions(tuple(language.labels), rates, nearest, mixed, compared, max(people, 1))
 
 
 def _estimate(own: int, novelty: FloatArray) -> FloatArray:

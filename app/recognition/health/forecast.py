@@ -261,16 +261,17 @@ def compare_people(
 
     Returns
     -------
-    The number of people, and of each demonstration that others have shown too the index of its
-    gesture and its novelty ``(G,)`` for all gestures.
+    The number of people whose demonstrations others have shown too, and of each of these the index
+    of its gesture and its novelty ``(G,)`` for all gestures.
 
     """
     divers = _list_divers(language)
-    return len(divers), [
-        (own, table.novelty)
+    compared = [
+        (diver, own, table.novelty)
         for diver in divers
         for own, _, _, table in _compare_diver(language, diver, set(divers) - {diver}, advance)
     ]
+    return len({diver for diver, *_ in compared}), [(own, novelty) for _, own, novelty in compared]
 
 
 def _read_diver(

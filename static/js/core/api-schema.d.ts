@@ -94,6 +94,19 @@ export interface components {
             readonly distance: number;
         };
         /**
+         * AlikeView
+         * @description Two gestures that would be nearly alike.
+         */
+        AlikeView: {
+            /** Gestures */
+            gestures: [
+                string,
+                string
+            ];
+            /** Words */
+            words: string;
+        };
+        /**
          * AmbiguityView
          * @description Something that the robot could understand in two ways.
          */
@@ -278,6 +291,42 @@ export interface components {
          * @enum {string}
          */
         CauseKind: "mirrored" | "reversed" | "begun_late" | "ended_early" | "part_missing" | "part_added" | "upside_down" | "other_arm" | "turned_away" | "too_small" | "keypoints_jumped" | "no_hand" | "other_hand_shape" | "other_person" | "near_gesture" | "demonstration" | "not_seen";
+        /**
+         * ChoiceRequest
+         * @description Takes of clips, of which some are to become gestures.
+         */
+        ChoiceRequest: {
+            /** Gestures */
+            gestures: components["schemas"]["GestureDraft"][];
+            /**
+             * Keep
+             * @description How many of them
+             */
+            keep: number;
+            /**
+             * Language Id
+             * @description Language that has gestures beside them; null: a new one
+             */
+            language_id?: string | null;
+        };
+        /**
+         * ChoiceView
+         * @description The takes of a request that are told apart best, beside the gestures of the language.
+         */
+        ChoiceView: {
+            /**
+             * Keep
+             * @description Their places in the request
+             */
+            keep: number[];
+            /** Left Out */
+            left_out: components["schemas"]["LeftOutView"][];
+            /**
+             * People
+             * @description By whose demonstrations this is known, in a sentence
+             */
+            people: string;
+        };
         /**
          * ClipAccepted
          * @description A clip was stored; its poses are extracted by the job.
@@ -1627,6 +1676,27 @@ export interface components {
             trigger_words: string;
         };
         /**
+         * LeftOutView
+         * @description A take that is left out.
+         */
+        LeftOutView: {
+            /**
+             * Index
+             * @description Its place in the request
+             */
+            index: number;
+            /**
+             * Other
+             * @description The gesture that stays and is most like it
+             */
+            other: string;
+            /**
+             * Words
+             * @description How alike the two are, and how that is known
+             */
+            words: string;
+        };
+        /**
          * MeaningView
          * @description One phrase of a message.
          */
@@ -2460,6 +2530,100 @@ export interface components {
             created: string;
         } & {
             [key: string]: unknown;
+        };
+        /**
+         * ReplacementDraft
+         * @description Another movement for a gesture: one of a sample language, or a take of a clip.
+         */
+        ReplacementDraft: {
+            /**
+             * Label
+             * @description Of the gesture; it stays, with command and description
+             */
+            label: string;
+            /** Sample */
+            sample?: string | null;
+            /**
+             * Gesture
+             * @description Label in the sample language
+             */
+            gesture?: string | null;
+            demonstration?: components["schemas"]["NewDemonstration"] | null;
+        };
+        /**
+         * ReplacementView
+         * @description Another movement for a gesture, and what it would do to the language.
+         */
+        ReplacementView: {
+            /**
+             * Sample
+             * @description Sample language that has it, or `strokes`; null: a take of a clip
+             */
+            sample: string | null;
+            /**
+             * Gesture
+             * @description Its label in the sample language or in the request
+             */
+            gesture: string;
+            /**
+             * Index
+             * @description Its place among the request's takes; null: a sample's
+             */
+            index: number | null;
+            /**
+             * Sign
+             * @description What divers mean by it, where that is not the gesture's label; null: nothing
+             */
+            sign: string | null;
+            /**
+             * Image
+             * @description Trajectory image with its direction, a data URI of a PNG
+             */
+            image: string;
+            /**
+             * Before
+             * @description Estimated share of takes that is not read right now, 0 to 1
+             */
+            before: number;
+            /**
+             * After
+             * @description The same with this movement
+             */
+            after: number;
+            /**
+             * Alike
+             * @description Pairs that would be nearly alike, the worst first
+             */
+            alike: components["schemas"]["AlikeView"][];
+        };
+        /**
+         * ReplacementsRequest
+         * @description A gesture of a language that may get another movement.
+         */
+        ReplacementsRequest: {
+            /** Label */
+            label: string;
+            /**
+             * Gestures
+             * @description Takes of clips that may take its place; those that cannot are left out
+             * @default []
+             */
+            gestures: components["schemas"]["GestureDraft"][];
+        };
+        /**
+         * ReplacementsView
+         * @description The movements that would be told apart better than a gesture's own, the best first.
+         */
+        ReplacementsView: {
+            /** Label */
+            label: string;
+            /**
+             * People
+             * @description By whose demonstrations this is known, in a sentence; null: there is no such movement
+             */
+            people: string | null;
+            /** Replacements */
+            replacements: components["schemas"]["ReplacementView"][];
         };
         /**
          * RevisionComparison

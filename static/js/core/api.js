@@ -1,6 +1,6 @@
 // The studio's HTTP API. Every failure becomes an ApiError that can be shown as it is.
 
-/** @import { AuditEntry, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, ReceivedTake, ReceivedTakeOutlook, Recognition, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
+/** @import { AuditEntry, Choice, Clip, ClipAccepted, ClipPage, Explanation, ExportContents, HealthReport, Invitation, Job, Language, LanguageSettings, LanguageSummary, NewInvitation, Outlook, PairDifference, PhrasesAnswer, Poses, PracticeAnswer, PracticeRecord, Preview, Problem, ReceivedTake, ReceivedTakeOutlook, Recognition, Replacement, Revision, RevisionDiff, Sample, SampleLanguage, Session, Take, TakeTable, TestSet, Timeline, TriggerDraft, Workspace, WrittenSession } from "./types.d.ts" */
 
 // Relative to the page, which a reverse proxy may serve under a path of its own.
 export const BASE = "api/v1";
@@ -278,6 +278,20 @@ export const languages = {
       "GET",
       `/languages/${id(language)}/contrast?one=${id(one)}&other=${id(other)}&revision=${revision}`,
     ),
+  /** @type {(takes: { keep: number, language_id: string | null, gestures: object[] }, signal: AbortSignal) => Promise<Choice>} */
+  choose: (takes, signal) => request("POST", "/languages/choice", { body: takes, signal }),
+  /** @type {(language: { id: string, revision: number }, wanted: { label: string, gestures: object[] }, signal: AbortSignal) => Promise<{ people: string | null, replacements: Replacement[] }>} */
+  replacements: (language, wanted, signal) =>
+    request("POST", `/languages/${id(language.id)}/replacements?revision=${language.revision}`, {
+      body: wanted,
+      signal,
+    }),
+  /** @type {(language: { id: string, revision: number }, movement: object) => Promise<Language>} */
+  replaceGesture: (language, movement) =>
+    request("PUT", `/languages/${id(language.id)}/replacements`, {
+      body: movement,
+      headers: matching(language),
+    }),
   /** @type {(language: string, label: string, revision: number) => string} */
   image: (language, label, revision) =>
     `${BASE}${gestureAt({ id: language }, label, "/image")}&revision=${revision}&marks=true`,

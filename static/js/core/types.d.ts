@@ -139,6 +139,12 @@ export type PracticeAnswer = Schemas["PracticeAnswerView"];
 
 export type PairDifference = Schemas["ContrastView"];
 
+/** Which takes of clips are told apart best, and why the others are left out. */
+export type Choice = Schemas["ChoiceView"];
+
+/** Another movement for a gesture, and what it would do to the language. */
+export type Replacement = Schemas["ReplacementView"];
+
 /** A finding of the health report; `error` marks an error, the others are notes. */
 export interface Finding {
   kind: string;
@@ -403,6 +409,8 @@ export interface GestureRow {
   further: string;
   /** Whether the language reads it as that gesture already. */
   right: boolean;
+  /** Why a choice of the best has left it out, or "". */
+  why: string;
 }
 
 /** A view of the page, loaded when it is first shown. */

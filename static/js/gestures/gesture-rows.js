@@ -4,7 +4,7 @@ import { labelInName } from "../clips/clip-label.js";
 import { moment, plural } from "../core/format.js";
 import { withoutJoiners } from "../core/joiners.js";
 
-/** @import { Clip, GestureRow, Language, Take, TakeRow } from "../core/types.d.ts" */
+/** @import { Choice, Clip, GestureRow, Language, Take, TakeRow } from "../core/types.d.ts" */
 
 const NAMED_BY_CAMERA = /^(img|vid|dscn?|gopr|gh|gx|mvi|mov|pxl|dji|clip|video)?[\d\s._-]*$/i;
 const TRAILING = /[\s._-]+(demonstration|demo|test|take|clip|video|[tv]?\d+)$/i;
@@ -99,10 +99,19 @@ export function rowsOf(clips, takes, language, edited, readings = new Map()) {
       const wanted = further ? misread : !taken.has(compared);
       const chosen = written?.chosen ?? (wanted && !shown.has(clip.id));
       if (chosen && label && !further) taken.add(compared);
-      return { key, clip, takes: found, take, number, label, chosen, further, right };
+      const why = whyLeftOut(written, chosen);
+      return { key, clip, takes: found, take, number, label, chosen, further, right, why };
     });
   });
 }
+
+/**
+ * Why the last choice of the best has left a row out; empty while it is selected.
+ *
+ * @param {Partial<GestureRow> | undefined} written
+ * @param {boolean} chosen
+ */
+const whyLeftOut = (written, chosen) => (chosen ? "" : (written?.why ?? ""));
 
 /**
  * A take as a further demonstration of a gesture that the language has, if it has it.
@@ -199,4 +208,35 @@ export function problemsOf(rows) {
         ? `${reason}: wait, or leave ${(unread || waiting.length) > 1 ? "them" : "it"} out.`
         : "";
   return { problems, note };
+}
+
+/**
+ * The rows among which the best are chosen: new gestures that are selected, or that the last choice
+ * has left out.
+ *
+ * @param {GestureRow[]} rows
+ */
+export const candidatesOf = (rows) =>
+  rows.filter(({ takes, further, chosen, why }) => takes && !further && (chosen || why));
+
+/**
+ * What a choice changes of the rows it was made among, by key.
+ *
+ * @param {GestureRow[]} candidates
+ * @param {Choice} choice
+ * @returns {Map<string, { chosen: boolean, why: string }>}
+ */
+export function choiceOf(candidates, { left_out: out }) {
+  const reasons = new Map(
+    out.map(({ index, other, words }) => [
+      index,
+      `Left out; nearest is \u201c${other}\u201d: ${words}.`,
+    ]),
+  );
+  return new Map(
+    candidates.map(({ key }, index) => {
+      const why = reasons.get(index) ?? "";
+      return [key, { chosen: !why, why }];
+    }),
+  );
 }

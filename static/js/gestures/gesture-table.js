@@ -17,6 +17,8 @@ import { begin, choose } from "../languages/language-store.js";
 import { edit } from "../languages/revision-edit.js";
 import { forgetFailures, loadTakesOfClips, takesByClip } from "./clip-takes.js";
 import {
+  candidatesOf,
+  choiceOf,
   furtherNote,
   problemsOf,
   rangeText,
@@ -35,6 +37,7 @@ import {
  * @typedef {object} Table
  * @property {HTMLElement} list
  * @property {HTMLElement} note
+ * @property {ReturnType<typeof bestChoice>} best
  * @property {HTMLButtonElement} save
  * @property {HTMLInputElement} name of the new language
  * @property {string} target the language to save into; empty for a new one
@@ -51,6 +54,7 @@ const PROPOSED_NAME = "My gestures";
 const LONGEST_LABEL = 80;
 const MOST_READ = 100; // clips whose takes are read: some seconds
 const LONGEST_NAME = 80;
+const MOST_COMPARED = 64; // rows of one choice
 
 /** @type {Table | null} */
 let table = null;
@@ -169,7 +173,7 @@ function drawRow(row, problem, element) {
     ? [rangeText(row), addedAt(row.clip)].filter(Boolean).join(" \u00b7 ")
     : statusText(row.clip, state.jobs.get(row.clip.job_id));
   const warning = row.chosen ? rangeWarning(row, heldName(state.gestures)) : "";
-  note.textContent = (row.chosen && problem) || warning || furtherNote(row);
+  note.textContent = (row.chosen && problem) || warning || row.why || furtherNote(row);
   note.classList.toggle("problem", Boolean(row.chosen && problem));
   return drawn;
 }
@@ -186,7 +190,7 @@ function drawSoon() {
 
 function draw() {
   if (!table || !isOpen()) return;
-  const { list, name, note: line, refused, save: button, saving, target } = table;
+  const { best, list, name, note: line, refused, save: button, saving, target } = table;
   const all = rows();
   const { problems, note } = problemsOf(all);
   reconcile(
@@ -195,6 +199,7 @@ function draw() {
     ({ key }) => key,
     (row, element) => drawRow(row, refused.get(row.key) ?? problems.get(row.key), element),
   );
+  best.draw(candidatesOf(all).length);
   const chosen = all.filter((row) => row.chosen);
   const unnamed = target === NEW && !name.value.trim();
   line.textContent = unnamed ? "The new language has no name." : note;
@@ -212,6 +217,68 @@ function countOf(further) {
   const fresh = further.length - more;
   const parts = [plural(fresh, "gesture"), plural(more, "demonstration")];
   return parts.filter((_, index) => (index ? more : fresh || !more)).join(" and ");
+}
+
+/** The controls that leave the best rows selected, and tell by whose demonstrations. */
+function bestChoice() {
+  const count = h("input", { type: "number", min: "1", "aria-label": "Rows to keep" });
+  const of = h("span");
+  const note = h("p", { className: "dim", role: "status" });
+  const button = h("button", { type: "button" }, "Keep the best");
+  const element = h("div", { className: "keep-best" }, button, count, of, note);
+  let asking = false;
+  /** @param {number} size of the rows among which is chosen */
+  const draw = (size) => {
+    element.hidden = size < 2 || size > MOST_COMPARED;
+    of.textContent = `of ${size}`;
+    count.max = String(size);
+    if (!count.value) count.value = String(Math.round(0.6 * size));
+    button.disabled = asking;
+  };
+  button.onclick = async () => {
+    const shown = onDisplay();
+    const among = candidatesOf(rows());
+    const keep = Math.min(Math.max(1, Math.round(Number(count.value))), among.length);
+    count.value = String(keep);
+    const takes = {
+      keep,
+      language_id: shown.target === NEW ? null : shown.target,
+      gestures: among.map((row) => ({
+        ...draftOf(row),
+        label: (row.label.trim() || row.clip.name).slice(0, LONGEST_LABEL),
+      })),
+    };
+    asking = true;
+    note.textContent = "Comparing the takes.";
+    draw(among.length);
+    try {
+      const choice = await api.languages.choose(takes, shown.leaving.signal);
+      for (const [key, values] of choiceOf(among, choice))
+        shown.edited.set(key, { ...shown.edited.get(key), ...values });
+      note.textContent = choice.people;
+    } catch (error) {
+      note.textContent = "";
+      if (!shown.leaving.signal.aborted) refuse(shown, among, error, "Choosing the best");
+    } finally {
+      asking = false;
+      drawSoon();
+    }
+  };
+  return { element, draw };
+}
+
+/**
+ * Show an error beside the row that it names, or as a message.
+ *
+ * @param {Table} shown
+ * @param {GestureRow[]} asked
+ * @param {any} error
+ * @param {string} doing
+ */
+function refuse(shown, asked, error, doing) {
+  const at = Number(/^\/gestures\/(\d+)/.exec(error.errors?.[0]?.pointer ?? "")?.[1] ?? Number.NaN);
+  if (asked[at]) shown.refused.set(asked[at].key, error.message);
+  else complain(error, doing);
 }
 
 /** @param {GestureRow} row */
@@ -270,12 +337,12 @@ async function save() {
     else await saveInto(shown.target, drafts);
     byId("dialog").close();
   } catch (error) {
-    const at = Number(
-      /^\/gestures\/(\d+)/.exec(error.errors?.[0]?.pointer ?? "")?.[1] ?? Number.NaN,
+    refuse(
+      shown,
+      chosen.filter(({ further }) => !further),
+      error,
+      "Saving the gestures",
     );
-    const refused = chosen.filter(({ further }) => !further)[at];
-    if (refused) shown.refused.set(refused.key, error.message);
-    else complain(error, "Saving the gestures");
   } finally {
     shown.saving = false;
     draw();
@@ -329,8 +396,10 @@ export function openGestureTable() {
   const { element, name, target } = languageChoice();
   const note = h("p", { className: "dim", role: "status" });
   const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
+  const best = bestChoice();
   const button = h("button", { type: "submit", className: "primary", ...WRITES });
   table = {
+    best,
     list,
     note,
     save: button,
@@ -355,6 +424,7 @@ export function openGestureTable() {
     element,
     list,
     olderClipsButton(),
+    best.element,
     h(
       "div",
       { className: "dialog-actions" },

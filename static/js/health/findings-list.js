@@ -3,13 +3,19 @@
 import { h } from "../core/dom.js";
 import { go } from "../core/views.js";
 import { compare, editLink } from "./finding-links.js";
+import { changeButton } from "./replacements.js";
 
 /** @import { Finding } from "../core/types.d.ts" */
 
 const AT_FIRST = 5; // Findings shown before the table and the map; the worst come first.
 
-/** @param {Finding} finding */
-function finding({ kind, gestures, message, error }) {
+/**
+ * @param {Finding} finding
+ * @param {boolean} compared whether its gestures stand side by side already
+ */
+function finding({ kind, gestures, message, error }, compared) {
+  const [one, other] = gestures;
+  const two = gestures.length === 2 && !compared;
   return h(
     "li",
     { className: `finding ${error ? "error" : "note"}` },
@@ -24,13 +30,10 @@ function finding({ kind, gestures, message, error }) {
         kind.startsWith("phrases_")
           ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
           : null,
-        gestures.length === 2
-          ? h(
-              "button",
-              { type: "button", onclick: () => compare(gestures[0], gestures[1]) },
-              "Compare the two",
-            )
+        two
+          ? h("button", { type: "button", onclick: () => compare(one, other) }, "Compare the two")
           : null,
+        two && kind !== "look_alike" ? changeButton(one, other) : null,
         gestures.map((label) => editLink(label)),
       ),
     ),
@@ -51,15 +54,17 @@ export function findingsList(findings, only = null) {
       )
     : findings;
   if (!shown.length) return null;
+  /** @param {Finding} each */
+  const draw = (each) => finding(each, only !== null);
   const list = h(
     "ul",
     { className: "findings", "aria-label": "Findings" },
-    shown.slice(0, AT_FIRST).map(finding),
+    shown.slice(0, AT_FIRST).map(draw),
   );
   if (shown.length <= AT_FIRST) return list;
   const rest = h("button", { type: "button" }, `Show all ${shown.length} findings`);
   rest.onclick = () => {
-    list.append(...shown.slice(AT_FIRST).map(finding));
+    list.append(...shown.slice(AT_FIRST).map(draw));
     /** @type {HTMLElement | null} */ (list.children[AT_FIRST].querySelector("button, a"))?.focus();
     rest.remove();
   };

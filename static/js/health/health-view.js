@@ -13,8 +13,7 @@ import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { gestureTable } from "./gesture-table.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
-import { languageMap } from "./language-map.js";
-import { narrow } from "./narrowed-report.js";
+import { languageMap, narrow } from "./language-map.js";
 import { showPair } from "./pair-page.js";
 import { percent } from "./rates.js";
 

@@ -12,6 +12,27 @@ const ROUNDS = 300; // Of moving apart; thirty thumbnails come to rest within a 
 const LABEL = 18; // Height of the line under a thumbnail.
 const WIDEST = 1.3; // Of that line, in widths of the thumbnail: as in the style sheet.
 
+/** Gestures on the map; more cannot be told apart. */
+export const MOST_SHOWN = 64;
+
+/**
+ * Return the places of at most `most` gestures, those that are nearest to another one.
+ *
+ * @param {Pick<HealthReport, "gestures" | "map">} report
+ * @param {number} [most]
+ */
+export function narrow({ gestures, map }, most = MOST_SHOWN) {
+  const kept = new Set(
+    [...gestures]
+      .sort(
+        (one, other) => (one.nearest?.distance ?? Infinity) - (other.nearest?.distance ?? Infinity),
+      )
+      .slice(0, most)
+      .map(({ label }) => label),
+  );
+  return map.filter(({ label }) => kept.has(label));
+}
+
 /**
  * A size at which all thumbnails fit with room to spare.
  *

@@ -9,6 +9,7 @@ import { editLink, pairOf } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { boxOf, movingPaths } from "./movement-paths.js";
 import { stepsOf, timeCursor } from "./pair-cursor.js";
+import { changeButton } from "./replacements.js";
 
 /** @import { PairDifference } from "../core/types.d.ts" */
 
@@ -150,6 +151,7 @@ export async function showPair(box, imageOf) {
   if (!found || state.pair !== pair || !head.isConnected) return undefined;
   const findings = h("div", { className: "pair-findings" });
   box.append(...[sentences(labels, found), ...sideBySide(found, imageOf), findings]);
+  head.append(changeButton(...labels));
   fill = () => {
     const report = state.health?.id === language.id ? state.health.report : null;
     findings.replaceChildren(

@@ -1,6 +1,6 @@
 // Rates as text.
 
-/** @import { LimitCosts, Rate } from "../core/types.d.ts" */
+/** @import { LimitCosts, Rate, Replacement } from "../core/types.d.ts" */
 
 /**
  * A rate in per cent, rounded half to even, as in the texts of the findings. A rate
@@ -50,4 +50,15 @@ export function costWords({ people, measured, refused, accepted }) {
       ? `Of ${accepted.n} takes of missing gestures, ${rateText(accepted)} are accepted.`
       : "",
   ].filter(Boolean);
+}
+
+/**
+ * What another movement would do to a language, in one sentence or two.
+ *
+ * @param {Pick<Replacement, "before" | "after" | "alike">} replacement
+ */
+export function effectText({ before, after, alike }) {
+  const pairs = alike.map(({ gestures }) => gestures.join(" and ")).join(", ");
+  const still = pairs && ` Nearly alike: ${pairs}.`;
+  return `Not read right: ${percent(after)}\u00a0%, now ${percent(before)}\u00a0%.${still}`;
 }

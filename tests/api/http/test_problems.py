@@ -129,6 +129,11 @@ BODIES: dict[tuple[str, str], dict[str, Any]] = {
         "clip_id": "missing",
     },
     ("PATCH", "/api/v1/languages/{language_id}/gestures/{label}"): {"label": "x"},
+    ("POST", "/api/v1/languages/{language_id}/replacements"): {"label": "x"},
+    ("PUT", "/api/v1/languages/{language_id}/replacements"): {
+        "label": "x",
+        "demonstration": {"clip_id": "missing"},
+    },
     ("POST", "/api/v1/languages/{language_id}/preview"): {"label": "x", "change": {}},
     ("POST", "/api/v1/languages/{language_id}/preview/health"): {"label": "x", "change": {}},
     ("PUT", "/api/v1/workspaces/{workspace_id}/view"): {"clip_id": "missing"},

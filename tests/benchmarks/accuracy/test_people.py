@@ -11,12 +11,15 @@ from benchmarks.accuracy.people import (
     COLUMNS,
     MEASURES,
     SIZE,
+    compare_choices,
     compare_forecasts,
     count_outcomes,
     define,
+    format_gain,
     judge,
     judge_half,
     measure,
+    measure_halves,
     summarize,
 )
 from benchmarks.sets.one_shot_draws import draw_several, draws
@@ -134,3 +137,32 @@ def test_a_table_says_by_how_much_forecasts_are_above_what_is_reached(
     assert float(three[-2]) == pytest.approx(foretold - reached, abs=0.1)
     (mean,) = [row for row in rows if row.startswith("3 people: foretold minus reached")]
     assert f"{foretold - reached:+.1f} points on average" in mean
+
+
+def test_half_of_the_classes_that_is_chosen_leaves_out_what_is_alike(
+    recorded: RecordedSet,
+) -> None:
+    # Three names for one figure, which are mixed up in every half that has two of them.
+    alike = replace(
+        recorded,
+        recordings=[
+            recording(SHAPES["circle" if label == "circle" else "line"], jitter=0.02, seed=seed)
+            for seed, label in enumerate(recorded.labels)
+        ],
+    )
+    shares = []
+    for number, chosen in enumerate(draws(alike, 6, 1, seed=1)):
+        several = draw_several(alike, chosen, 3, len(TAKES), seed=number)
+        shares.append(measure_halves(alike, several, 12, seed=number))
+    means = {name: np.mean([each[name] for each in shares]) for name in shares[0]}
+    assert means["three people"] > 90 > means["random"]
+
+
+def test_a_table_says_what_a_choice_gains_with_its_interval(
+    recorded: RecordedSet, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert format_gain([1.0, 3.0]) == "+2.0 (+0.0 to +4.0)"
+    compare_choices(iter([recorded]), Namespace(draws=2, queries=4, seed=1))
+    head, _, row = capsys.readouterr().out.splitlines()
+    assert len(row.split(" | ")) == len(head.split(" | "))
+    assert row.startswith("| drawn | 2 |")

@@ -212,3 +212,31 @@ def test_the_page_shows_the_code_that_the_exported_file_gives(
     expect(page.locator("#carried")).to_contain_text(f"Revision 3, code {code}")
     page.get_by_role("button", name="Export").click()
     expect(page.get_by_role("dialog", name="Export")).to_contain_text(f"code {code}")
+
+
+def test_of_rows_that_are_alike_the_best_are_kept_and_the_others_say_why(
+    open_page: OpenPage, server: Running, client: httpx.Client
+) -> None:
+    language = client.post("/api/v1/languages", json={"name": "chosen"}).json()["id"]
+    names = {"box": "square", "frame": "square", "corner": "corner"}
+    for name, shape in names.items():
+        add_clip(server, shape, name=f"{name}.mp4")
+    page = open_page({"language": language}, scene=False, size=(390, 800))
+    page.get_by_role("button", name="Make gestures of these clips").click()
+    dialog = page.get_by_role("dialog", name="Make gestures of these clips")
+    for row in dialog.get_by_role("listitem").all():
+        if not any(f"{name}.mp4" in row.inner_text() for name in names):
+            row.get_by_role("checkbox").uncheck()  # Clips of other tests, which are left out here.
+    keep = dialog.get_by_label("Rows to keep")
+    expect(dialog).to_contain_text("of 3")
+    keep.fill("2")
+    dialog.get_by_role("button", name="Keep the best").click()
+    expect(dialog.get_by_text("By the distances of one person")).to_be_visible()
+    expect(dialog.get_by_role("button", name="Save 2 gestures")).to_be_visible()
+    expect(dialog.get_by_label("Make a gesture of corner.mp4")).to_be_checked()
+    left_out = dialog.get_by_role("listitem").filter(has_text="Left out; nearest is")
+    expect(left_out).to_contain_text("nearly alike")
+    assert faults(page) == []
+    left_out.get_by_role("checkbox").check()
+    expect(left_out).to_have_count(0)
+    expect(dialog).to_contain_text("of 3")

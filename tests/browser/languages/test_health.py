@@ -400,3 +400,64 @@ def test_a_dropped_clip_is_labelled_by_its_name(
     listed = library.client.get("/api/v1/clips").json()
     added = next(clip for clip in listed if clip["name"] == "circle-dropped.mp4")
     library.client.delete(f"/api/v1/jobs/{added['job_id']}")
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (390, 800)])
+def test_one_of_two_alike_gestures_gets_another_movement_and_undo_takes_it_back(
+    open_page: OpenPage, server: Running, size: tuple[int, int]
+) -> None:
+    with client_of(server.address) as client:
+        language = client.post("/api/v1/languages", json={"name": f"alike {size}"}).json()["id"]
+        library = Library("", language, client)
+        for label, shape in (("box", "circle"), ("frame", "circle"), ("line", "line")):
+            clip = add_clip(server, shape, name=f"{label} of {language}.mp4")
+            library.add_gesture(label, clip, f"what {label} means")
+        page = open_page(health_of(library), scene=False, size=size)
+        findings = page.get_by_role("list", name="Findings")
+        same = findings.get_by_role("listitem").filter(has_text="box and frame are the same")
+        same.get_by_role("button", name="Change one of the two").click()
+        dialog = page.get_by_role("dialog", name="Change box or frame")
+        expect(dialog.get_by_text("By the distances of one person")).to_be_visible()
+        assert faults(page) == []
+        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+        cards = dialog.get_by_role("heading", name="Instead of frame").locator("+ ul button")
+        expect(cards.first).to_contain_text("Not read right")
+        cards.first.click()
+        expect(dialog).to_be_hidden()
+        expect(page.get_by_text("frame has another movement")).to_be_visible()
+        expect(page.locator(".verdict")).to_contain_text("No errors")
+        expect(same).to_be_hidden()
+        changed = client.get(f"/api/v1/languages/{language}").json()
+        assert changed["labels"] == ["box", "frame", "line"]
+        assert changed["gestures"][1]["description"] == "what frame means"
+        page.keyboard.press("Control+z")
+        expect(same).to_be_visible()
+
+
+def test_proposals_can_be_left_fail_and_be_none(open_page: OpenPage, library: Library) -> None:
+    page = open_page(health_of(library, pair="circle,line"), scene=False)
+    waiting: list[Route] = []
+    page.route("**/api/v1/languages/*/replacements*", lambda route: waiting.append(route))
+    change = page.get_by_role("button", name="Change one of the two")
+    dialog = page.get_by_role("dialog", name="Change circle or line")
+
+    def answer(number: int, status: int, **body: object) -> None:
+        label = ("circle", "circle", "circle", "line")[number]
+        expect(dialog.get_by_text(f"Trying other movements for {label}")).to_be_visible()
+        page.wait_for_timeout(200)
+        waiting[number].fulfill(status=status, json=body)
+
+    change.click()
+    expect(dialog.get_by_role("progressbar", name="Comparing movements")).to_be_visible()
+    expect(dialog.get_by_text("Trying other movements for circle")).to_be_visible()
+    dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_be_hidden()
+    change.click()
+    answer(1, 422, detail="the language is too large")
+    expect(dialog.get_by_role("alert")).to_have_text("the language is too large")
+    expect(dialog.get_by_role("progressbar")).to_be_hidden()
+    page.keyboard.press("Escape")
+    change.click()
+    answer(2, 200, label="circle", people=None, replacements=[])
+    answer(3, 200, label="line", people=None, replacements=[])
+    expect(dialog).to_contain_text("No candidate is told apart better.")

@@ -2,6 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
+  candidatesOf,
+  choiceOf,
   furtherNote,
   labelIfNew,
   labelOf,
@@ -134,4 +136,41 @@ test("a clip shows no gesture yet unless a demonstration of the language was tak
   const clips = [clip("a", "circle.mp4"), clip("b", "square.mp4", "running")];
   assert.deepEqual(withoutGesture(clips, language), [clips[1]]);
   assert.deepEqual(withoutGesture(clips, null), clips);
+});
+
+test("a choice leaves rows out and says why, until the user selects them again", () => {
+  const clips = [clip("a", "box.mp4"), clip("b", "square.mp4"), clip("c", "line.mp4")];
+  const takes = new Map(clips.map(({ id }) => [id, [TAKE]]));
+  const before = rowsOf(clips, takes, null, new Map([["c", { chosen: false }]]));
+  const among = candidatesOf(before);
+  assert.deepEqual(
+    among.map(({ key }) => key),
+    ["a", "b"],
+  );
+  const left = { index: 1, other: "box", words: "nearly alike, distance 0.12" };
+  const edited = choiceOf(among, { keep: [0], left_out: [left], people: "" });
+  const after = rowsOf(clips, takes, null, edited);
+  assert.deepEqual(
+    after.map(({ chosen }) => chosen),
+    [true, false, true],
+  );
+  assert.equal(after[1].why, "Left out; nearest is \u201cbox\u201d: nearly alike, distance 0.12.");
+  assert.equal(candidatesOf(after).length, 3);
+  edited.set("b", { ...edited.get("b"), chosen: true });
+  assert.equal(rowsOf(clips, takes, null, edited)[1].why, "");
+});
+
+test("neither waiting rows nor further demonstrations are chosen among", () => {
+  const clips = [clip("a", "circle.mp4"), clip("b", "box.mp4"), clip("c", "line.mp4")];
+  const takes = new Map([
+    ["a", [TAKE]],
+    ["b", [TAKE]],
+  ]);
+  const language = { labels: ["circle"], gestures: [] };
+  const edited = new Map([["a", { chosen: true }]]);
+  const among = candidatesOf(rowsOf(clips, takes, language, edited));
+  assert.deepEqual(
+    among.map(({ key }) => key),
+    ["b"],
+  );
 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { costWords, percent, rateText } from "../../../static/js/health/rates.js";
+import { costWords, effectText, percent, rateText } from "../../../static/js/health/rates.js";
 
 test("a half is rounded to the even number, as in the findings' own words", () => {
   assert.deepEqual([0.005, 0.015, 0.025, 0.125, 0.135].map(percent), ["<1", "2", "2", "12", "14"]);
@@ -46,4 +46,14 @@ test("a limit that too few demonstrations measure is called a constant beside it
   assert.match(why, /cautious constant/);
   assert.match(refused, /are refused/);
   assert.deepEqual(more, []);
+});
+
+test("the effect of another movement names the pairs that stay alike", () => {
+  const better = { before: 0.312, after: 0.12, alike: [] };
+  assert.equal(effectText(better), "Not read right: 12\u00a0%, now 31\u00a0%.");
+  const alike = [{ gestures: ["up", "stop"], words: "nearly alike" }];
+  assert.equal(
+    effectText({ ...better, alike }),
+    "Not read right: 12\u00a0%, now 31\u00a0%. Nearly alike: up and stop.",
+  );
 });

@@ -12,9 +12,11 @@ from app.recognition.health import choice
 from app.recognition.health.choice import (
     describe_people,
     find_replacements,
+    join_candidates,
     measure_confusions,
 )
 from app.recognition.poses.sequence import FloatArray
+from app.resources import samples_dir
 from tests.recognition.explanation.test_causes import stairs
 from tests.recognition.strategies import Shape, circle, line, recording, wedge
 
@@ -79,6 +81,28 @@ def test_exchange_finds_what_trying_all_finds(monkeypatch: pytest.MonkeyPatch) -
     assert confusions.choose(9) == list(range(9))
 
 
+def test_gestures_that_stay_push_out_what_is_like_them() -> None:
+    confusions = measure_confusions(language())
+    ring, circle_at, line_at, wedge_at = range(4)
+    assert confusions.labels[ring] == "ring"
+    assert confusions.choose(2, fixed=[ring]) == [line_at, wedge_at]
+    assert confusions.choose(9, fixed=[ring]) == [circle_at, line_at, wedge_at]
+
+
+def test_people_are_counted_whose_demonstrations_others_repeat() -> None:
+    alone = [replace(gesture, diver="Ann") for gesture in language().gestures]
+    candidates = [shown("another", stairs)]
+    joined = join_candidates(replace(language(), gestures=alone), candidates)
+    assert measure_confusions(joined).people == 1
+
+
+def test_a_candidate_never_takes_a_label_of_the_language() -> None:
+    named = replace(shown("x", circle), label="candidate 0")
+    joined = join_candidates(Language("pool", [named]), [shown("a", line), shown("b", wedge)])
+    assert joined.labels[0] == "candidate 0"
+    assert len({*joined.labels}) == 3
+
+
 def test_known_takes_count_as_people_do() -> None:
     recognizer = Recognizer(language(), "full")
     takes = [
@@ -100,6 +124,21 @@ def test_a_gesture_is_replaced_by_what_is_told_apart_best() -> None:
     # Another line is nearly alike to the line, by the name of the gesture that it would replace.
     again = [each for each in others if each.candidate == 2]
     assert all({*pair.gestures} == {"ring", "line"} for each in again for pair in each.alike)
+
+
+def test_a_movement_far_from_all_others_is_proposed_first() -> None:
+    # Among far gestures a language's own distances shrink, which is no fault of the far one.
+    figures = Language.load(samples_dir() / "osg-table-2.json")
+    own = [figures.gesture(label) for label in ("circle", "triangle", "three", "square")]
+    candidates = [figures.gesture(label) for label in ("infinity", "sweep", "wedge")]
+    first, *_ = find_replacements(Language("pool", own), "square", candidates)
+    assert candidates[first.candidate].label == "sweep"
+
+
+def test_gestures_without_a_demonstration_get_no_replacement() -> None:
+    imported = [replace(each, trajectory=None) for each in language().gestures]
+    candidates = [shown("a", stairs)]
+    assert find_replacements(Language("images", imported), "ring", candidates) == ()
 
 
 def test_a_language_without_confusions_needs_no_replacement() -> None:

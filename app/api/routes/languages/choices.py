@@ -1,0 +1,342 @@
+"""Routes of a choice: which gestures to keep, and another movement for one of a language."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Annotated
+
+import numpy as np
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, Field, model_validator
+
+from app.api.http.connection import compute_while_connected
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.schemas.gestures import (
+    MOST_GESTURES_AT_ONCE,
+    GestureDraft,
+    GesturesDraft,
+    NewDemonstration,
+)
+from app.api.http.schemas.languages import LanguageView
+from app.api.http.schemas.values import Body, Identifier, Label
+from app.api.ingest.quotas import SenderQuota
+from app.api.services.clip_takes import trigger_of
+from app.api.services.demonstration_sources import keep_source
+from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
+from app.api.services.language_documents import edit_document
+from app.api.services.language_responses import announce, save_revision
+from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.sample_library import STROKES
+from app.api.services.stored_recognitions import load_known
+from app.recognition import Gesture, Language
+from app.recognition.explanation.context import KnownTake
+from app.recognition.health.choice import (
+    Confusions,
+    Replacement,
+    describe_people,
+    find_replacements,
+    join_candidates,
+    measure_confusions,
+)
+from app.resources import known_signs_file
+from app.store import LanguageState, NotFound
+from app.ui.charts import data_url
+from app.ui.direction_marks import mark_gesture
+
+MOST_COMPARED = 300
+"""Most demonstrations of a language and candidates: each is compared with every gesture, for
+seconds."""
+
+SIGNS = known_signs_file().stem
+"""Sample language of the signs that divers know."""
+
+SAMPLES = ("osg-table-2", STROKES, SIGNS)
+"""Samples whose gestures are candidates."""
+
+router = APIRouter(prefix="/languages", tags=["languages"])
+
+PEOPLE = "By whose demonstrations this is known, in a sentence"
+
+
+class ChoiceRequest(GesturesDraft):
+    """Takes of clips, of which some are to become gestures."""
+
+    keep: Annotated[int, Field(ge=1, le=MOST_GESTURES_AT_ONCE, description="How many of them")]
+    language_id: Identifier | None = Field(
+        default=None, description="Language that has gestures beside them; null: a new one"
+    )
+
+
+class LeftOutView(BaseModel):
+    """A take that is left out."""
+
+    index: int = Field(description="Its place in the request")
+    other: str = Field(description="The gesture that stays and is most like it")
+    words: str = Field(description="How alike the two are, and how that is known")
+
+
+class ChoiceView(BaseModel):
+    """The takes of a request that are told apart best, beside the gestures of the language."""
+
+    keep: list[int] = Field(description="Their places in the request")
+    left_out: list[LeftOutView]
+    people: str = Field(description=PEOPLE)
+
+
+class ReplacementsRequest(Body):
+    """A gesture of a language that may get another movement."""
+
+    label: Label
+    gestures: Annotated[list[GestureDraft], Field(max_length=MOST_GESTURES_AT_ONCE)] = Field(
+        default=[],
+        description="Takes of clips that may take its place; those that cannot are left out",
+    )
+
+
+class AlikeView(BaseModel):
+    """Two gestures that would be nearly alike."""
+
+    gestures: tuple[str, str]
+    words: str
+
+
+class ReplacementView(BaseModel):
+    """Another movement for a gesture, and what it would do to the language."""
+
+    sample: str | None = Field(
+        description="Sample language that has it, or `strokes`; null: a take of a clip"
+    )
+    gesture: str = Field(description="Its label in the sample language or in the request")
+    index: int | None = Field(description="Its place among the request's takes; null: a sample's")
+    sign: str | None = Field(
+        description="What divers mean by it, where that is not the gesture's label; null: nothing"
+    )
+    image: str = Field(description="Trajectory image with its direction, a data URI of a PNG")
+    before: float = Field(description="Estimated share of takes that is not read right now, 0 to 1")
+    after: float = Field(description="The same with this movement")
+    alike: list[AlikeView] = Field(description="Pairs that would be nearly alike, the worst first")
+
+
+class ReplacementsView(BaseModel):
+    """The movements that would be told apart better than a gesture's own, the best first."""
+
+    label: str
+    people: str | None = Field(description=f"{PEOPLE}; null: there is no such movement")
+    replacements: list[ReplacementView]
+
+
+class ReplacementDraft(Body):
+    """Another movement for a gesture: one of a sample language, or a take of a clip."""
+
+    label: Label = Field(description="Of the gesture; it stays, with command and description")
+    sample: Identifier | None = None
+    gesture: Label | None = Field(default=None, description="Label in the sample language")
+    demonstration: NewDemonstration | None = None
+
+    @model_validator(mode="after")
+    def _require_one(self) -> ReplacementDraft:
+        of_sample = self.sample is not None and self.gesture is not None
+        of_neither = self.sample is None and self.gesture is None
+        if not (of_sample if self.demonstration is None else of_neither):
+            raise ValueError("give either sample and gesture, or demonstration")
+        return self
+
+
+@router.post("/choice", responses=problem_responses(404, 409))
+async def choose_gestures(
+    choice: ChoiceRequest, request: Request, studio: CurrentStudio
+) -> ChoiceView:
+    """Return which takes of clips to make gestures of, so that they are told apart best.
+
+    The gestures of the language stay. Nothing is written.
+    """
+    return await compute_while_connected(
+        request, studio.computations, partial(_choose, choice, studio)
+    )
+
+
+@router.post("/{language_id}/replacements", responses=problem_responses(404))
+async def propose_replacements(
+    language_id: str,
+    wanted: ReplacementsRequest,
+    request: Request,
+    studio: CurrentStudio,
+    revision: Revision = None,
+) -> ReplacementsView:
+    """Return the movements that fit best in the place of a gesture; nothing is written.
+
+    Candidates are the figures of the samples and single strokes that the language does not have,
+    movements for a movement and held hand shapes for a held one, and the takes of the request;
+    where none is told apart better, also the signs by which divers mean something else.
+    """
+
+    def compute(advance: Callable[[], None]) -> ReplacementsView:
+        state = studio.languages.get(language_id, revision)
+        return _propose(studio, state, wanted, advance)
+
+    return await compute_while_connected(request, studio.computations, compute)
+
+
+@router.put("/{language_id}/replacements", responses=problem_responses(404, 409, 412))
+@edited
+def replace_gesture(
+    language_id: str,
+    draft: ReplacementDraft,
+    studio: CurrentStudio,
+    quota: SenderQuota,
+    response: Response,
+    expected: ExpectedRevision,
+) -> LanguageView:
+    """Give a gesture another movement in one revision; label, command and description stay."""
+    where, shown = draft.demonstration, None
+    if where is None:
+        sample = studio.samples.movements().get(draft.sample or "")
+        if sample is None:
+            raise ProblemError(404, "not_found", f"there are no samples {draft.sample!r}")
+        other = gesture_in(sample, draft.gesture or "")
+    else:
+        shown = demonstration_at(studio, where, trigger_of(studio, language_id))
+        other = Gesture.from_demonstration(draft.label, shown.poses, diver=where.diver)
+
+    def edit_language(language: Language) -> Language:
+        own = gesture_in(language, draft.label)
+        return language.with_changed(
+            replace(other, label=own.label, command=own.command, description=own.description)
+        )
+
+    edit = edit_document(f"Change the movement of {draft.label}", edit_language)
+    state = save_revision(studio, quota, language_id, edit, expected)
+    if where is not None and shown is not None:
+        keep_source(studio, state, draft.label, where, shown)
+    return announce(studio, state, response)
+
+
+def _choose(choice: ChoiceRequest, studio: Studio, advance: Callable[[], None]) -> ChoiceView:
+    state = None if choice.language_id is None else studio.languages.get(choice.language_id)
+    language = Language("choice", []) if state is None else studio.language(state)
+    _require_few(language, len(choice.gestures))
+    made = gestures_from(studio, choice.gestures, language.trigger)
+    joined = join_candidates(language, [gesture for gesture, _ in made])
+    known = [] if state is None else _load_known(studio, state, language)
+    confusions = measure_confusions(joined, known, advance=advance)
+    fixed = list(range(len(language.gestures)))
+    chosen = confusions.choose(choice.keep, fixed)
+    labels = [*language.labels, *(draft.label for draft in choice.gestures)]
+    left_out = []
+    for index in sorted({*range(len(fixed), len(labels))} - {*chosen}):
+        other, words = _find_most_alike(confusions, index, [*fixed, *chosen])
+        left_out.append(LeftOutView(index=index - len(fixed), other=labels[other], words=words))
+    return ChoiceView(
+        keep=[each - len(fixed) for each in chosen],
+        left_out=left_out,
+        people=describe_people(confusions.people),
+    )
+
+
+def _find_most_alike(confusions: Confusions, left_out: int, kept: Sequence[int]) -> tuple[int, str]:
+    """Return which of the kept gestures another one is most like, and how much."""
+    both = confusions.rates[left_out, kept] + confusions.rates[kept, left_out]
+    nearest = kept[int(np.argmax(both))]
+    (pair,) = confusions.list_pairs([left_out, nearest])
+    return nearest, pair.words
+
+
+def _propose(
+    studio: Studio,
+    state: LanguageState,
+    wanted: ReplacementsRequest,
+    advance: Callable[[], None],
+) -> ReplacementsView:
+    language = studio.language(state)
+    own = gesture_in(language, wanted.label)
+    samples = list(_list_samples(studio, language, own))
+    _require_few(language, len(samples) + len(wanted.gestures))
+    candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
+    known = _load_known(studio, state, language)
+    views: list[ReplacementView] = []
+    found: tuple[Replacement, ...] = ()
+    # A robot would act on a sign that one diver shows to another, so others are proposed first.
+    for signs in (False, True):
+        among = [each for each in candidates if (each.sign is not None) == signs]
+        if found or not among:
+            continue
+        gestures = [each.gesture for each in among]
+        found = find_replacements(language, wanted.label, gestures, known, advance=advance)
+        views = [among[each.candidate].view(each) for each in found]
+    people = describe_people(found[0].people) if found else None
+    return ReplacementsView(label=wanted.label, people=people, replacements=views)
+
+
+@dataclass(frozen=True)
+class _Candidate:
+    """A gesture of a sample language, or of a take of the request at an index."""
+
+    gesture: Gesture
+    sample: str | None = None
+    index: int | None = None
+    sign: str | None = None
+
+    def view(self, found: Replacement) -> ReplacementView:
+        """Return it as the API shows it."""
+        return ReplacementView(
+            sample=self.sample,
+            gesture=self.gesture.label,
+            index=self.index,
+            sign=self.sign,
+            image=data_url(mark_gesture(self.gesture)),
+            before=found.before,
+            after=found.after,
+            alike=[AlikeView(gestures=pair.gestures, words=pair.words) for pair in found.alike],
+        )
+
+
+def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[_Candidate]:
+    """Yield the samples' gestures of the kind of `own` whose movement a language lacks."""
+    shown = [each for gesture in language.gestures for each in gesture.trajectories]
+    samples = studio.samples.movements()
+    for name in SAMPLES:
+        for gesture in samples[name].gestures if name in samples else ():
+            movement = gesture.trajectory
+            if movement is None or gesture.is_held != own.is_held:
+                continue
+            if any(np.array_equal(movement.xy, each.xy, equal_nan=True) for each in shown):
+                continue
+            means_other = name == SIGNS and gesture.label.casefold() != own.label.casefold()
+            yield _Candidate(gesture, name, sign=gesture.description if means_other else None)
+
+
+def _list_takes(
+    studio: Studio,
+    drafts: Sequence[GestureDraft],
+    language: Language,
+    advance: Callable[[], None],
+) -> Iterator[_Candidate]:
+    """Yield the gestures of those drafts that can become one."""
+    for index, draft in enumerate(drafts):
+        advance()
+        try:
+            ((gesture, _),) = gestures_from(studio, [draft], language.trigger)
+        except (ProblemError, NotFound):
+            continue
+        yield _Candidate(gesture, index=index)
+
+
+def _load_known(studio: Studio, state: LanguageState, language: Language) -> list[KnownTake]:
+    """Return the takes of the test set and of practice."""
+    if not language.gestures:
+        return []
+    return list(load_known(studio, state.record.id, studio.recognizer(state, "full")))
+
+
+def _require_few(language: Language, candidates: int) -> None:
+    """Refuse more demonstrations than can be compared while somebody waits."""
+    count = candidates + sum(1 + len(gesture.further) for gesture in language.gestures)
+    if count > MOST_COMPARED:
+        detail = (
+            f"the language and the candidates have {count} demonstrations; at most "
+            f"{MOST_COMPARED} are compared at once"
+        )
+        raise ProblemError(422, "too_many_gestures", detail)
