@@ -233,10 +233,8 @@ function build(section, about) {
       const more = further();
       const now = await save(about.language, gesture, draft(), saved());
       abandon();
-      const shown = now.gestures.find((each) => each.label === (more || label));
-      const strokes = shown?.demonstrations.at(more ? -1 : 0)?.strokes;
-      const what = strokes ? `${label}: ${strokes}` : `${label}, in ${now.name}`;
-      showDone(more ? "Demonstration added" : "Gesture saved", what);
+      const shown = preview?.strokes ? `: ${preview.strokes}` : `, in ${now.name}`;
+      showDone(more ? "Demonstration added" : "Gesture saved", label + shown);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.
