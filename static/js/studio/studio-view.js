@@ -192,14 +192,14 @@ export async function loadResult() {
 }
 
 /**
- * The confidence, the weight of the voters for the nearest gesture, and the trial.
+ * The confidence, the share of the votes for the nearest gesture, and the trial.
  *
  * @param {Recognition} result
  */
 const supportWords = (result) =>
   [
     `confidence ${percent(result.confidence)}`,
-    `voters with ${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the weight`,
+    `${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the votes`,
     result.pair && result.votes.second_opinion === result.pair[1]
       ? "the two ways of comparing disagree"
       : "",
