@@ -14,6 +14,7 @@ import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
+import { enlargePicture } from "./picture-zoom.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
 
@@ -299,5 +300,6 @@ export function stageButtons() {
     saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
   buildTransport();
+  enlargePicture();
   buildRanges(hasLanguage);
 }
