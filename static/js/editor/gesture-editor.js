@@ -203,7 +203,8 @@ function build(section, about) {
     redoing.disabled = !canRedo();
     status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
     restored.hidden = restored.hidden || !isChanged();
-    saving.disabled = gesture !== null && !isChanged();
+    saving.disabled =
+      (gesture !== null && !isChanged()) || textProblem(draft(), others())?.id === "editor-label";
     if (gesture === null) saving.textContent = further() ? `Add to ${further()}` : "Save gesture";
   }
 
@@ -237,6 +238,7 @@ function build(section, about) {
       const strokes = shown?.demonstrations.at(more ? -1 : 0)?.strokes;
       const what = strokes ? `${label}: ${strokes}` : `${label}, in ${now.name}`;
       showDone(more ? "Demonstration added" : "Gesture saved", what);
+      focusCard(more || label);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.
@@ -304,6 +306,17 @@ function build(section, about) {
   editor = { about, take: parts.take, changed };
   changed();
   if (gesture === null) parts.texts.focus();
+}
+
+/**
+ * Give the focus, which was on the button that is gone, to the card of a gesture.
+ *
+ * @param {string} label
+ */
+function focusCard(label) {
+  const cards = /** @type {HTMLElement[]} */ ([...byId("gestures").children]);
+  const card = cards.find(({ dataset }) => dataset.key === label);
+  (card?.querySelector("button") ?? byId("stage")).focus({ preventScroll: true });
 }
 
 let isSaving = false;
