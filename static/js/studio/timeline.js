@@ -69,13 +69,7 @@ function takeButton(take, index, duration) {
       onclick: () => update({ take: index, start: null, end: null, recognition: null }),
     },
     stroke,
-    h(
-      "span",
-      { className: "take-name" },
-      h("i", {}, "Take "),
-      String(index + 1),
-      take.closed ? null : h("small", {}, " open"),
-    ),
+    h("span", { className: "take-name" }, String(index + 1)),
   );
 }
 
