@@ -12,9 +12,9 @@ BESIDE_THE_DEFAULT = {"label-content-name-mismatch": {"enabled": True}}
 def faults(page: Page) -> list[str]:
     """Return the faults that axe finds, however slight, with their elements."""
     # viser's frame is another project's page.
-    found = Axe().run(
-        page, context={"exclude": ["#lab"]}, options={"rules": BESIDE_THE_DEFAULT}
-    ).response["violations"]
-    return [
-        f"{fault['id']}: {[node['html'][:120] for node in fault['nodes']]}" for fault in found
-    ]
+    found = (
+        Axe()
+        .run(page, context={"exclude": ["#lab"]}, options={"rules": BESIDE_THE_DEFAULT})
+        .response["violations"]
+    )
+    return [f"{fault['id']}: {[node['html'][:120] for node in fault['nodes']]}" for fault in found]
