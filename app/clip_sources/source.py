@@ -293,7 +293,7 @@ def video_type(head: bytes) -> str | None:
     """Return the media type of a video that begins with `head`, or None when it is no video.
 
     The kinds are those that `recording.video` opens: MP4 and QuickTime, Matroska and WebM,
-    AVI, MPEG transport streams.
+    AVI, MPEG transport and program streams.
     """
     if head[4:8] in _ISO_BOXES:
         return "video/quicktime" if head[4:12] == b"ftypqt  " else "video/mp4"
@@ -301,6 +301,8 @@ def video_type(head: bytes) -> str | None:
         return "video/webm" if b"webm" in head[:64] else "video/x-matroska"
     if head[:4] == b"RIFF" and head[8:12] == b"AVI ":
         return "video/x-msvideo"
+    if head[:4] == b"\0\0\1\xba":
+        return "video/mpeg"
     return "video/mp2t" if _is_transport_stream(head) else None
 
 

@@ -43,7 +43,6 @@ _MARKS: Final = (
     (0, b"\x30\x26\xb2\x75\x8e\x66\xcf\x11", "a Windows Media file (WMV)", CONVERT),
     (0, b"FLV\x01", "a Flash video (FLV)", CONVERT),
     (0, b".RMF", "a RealMedia file", CONVERT),
-    (0, b"\0\0\1\xba", "an MPEG program stream (MPG, VOB)", CONVERT),
     (0, b"\0\0\1\xb3", "an MPEG video stream", CONVERT),
     # The type of the first unit follows: boxes of MP4 may begin with the same four bytes.
     (0, b"\0\0\0\1\x67", _H264, CONVERT),

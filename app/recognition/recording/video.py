@@ -41,7 +41,7 @@ __all__ = [
     "read_frames",
 ]
 
-CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts")
+CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts", "mpeg")
 """Names of the FFmpeg demuxers that may open a clip: what phones, action and dive cameras, screen
 recorders and browsers write. None of them is a playlist."""
 
@@ -361,8 +361,8 @@ def _describe_unreadable(path: Path) -> str:
     if kind is not None:
         return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
     return (
-        f"{path.name} is not a readable video: it is no MP4, MOV, MKV, WebM, AVI or MPEG-TS file, "
-        "or its index is cut off; record or export it again"
+        f"{path.name} is not a readable video: it is no MP4, MOV, MKV, WebM, AVI, MPEG-TS or "
+        "MPG file, or its index is cut off; record or export it again"
     )
 
 
