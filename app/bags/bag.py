@@ -229,9 +229,10 @@ class Bag:
     def _explain_unusable(self) -> str:
         empty = [topic for topic in self.topics if topic.use]
         if empty:
+            log = ", or does the .db3 lack its -wal?" if self._place.suffix == ".db3" else "?"
             return (
                 f"{self.name}: its topics of pictures or keypoints have no messages "
-                f"({_list_topics(empty)}); was the camera running? Record it again"
+                f"({_list_topics(empty)}); was the camera running{log} Record it again"
             )
         held = _list_topics(list(self.topics)) or "no topics at all"
         return (

@@ -112,7 +112,9 @@ class PacketDecoder:
         self._limits = limits
         self._codec: VideoCodecContext | None = None
 
-    def decode(self, data: bytes, stated: str, stamp: int) -> Iterator[tuple[int, Image]]:
+    def decode(
+        self, data: bytes, stated: str, stamp: int | None
+    ) -> Iterator[tuple[int | None, Image]]:
         """Decode one message.
 
         Parameters
@@ -122,7 +124,8 @@ class PacketDecoder:
         stated
             Format named in the message; for pictures, the content decides.
         stamp
-            Nanoseconds; stamp of the picture in these data, even if others are complete before it.
+            Nanoseconds; stamp of the picture in these data, even if others are complete before it;
+            None: without one.
 
         Yields
         ------
@@ -143,17 +146,17 @@ class PacketDecoder:
         packet.pts, packet.time_base = stamp, NANOSECONDS
         yield from self._pictures(packet)
 
-    def rest(self) -> Iterator[tuple[int, Image]]:
+    def rest(self) -> Iterator[tuple[int | None, Image]]:
         """Yield the pictures that a stream with reordered frames still holds back."""
         if self._codec is not None:
             yield from self._pictures(None)
 
-    def _pictures(self, packet: av.Packet[Any] | None) -> Iterator[tuple[int, Image]]:
+    def _pictures(self, packet: av.Packet[Any] | None) -> Iterator[tuple[int | None, Image]]:
         assert self._codec is not None
         for frame in self._codec.decode(packet):
             self._limits.require_pixels(frame.width, frame.height)
             image = frame.to_ndarray(format="rgb24")
-            yield int(frame.pts or 0), np.asarray(image, dtype=np.uint8)
+            yield frame.pts, np.asarray(image, dtype=np.uint8)
 
     def _open(self, data: bytes, stated: str) -> VideoCodecContext:
         codec = CodecContext.create(_codec_of(data, stated), "r")

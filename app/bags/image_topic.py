@@ -11,9 +11,10 @@ from av.error import FFmpegError
 
 from app.bags.bag import Bag, Message, Topic
 from app.bags.image_messages import PacketDecoder, raw_image
+from app.bags.message_clock import MessageClock
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.timestamps import FrameClock
+from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video import Turn, VideoFrame, VideoInfo
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -23,8 +24,7 @@ RAW = "sensor_msgs/msg/Image"
 class BagFrames(Iterator[VideoFrame]):
     """The frames of one topic, read one at a time (`app.recognition.recording.video.FrameSource`).
 
-    Time is the stamp in the messages' headers, at which the picture was taken; if the first message
-    has none, it is the time of reception. A last odd row or column of pixels is left out, because
+    Time is that of `MessageClock`. A last odd row or column of pixels is left out, because
     the usual video codecs store only even sizes, and the clip must match its landmarks.
 
     Parameters
@@ -62,9 +62,8 @@ class BagFrames(Iterator[VideoFrame]):
         self._resized = 0
         self._reason = ""
         self._broken = ""
-        self._first_stamp: int | None = None
         self._clock = FrameClock()
-        self._by_header: bool | None = None
+        self._messages = MessageClock()
         self._count = 0
         self._pictures = (
             (stamp, np.ascontiguousarray(np.rot90(image, -turn // 90)))
@@ -102,7 +101,7 @@ class BagFrames(Iterator[VideoFrame]):
                 f"{self._resized} of {self._count} pictures had another size than the first and "
                 f"were scaled to {self.info.width} x {self.info.height}"
             )
-        if self._by_header is False:
+        if self._messages.by_header is False:
             found.append(
                 f"messages of {name} say not when they were taken; time is when they were received"
             )
@@ -111,7 +110,7 @@ class BagFrames(Iterator[VideoFrame]):
                 f"{self._clock.repaired} of {self._count} messages had no timestamp, or one not "
                 "later than that of the message before; their time is estimated"
             )
-        return tuple(found)
+        return (*found, *tell_jumps([*self._messages.jumps, *self._clock.jumps]))
 
     def __next__(self) -> VideoFrame:
         """Read the next frame.
@@ -139,9 +138,7 @@ class BagFrames(Iterator[VideoFrame]):
         try:
             for message in messages:
                 yield from self._decode(message, decoder)
-            yield from (
-                (self._relative(stamp), _crop_to_even(image)) for stamp, image in decoder.rest()
-            )
+            yield from ((stamp, _crop_to_even(image)) for stamp, image in decoder.rest())
         except (BagError, FFmpegError) as error:
             self._broken = _say(error)
 
@@ -149,34 +146,20 @@ class BagFrames(Iterator[VideoFrame]):
         self, message: Message, decoder: PacketDecoder
     ) -> Iterator[tuple[int | None, Image]]:
         content: Any = message.content
-        stamp = self._stamp(message)
+        stamp = self._messages.after_first(message)
         try:
             if self._topic.type == RAW:
-                yield self._relative(stamp), _crop_to_even(raw_image(content, self._limits))
+                yield stamp, _crop_to_even(raw_image(content, self._limits))
                 return
             stated = getattr(content, "encoding", None) or getattr(content, "format", "")
             data = np.asarray(content.data, dtype=np.uint8).tobytes()
             for taken, image in decoder.decode(data, str(stated), stamp):
-                yield self._relative(taken), _crop_to_even(image)
+                yield taken, _crop_to_even(image)
         except VideoError:
             raise
         except (BagError, FFmpegError, ValueError) as error:
             self._unreadable += 1
             self._reason = self._reason or _say(error)
-
-    def _stamp(self, message: Message) -> int:
-        """Return the time of a message, by the clock that the first message determined."""
-        if self._by_header is None:
-            self._by_header = message.stamp > 0
-        return message.stamp if self._by_header else message.received
-
-    def _relative(self, stamp: int) -> int | None:
-        """Return the exact nanoseconds after the first stamp; None without a stamp."""
-        if not stamp:
-            return None
-        if self._first_stamp is None:
-            self._first_stamp = stamp
-        return stamp - self._first_stamp
 
     def _fit(self, image: Image) -> Image:
         size = (self.info.width, self.info.height)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from app.bags.bag import Bag, Message, Topic
+from app.bags.message_clock import MessageClock
 from app.bags.salute_topic import SaluteTrack, salute_track
 from app.recognition.errors import BagError
 from app.recognition.poses.frame import Hand
@@ -16,7 +17,7 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import SKELETON_2D, find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.timestamps import FrameClock
+from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
 ASSUMED_SIZE = (1280, 720)
@@ -80,7 +81,9 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
             f"{bag.name}: no message of {topic.name} names a landmark that is known here, such as "
             "right_wrist; is it a topic of a body?"
         )
-    return _recording(gathered, salute_track(bag, topic, gathered.by_header), bag, topic)
+    return _recording(
+        gathered, salute_track(bag, topic, bool(gathered.messages.by_header)), bag, topic
+    )
 
 
 def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
@@ -112,19 +115,16 @@ class _Gathered:
     seconds: list[float] = field(default_factory=list)
     stamps: list[int] = field(default_factory=list)
     clock: FrameClock = field(default_factory=FrameClock)
-    by_header: bool = True
+    messages: MessageClock = field(default_factory=MessageClock)
     broken: str = ""
 
     def add(self, message: Message, posed: Posed, limits: VideoLimits) -> None:
-        if not self.posed:
-            self.by_header = message.stamp > 0
-        stamp = message.stamp if self.by_header else message.received
-        first = self.stamps[0] if self.stamps else stamp
-        seconds = self.clock.seconds((stamp - first) / 1e9 if stamp else None)
+        after = self.messages.after_first(message)
+        seconds = self.clock.seconds(None if after is None else after / 1e9)
         limits.require_seconds(seconds)
         self.posed.append(posed)
         self.seconds.append(seconds)
-        self.stamps.append(stamp)
+        self.stamps.append(self.messages.stamp(message))
 
 
 def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic) -> Recording:
@@ -161,7 +161,7 @@ def _warnings(gathered: _Gathered, topic: Topic) -> list[str]:
     found = [f"there is no picture: the skeleton is drawn from the keypoints of {topic.name}"]
     if gathered.broken:
         found.append(f"{frames} of {topic.messages} messages were read, then: {gathered.broken}")
-    if not gathered.by_header:
+    if not gathered.messages.by_header:
         found.append(
             f"messages of {topic.name} say not when the picture was taken; time is when they were "
             "received"
@@ -171,6 +171,7 @@ def _warnings(gathered: _Gathered, topic: Topic) -> list[str]:
             f"{clock.repaired} of {frames} messages had no timestamp, or one not later than that "
             "of the message before; their time is estimated"
         )
+    found += tell_jumps([*gathered.messages.jumps, *clock.jumps])
     if nobody := sum(not posed.given for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
     given = frozenset[str]().union(*(posed.given for posed in gathered.posed))
@@ -218,8 +219,8 @@ def _convert_points(
         if (name := translate_landmark(said)) is None:
             continue
         given.add(name)
-        # NaN fails both comparisons.
-        if abs(x) <= farthest and abs(y) <= farthest:
+        # NaN fails both comparisons, and -1, -1 is not found.
+        if abs(x) <= farthest and abs(y) <= farthest and not x == y < 0:
             row = POSE_LANDMARKS.index(name)
             xy[row] = x, y
             confidence[row] = 1.0 if np.isnan(belief) else min(max(belief, 0.0), 1.0)

@@ -39,6 +39,9 @@ ENDINGS: dict[BagKind, str] = {"mcap": ".mcap", "sqlite3": ".db3"}
 """File endings by which rosbags recognises the two storages."""
 
 
+LOG = "-wal"
+"""What SQLite adds to a file's name for that of its write-ahead log."""
+
 ODD = frozenset("%?#")
 """Characters of a path by which SQLite, which is given an address, reads another place."""
 
@@ -54,6 +57,10 @@ def stage(path: Path) -> Iterator[Path]:
 
     """
     kind = _known_kind(path)
+    beside = path.iterdir() if kind == "folder" else [path.with_name(f"{path.name}{LOG}")]
+    _require_no_log(
+        (each.name for each in beside if each.is_file() and each.stat().st_size), path.name
+    )
     if kind == "folder":
         _require_plain([each.name for each in path.iterdir()], path.name)
         if not set(str(path.resolve())) & ODD:
@@ -132,7 +139,9 @@ def _select_entries(archive: ZipFile, name: str) -> dict[str, ZipInfo]:
                 f"{name} has an entry that leads out of its folder ({entry.filename[:80]!r}); "
                 "pack the recording's folder again, without links"
             )
-    files = [entry for entry in visible_files(archive) if _belongs(plain_name(entry))]
+    listed = visible_files(archive)
+    _require_no_log((plain_name(entry) for entry in listed if entry.file_size), name)
+    files = [entry for entry in listed if _belongs(plain_name(entry))]
     _require_plain(map(plain_name, files), name)
     wanted = {plain_name(entry): entry for entry in files}
     if not wanted.keys() - {METADATA}:
@@ -153,6 +162,16 @@ def _require_plain(files: Iterable[str], name: str) -> None:
         raise BagError(
             f"{name} has a file with %, ? or # in its name ({odd[0][:80]!r}); rename it, there and "
             f"in {METADATA}"
+        )
+
+
+def _require_no_log(files: Iterable[str], name: str) -> None:
+    """Refuse a recording whose last messages are not in its file, which would seem to be empty."""
+    if found := next((each for each in files if each.endswith(f".db3{LOG}")), None):
+        raise BagError(
+            f"{name}: messages wait in {found[:80]!r}, as where the recorder was killed; move them "
+            f'into the recording, once, by `sqlite3 {found[:80].removesuffix(LOG)} "PRAGMA '
+            'wal_checkpoint"`'
         )
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 from app import __version__
 from app.cli.clip_argument import ClipReading, recognize_clip
 from app.cli.terminal import batch_bar, describe_error, people
-from app.clip_sources import SOURCES, VIDEO, is_take, source_of
+from app.clip_sources import SOURCES, VIDEO, is_copy, is_take, source_of
 from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError, explain_missing_package
@@ -22,6 +22,8 @@ from app.recognition.text.wording import list_some
 
 MOST_NAMED: Final = 10
 """Most files named that are left out."""
+
+COPY: Final = "a small or unfinished copy of a clip"
 
 
 def is_folder_of_clips(path: Path) -> bool:
@@ -49,12 +51,17 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
         and not any(part.startswith(".") for part in path.relative_to(folder).parts)
         and inside.isdisjoint((path, *path.parents))
     ]
-    reasons = {True: "keypoints already", False: "no clip by its first bytes"}
-    for is_clip, reason in reasons.items():
-        names = [path.relative_to(folder).as_posix() for path in left if _is_clip(path) == is_clip]
+    for reason in ("keypoints already", "no clip by its first bytes", COPY):
+        names = [path.relative_to(folder).as_posix() for path in left if _why_left(path) == reason]
         if names:
             text = f"left out, {reason}: {list_some(names, MOST_NAMED)}"
             people.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _why_left(path: Path) -> str:
+    if is_copy(path):
+        return COPY
+    return "keypoints already" if _is_clip(path) else "no clip by its first bytes"
 
 
 def measure_bytes(path: Path) -> int:
@@ -75,6 +82,8 @@ def _walk(folder: Path) -> Iterator[Path]:
 
 
 def _is_clip(path: Path) -> bool:
+    if is_copy(path):
+        return False
     return is_take(path) or any(source.accepts(path, None) for source in SOURCES)
 
 

@@ -26,6 +26,7 @@ from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.recording.chapters import tell_chapters
 from app.recognition.recording.salute import explain_missing_salutes
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
@@ -132,6 +133,8 @@ def explain_absence(
     path: Path, recording: Recording, recognizer: Recognizer, *, without_salutes: bool
 ) -> None:
     """Print why a clip has no take, and what to do."""
+    for told in tell_chapters(path.name):
+        people.print(told)
     seconds = f"{recording.poses.duration:.1f} s"
     if without_salutes:
         people.print(

@@ -3,6 +3,7 @@
 from app.clip_sources.registry import (
     SOURCES,
     VIDEO,
+    is_copy,
     is_take,
     source_named,
     source_of,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Final
 
 from app.clip_sources.bag import BagSource
 from app.clip_sources.keypoint_file import KeypointFileSource
@@ -16,6 +17,10 @@ VIDEO = VideoSource()
 
 SOURCES: tuple[ClipSource, ...] = (VIDEO, BagSource(), KeypointFileSource())
 """All kinds of files that become clips, in the order in which they are tried."""
+
+
+COPIES: Final = frozenset({".lrv", ".lrf", ".part", ".crdownload"})
+"""Endings of copies that cameras (small) and browsers (unfinished) write beside a clip."""
 
 
 def source_named(name: str) -> ClipSource:
@@ -52,9 +57,20 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
     return VIDEO
 
 
+def is_copy(path: Path) -> bool:
+    """Return whether a file is a small or unfinished copy of a clip that lies beside it."""
+    if path.suffix.lower() not in COPIES:
+        return False
+    name = path.name.split(".")[0]
+    # GoPro's copy of GX010042.MP4 is GL010042.LRV.
+    stems = {name, *(kind + name[2:] for kind in ("GX", "GH") if name.startswith("GL"))}
+    endings = [*VIDEO.endings, *(ending.upper() for ending in VIDEO.endings)]
+    return any(path.with_name(stem + end).is_file() for stem in stems for end in endings)
+
+
 def is_take(path: Path) -> bool:
-    """Return whether `path`, in a folder of labelled takes, is a take."""
-    return any(source.is_take(path) for source in SOURCES)
+    """Return whether `path`, in a folder of labelled takes, is a take, and no copy of one."""
+    return not is_copy(path) and any(source.is_take(path) for source in SOURCES)
 
 
 def supported_kinds(kind: FileKind | None = None) -> str:

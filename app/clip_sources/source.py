@@ -16,6 +16,8 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recording.extraction import Following
+from app.recognition.recording.file_kinds import HEAD_BYTES as HEAD_BYTES
+from app.recognition.recording.file_kinds import video_type as video_type
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 
@@ -278,48 +280,3 @@ class ClipSource(Protocol):
 
         """
         ...
-
-
-HEAD_BYTES = 4096
-"""Bytes from the beginning of a file that `video_type` needs."""
-
-_MPEG_TS_PACKET = 188
-
-_ISO_BOXES = frozenset({b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot"})
-"""First boxes of an ISO or QuickTime file; old cameras write no ``ftyp``."""
-
-
-def video_type(head: bytes) -> str | None:
-    """Return the media type of a video that begins with `head`, or None when it is no video.
-
-    The kinds are those that `recording.video` opens: MP4 and QuickTime, Matroska and WebM,
-    AVI, MPEG transport and program streams.
-    """
-    if head[4:8] in _ISO_BOXES:
-        return "video/quicktime" if head[4:12] == b"ftypqt  " else "video/mp4"
-    if head[:4] == b"\x1aE\xdf\xa3":
-        return "video/webm" if b"webm" in head[:64] else "video/x-matroska"
-    if head[:4] == b"RIFF" and head[8:12] == b"AVI ":
-        return "video/x-msvideo"
-    if head[:4] == b"\0\0\1\xba":
-        return "video/mpeg"
-    return "video/mp2t" if _is_transport_stream(head) else None
-
-
-FEW_PACKETS, MANY_PACKETS = 3, 8
-"""Packets that tell a transport stream, where a file begins with one, and where it does not."""
-
-
-def _is_transport_stream(head: bytes) -> bool:
-    """Return whether MPEG transport packets begin within the first one, as in a broken-off start.
-
-    Camcorders (AVCHD) and Blu-ray write a time stamp of four bytes before each packet.
-    """
-    for size in (_MPEG_TS_PACKET, _MPEG_TS_PACKET + 4):
-        for first in range(min(size, len(head))):
-            packets = head[first::size]
-            # A file that begins in mid packet needs more of them: other bytes may be alike.
-            least = FEW_PACKETS if first in (0, 4) else MANY_PACKETS
-            if len(packets) >= least and set(packets) == {0x47}:
-                return True
-    return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -100,8 +100,7 @@ class Columns:
 def columns_of(headings: Sequence[str]) -> Columns:
     """Read the headings of a table with one frame a row; unknown columns are skipped.
 
-    33 numbered landmarks are MediaPipe's, counted from 0 or from 1, also with its hands and face
-    after them; with any other count they keep their numbers as names.
+    Numbered landmarks are named by `name_numbers`.
     """
     points: dict[str, dict[str, int]] = {}
     for place, heading in enumerate(headings):
@@ -116,7 +115,8 @@ def columns_of(headings: Sequence[str]) -> Columns:
     plainly = [plain(heading) for heading in headings]
     who = next((plainly.index(name) for name in PEOPLE if name in plainly), None)
     hands, rest = _split_hands(whole)
-    return Columns(_number_points(rest), when, unit, who, hands)
+    named = name_numbers(rest)
+    return Columns({named[name]: rest[name] for name in named}, when, unit, who, hands)
 
 
 def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
@@ -132,13 +132,6 @@ def time_column(headings: Sequence[str]) -> tuple[int | None, str]:
 def plain(heading: str) -> str:
     """Return a heading in lower case, its words joined by underscores."""
     return re.sub(r"[^a-z0-9]+", "_", heading.strip().lower()).strip("_")
-
-
-def numbered_landmark(name: str, first: int = 0) -> str:
-    """Return MediaPipe's name of a numbered landmark, or any other name unchanged."""
-    if name.isdigit() and 0 <= int(name) - first < len(POSE_LANDMARKS):
-        return POSE_LANDMARKS[int(name) - first]
-    return name
 
 
 def _split_hands(
@@ -165,12 +158,18 @@ _HAND_ORDERS: Final = (
 )
 
 
-def _number_points(points: Mapping[str, Mapping[str, int]]) -> Mapping[str, Mapping[str, int]]:
-    """Give numbered landmarks MediaPipe's names; those of hands and face keep their numbers."""
-    numbers = {int(name) for name in points if name.isdigit()}
+def name_numbers(names: Iterable[str]) -> dict[str, str]:
+    """Return the names of landmarks with those of MediaPipe, in the order of their numbers.
+
+    33 numbered landmarks are MediaPipe's, counted from 0 or from 1, also with its hands and face
+    after them; with any other count they keep their numbers as names.
+    """
+    named = {name: name for name in names}
+    numbers = {int(name): name for name in named if name.isdecimal()}
     body = len(POSE_LANDMARKS)
     counts = [body + hands + face for hands in (0, HANDS) for face in (0, *FACE)]
     for first in (0, 1):
-        if any(numbers == set(range(first, first + count)) for count in counts):
-            return {numbered_landmark(name, first): places for name, places in points.items()}
-    return points
+        if any(set(numbers) == set(range(first, first + count)) for count in counts):
+            named |= {numbers[first + place]: name for place, name in enumerate(POSE_LANDMARKS)}
+            return named
+    return {numbers[number]: numbers[number] for number in sorted(numbers)} | named

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -18,8 +18,14 @@ LARGEST_COORDINATE = 1e6
 """Largest coordinate of a keypoint in pixels or millimetres; no camera has as many."""
 
 LARGEST_FRACTION = 3.0
-"""Coordinates count as fractions of the picture if nearly all are below this value: landmarks
-beyond its edge lie one or two pictures away, and a body of three pixels shows no gesture."""
+"""Coordinates count as fractions of the picture if most are below this value: landmarks beyond its
+edge lie one or two pictures away, and a body of three pixels shows no gesture."""
+
+LARGEST_PICTURE = 4096.0
+"""Coordinate in pixels up to which keypoints are in a picture whose size is not known."""
+
+FAR = 10.0
+"""How many times the usual coordinate one beyond `LARGEST_PICTURE` is to be in no picture."""
 
 MOST_NEGATIVE = 0.25
 """Largest share of coordinates left of or above the picture: at most an arm or the legs of a body
@@ -44,9 +50,6 @@ MALFORMED = (
     RecursionError,
 )
 """Errors raised by unexpected content, or by numbers out of bounds."""
-
-NEARLY_ALL = 95.0
-"""Percentage that counts as nearly all; a few landmarks always lie far outside."""
 
 
 @dataclass(frozen=True)
@@ -185,15 +188,42 @@ class KeypointTable:
     def in_fractions(self) -> bool:
         """Whether coordinates are fractions of the picture and not pixels."""
         known = np.abs(self.xy[np.isfinite(self.xy)])
-        return bool(len(known)) and float(np.percentile(known, NEARLY_ALL)) <= LARGEST_FRACTION
+        return bool(len(known)) and float(np.median(known)) <= LARGEST_FRACTION
+
+    def without_far(self, size: tuple[int, int] | None) -> KeypointTable:
+        """Return the table without places far outside of the picture, where nothing was found.
+
+        Parameters
+        ----------
+        size
+            Width and height of the picture in pixels, if known.
+
+        """
+        known = np.abs(self.xy[np.isfinite(self.xy)])
+        if not len(known):
+            return self
+        limit = max(LARGEST_PICTURE, FAR * float(np.median(known)))
+        if self.in_fractions or size is not None:
+            limit = LARGEST_FRACTION * (1 if self.in_fractions or size is None else max(size))
+        beyond = np.abs(self.xy) > limit
+        far = beyond[..., 0] | beyond[..., 1]
+        if not far.any():
+            return self
+        note = f"{int(far.sum())} places far outside of the picture count as not seen"
+        return replace(
+            self, xy=np.where(far[..., None], np.nan, self.xy), notes=(*self.notes, note)
+        )
 
 
 def mask_unseen(xy: FloatArray, confidence: FloatArray | None, least: float) -> FloatArray:
     """Return keypoints ``(..., 2)`` with NaN for those below the `least` confidence.
 
-    A keypoint at exactly 0, 0 is none: many programs write an unseen one so.
+    A keypoint at exactly 0, 0 or -1, -1 is none, as at any other number below 0 for both: many
+    programs write an unseen one so.
     """
-    known = np.asarray(np.isfinite(xy).all(axis=-1)) & (xy != 0).any(axis=-1)
+    known = np.asarray(np.isfinite(xy).all(axis=-1)) & (
+        (xy > 0).any(axis=-1) | (xy[..., 0] != xy[..., 1])
+    )
     if confidence is not None:
         known &= confidence >= least
         known &= confidence > 0
@@ -211,29 +241,32 @@ def visibility_of(points: FloatArray) -> FloatArray:
 
 
 def hands_of(points: FloatArray, sides: Sequence[Side]) -> tuple[tuple[Hand, ...], ...] | None:
-    """Return the hands of each frame of which all points are seen.
+    """Return the hands of each frame of which all points are seen, as a salute needs them.
 
     Parameters
     ----------
     points
-        ``(T, 21 * len(sides), 2)``; NaN, or all at 0, 0: not seen.
+        ``(T, 21 * len(sides), 3)`` x, y and score, see `visibility_of`.
     sides
         Side of each hand.
 
     Returns
     -------
-    T tuples, or None if no hand is seen in any frame.
+    T tuples, the larger hand first, or None if no hand is seen in any frame.
 
     """
-    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 2)
-    seen = np.isfinite(groups).all(axis=(2, 3)) & (groups != 0).any(axis=(2, 3))
+    groups = points.reshape(len(points), len(sides), len(HAND_LANDMARKS), 3)
+    scores = visibility_of(groups)
+    xy = mask_unseen(groups[..., :2], scores, 0.0)
+    seen = np.isfinite(xy).all(axis=(2, 3)) & (np.ptp(xy, axis=2) > 0).any(axis=2)
     if not seen.any():
         return None
-    return tuple(
-        tuple(
-            Hand(groups[row, place], side, 1.0)
+    frames = (
+        [
+            Hand(xy[row, place], side, float(scores[row, place].mean()))
             for place, side in enumerate(sides)
             if seen[row, place]
-        )
+        ]
         for row in range(len(groups))
     )
+    return tuple(tuple(sorted(hands, key=lambda hand: -hand.size)) for hands in frames)

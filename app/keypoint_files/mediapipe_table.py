@@ -22,10 +22,11 @@ from app.keypoint_files.column_names import (
     NAMES,
     Columns,
     columns_of,
-    numbered_landmark,
+    name_numbers,
     plain,
     time_column,
 )
+from app.keypoint_files.keypoint_people import name_points, table_of
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
     KeypointOptions,
@@ -37,6 +38,7 @@ from app.keypoint_files.keypoint_table import (
 )
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import KeypointSet
 from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.strict_json import is_utf16
@@ -52,24 +54,23 @@ def read_mediapipe_table(
     path: Path, options: KeypointOptions, limits: VideoLimits
 ) -> KeypointTable:
     """Read a CSV file of either form; see `app.keypoint_files.read_keypoints`."""
-    del options
     with path.open(newline="", encoding=find_encoding(path)) as file:
         heading = file.readline()
         separator = max(SEPARATORS, key=heading.count)
-        headings = next(csv.reader([heading], delimiter=separator), [])
+        headings = next(csv.reader([heading], delimiter=separator, skipinitialspace=True), [])
         # Where a comma separates nothing, it is a decimal one.
-        rows = csv.reader(file, delimiter=separator)
+        rows = csv.reader(file, delimiter=separator, skipinitialspace=True)
         lines = rows if separator == "," else ([_point(cell) for cell in row] for row in rows)
         plainly = [plain(heading) for heading in headings]
         if any(name in plainly for name in NAMES) and {"x", "y"} <= set(plainly):
-            return _long(lines, headings, path, limits)
+            return _long(lines, headings, path, options, limits)
         columns = columns_of(headings)
         if not columns.points or len(columns.points) > MOST_LANDMARKS:
             raise KeypointFileError(
                 f"{path} has no columns of keypoints among {_shown(headings)}; expected x0, y0, "
                 f"..., or nose_x, nose_y, ..., or frame, landmark, x, y"
             )
-        return _wide(lines, columns, path, limits)
+        return _wide(lines, columns, path, options, limits)
 
 
 def find_encoding(path: Path) -> str:
@@ -98,11 +99,14 @@ def times_of(values: FloatArray, unit: str) -> Times:
 
 
 def _wide(
-    lines: Iterator[list[str]], columns: Columns, path: Path, limits: VideoLimits
+    lines: Iterator[list[str]],
+    columns: Columns,
+    path: Path,
+    options: KeypointOptions,
+    limits: VideoLimits,
 ) -> KeypointTable:
     names = tuple(columns.points)
     places = [columns.points[name] for name in names]
-    has_visibility = any("v" in each for each in places)
     sides = tuple(columns.hands)
     places += [each for side in sides for each in columns.hands[side]]
     rows: list[list[list[float]]] = []
@@ -129,11 +133,14 @@ def _wide(
         moments = chosen.times
         points = np.where(chosen.rows[:, None, None] < 0, np.nan, points[chosen.rows])
     table = table_of(
-        names, points[:, : len(names)], has_visibility, times_of(moments, columns.unit)
+        _kind(names, path, options),
+        points[:, : len(names)],
+        times_of(moments, columns.unit),
+        path,
+        hands_of(points[:, len(names) :], sides),
     )
     return replace(
         table,
-        hands=hands_of(points[:, len(names) :, :2], sides),
         notes=() if chosen is None else chosen.notes,
         people=None if chosen is None else chosen.people,
     )
@@ -189,7 +196,11 @@ def _choose_person(
 
 
 def _long(
-    lines: Iterator[list[str]], headings: Sequence[str], path: Path, limits: VideoLimits
+    lines: Iterator[list[str]],
+    headings: Sequence[str],
+    path: Path,
+    options: KeypointOptions,
+    limits: VideoLimits,
 ) -> KeypointTable:
     plainly = [plain(heading) for heading in headings]
     named = next(plainly.index(name) for name in NAMES if name in plainly)
@@ -205,44 +216,28 @@ def _long(
         at = _number(line, when, number, path)
         landmarks = frames.setdefault(at, {})
         limits.require_frames(len(frames))
-        name = numbered_landmark(line[named].strip()) if named < len(line) else ""
+        name = line[named].strip() if named < len(line) else ""
         if name in landmarks or len(landmarks) >= MOST_LANDMARKS:
             raise KeypointFileError(
                 f"{path}: row {number} is the second for {name} at {at:g}; keep one person's rows"
             )
         landmarks[name] = [_number(line, axes.get(axis), number, path) for axis in ("x", "y", "v")]
-    names = tuple(dict.fromkeys(name for landmarks in frames.values() for name in landmarks))
+    names = name_numbers(name for landmarks in frames.values() for name in landmarks)
     unseen = [np.nan] * 3
     rows = [[landmarks.get(name, unseen) for name in names] for landmarks in frames.values()]
     return table_of(
-        names, _points(rows, len(names)), "v" in axes, times_of(np.array(list(frames)), unit)
+        _kind(tuple(names.values()), path, options),
+        _points(rows, len(names)),
+        times_of(np.array(list(frames)), unit),
+        path,
     )
 
 
-def table_of(
-    names: tuple[str, ...], points: FloatArray, has_visibility: bool, times: Times
-) -> KeypointTable:
-    """Create a table of MediaPipe's landmarks.
-
-    Parameters
-    ----------
-    names
-        K names.
-    points
-        ``(T, K, 3)``: x, y and visibility; NaN: unknown.
-    has_visibility
-        Whether the file has visibilities at all.
-    times
-        Times of the frames.
-
-    """
-    confidence = visibility_of(points) if has_visibility else None
-    return KeypointTable(
-        names=names,
-        xy=mask_unseen(points[..., :2], confidence, 0.0),
-        confidence=confidence,
-        times=times,
-    )
+def _kind(names: tuple[str, ...], path: Path, options: KeypointOptions) -> KeypointSet:
+    """Return the set of keypoints with these names, all of which may be numbers."""
+    if names and all(name.isdecimal() for name in names):
+        return name_points(names, path, options)
+    return KeypointSet("", names)
 
 
 def _points(rows: list[list[list[float]]], count: int) -> FloatArray:

@@ -9,26 +9,25 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any, Final
 
 import numpy as np
 
+from app.keypoint_files.keypoint_people import Person, table_of_people
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
     KeypointOptions,
     KeypointTable,
     Times,
-    hands_of,
-    mask_unseen,
 )
 from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.poses.frame import SIDES, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import translate_landmark
-from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 
 BEGINNINGS: Final[Mapping[bytes, str]] = {
@@ -55,7 +54,7 @@ def read_pose_format(path: Path, options: KeypointOptions, limits: VideoLimits) 
     """Read the most prominent person; see `app.keypoint_files.read_keypoints`."""
     try:
         with path.open("rb") as file:
-            return _read(file, path.stat().st_size, limits)
+            return _read(file, path, limits)
     except OsgError:
         raise
     except (*MALFORMED, struct.error) as error:
@@ -65,7 +64,7 @@ def read_pose_format(path: Path, options: KeypointOptions, limits: VideoLimits) 
         ) from error
 
 
-def _read(file: IO[bytes], size: int, limits: VideoLimits) -> KeypointTable:
+def _read(file: IO[bytes], path: Path, limits: VideoLimits) -> KeypointTable:
     layout = BEGINNINGS[file.read(4)]
     width, height, _, count = _unpack(file, "<HHHH")
     if not 0 < count <= MOST_COMPONENTS:
@@ -83,7 +82,7 @@ def _read(file: IO[bytes], size: int, limits: VideoLimits) -> KeypointTable:
     if not 0 < people <= MOST_PEOPLE or values < 3 or not points:
         raise ValueError(f"{people} people, {values} values of a point")
     start, row = file.tell(), 4 * people * points
-    whole = (size - start) // (row * values)
+    whole = (path.stat().st_size - start) // (row * values)
     # Version 0.1 counts frames in 16 bits, which may be too few.
     frames = whole if layout == "<HHH" else frames
     if not 0 < frames <= whole:
@@ -96,27 +95,22 @@ def _read(file: IO[bytes], size: int, limits: VideoLimits) -> KeypointTable:
     shape = (frames, people, points, values - 1)
     places = np.memmap(file, "<f4", "r", start, shape)[:, :, wanted, :2]
     scores = np.memmap(file, "<f4", "r", start + row * (values - 1) * frames, shape[:3])
-    confidence = np.clip(np.nan_to_num(scores[:, :, wanted].astype(np.float64)), 0, 1)
-    xy = mask_unseen(places.astype(np.float64), confidence, 0.0)
-    bodies = slice(len(body.names))
-    chosen = max(
-        range(people),
-        key=lambda who: prominence_over(xy[:, who, bodies], confidence[:, who, bodies]),
-    )
-    seen = np.asarray(np.isfinite(xy[:, :, bodies]).all(axis=3)).any(axis=2)
-    return KeypointTable(
-        names=body.names,
-        xy=xy[:, chosen, bodies],
-        confidence=confidence[:, chosen, bodies],
-        times=Times(np.arange(frames, dtype=np.float64), counted=True),
+    seen = np.concatenate([places, scores[:, :, wanted, None]], axis=3).astype(np.float64)
+    seen[..., 2] = np.nan_to_num(seen[..., 2])
+    everybody = [[_person(one, len(body.names), tuple(hands)) for one in frame] for frame in seen]
+    times = Times(np.arange(frames, dtype=np.float64), counted=True)
+    options = KeypointOptions(frame_rate=float(rate) if np.isfinite(rate) and rate > 0 else None)
+    return replace(
+        table_of_people(everybody, times, path, options, names=body.names),
         frame_size=(width, height) if width and height else None,
-        frame_rate=float(rate) if np.isfinite(rate) and rate > 0 else None,
-        hands=hands_of(xy[:, chosen, len(body.names) :], tuple(hands)),
-        notes=(f"of {people} people number {chosen + 1} stands out most and is followed",)
-        if people > 1
-        else (),
-        people=seen.sum(axis=1, dtype=np.int64),
+        frame_rate=options.frame_rate,
     )
+
+
+def _person(points: FloatArray, size: int, sides: tuple[Side, ...]) -> Person:
+    """Return a person of points ``(K, 3)``: the body's, then those of the hands of these sides."""
+    hands = zip(sides, points[size:].reshape(-1, len(HAND_LANDMARKS), 3), strict=True)
+    return Person(points[:size], {side: hand for side, hand in hands if hand[:, 2].any()})
 
 
 def _unpack(file: IO[bytes], layout: str) -> tuple[Any, ...]:

@@ -15,10 +15,12 @@ from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
 from app.keypoint_files.registry import find_reader
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
 from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
+from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.wording import list_some
 
@@ -77,7 +79,9 @@ def read_keypoints(
     source, given = Path(path), options or KeypointOptions()
     allowed = limits or VideoLimits()
     table = _table(source, given, allowed)
-    time = _seconds(table, given, source)
+    time, clock = _seconds(table, given, source), FrameClock()
+    if not table.times.counted:
+        time = np.array([clock.seconds(each) for each in time.tolist()])
     allowed.require_seconds(float(time[-1] - time[0]))
     landmarks, columns, notes = _map_names(table.names, given.landmarks, source)
     size = _frame_size(table, given, source)
@@ -96,7 +100,13 @@ def read_keypoints(
         poses=poses,
         hands=hands,
         salute=np.array([best_salute(frame) for frame in hands]),
-        warnings=(*table.notes, *notes, *_gaps(poses, people)),
+        warnings=(
+            *table.notes,
+            *notes,
+            *_gaps(poses, people),
+            *_direction(poses),
+            *tell_jumps(clock.jumps),
+        ),
         people=people,
     )
     return ReadKeypoints(recording, table.hands is not None)
@@ -107,6 +117,7 @@ def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> Keypoin
         table = find_reader(path)(path, options, limits)
     except (UnicodeDecodeError, csv.Error) as error:
         raise KeypointFileError(f"{path} is no text table ({error}); export it again") from error
+    table = table.without_far(options.frame_size or table.frame_size)
     if not np.isfinite(table.xy).all(axis=2).any():
         raise KeypointFileError(
             f"{path}: no keypoint is seen in any of {len(table.xy)} frames; is somebody in the "
@@ -197,3 +208,21 @@ def _gaps(poses: PoseSequence, people: npt.NDArray[np.int64]) -> tuple[str, ...]
     unseen = int((~poses.seen.any(axis=1)).sum())
     who = "that person is not seen" if people.max(initial=0) > 1 else "no person"
     return (f"{who} in {unseen} of {len(poses)} frames",) if unseen else ()
+
+
+def _direction(poses: PoseSequence) -> tuple[str, ...]:
+    """Return a sentence if the body stands on its head all the time, as where y points upwards."""
+    ends = [
+        [poses.column(name) for name in names if name in poses.landmarks]
+        for names in (SHOULDERS, HIPS)
+    ]
+    if not all(ends):
+        return ()
+    across, up = (np.mean(ends[1], axis=0) - np.mean(ends[0], axis=0)).T
+    known = np.isfinite(up)
+    if not known.any() or (up[known] > -np.abs(across[known])).any():
+        return ()
+    return (
+        "the body is upside down in every frame; if y points upwards in this file, write the "
+        "picture's height minus y",
+    )

@@ -14,6 +14,7 @@ from app.keypoint_files.openpose import is_openpose, read_openpose
 from app.keypoint_files.pose_format import BEGINNINGS, read_pose_format
 from app.keypoint_files.sleap import read_sleap
 from app.recognition.errors import KeypointFileError
+from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.strict_json import is_utf16
 
@@ -21,6 +22,7 @@ Reader = Callable[[Path, KeypointOptions, VideoLimits], KeypointTable]
 
 READERS: Mapping[str, Reader] = {
     ".csv": read_mediapipe_table,
+    ".tsv": read_mediapipe_table,
     ".json": read_mediapipe_json,
     ".slp": read_sleap,
     ".h5": read_sleap,
@@ -55,12 +57,16 @@ def find_reader(path: Path) -> Reader:
             f"{path.name} is no keypoint file by its ending; there are: {', '.join(READERS)}, and "
             f"folders of OpenPose"
         )
+    with path.open("rb") as file:
+        kind = find_file_kind(file.read(HEAD_BYTES))
+    if kind is not None:
+        raise KeypointFileError(f"{path} is {kind.name} and no keypoint file; {kind.remedy}")
     if reader is read_mediapipe_table and is_deeplabcut(path):
         return read_deeplabcut
     return reader
 
 
-Ending = Literal[".csv", ".json", ".slp", ".h5", ".pose", ".zip"]
+Ending = Literal[".csv", ".tsv", ".json", ".slp", ".h5", ".pose", ".zip"]
 """Endings by which `app.keypoint_files.read_keypoints` chooses the reader; an archive holds a
 folder of OpenPose."""
 
@@ -82,5 +88,5 @@ def keypoint_ending(head: bytes, name: str) -> Ending | None:
     if head.startswith(_HDF5):
         return ".slp" if lower.endswith(".slp") else ".h5"
     named = next((ending for ending in get_args(Ending) if lower.endswith(ending)), None)
-    is_text = b"\0" not in head or (named == ".csv" and is_utf16(head))
-    return named if named in (".csv", ".json") and is_text else None
+    is_text = b"\0" not in head or (named in (".csv", ".tsv") and is_utf16(head))
+    return named if named in (".csv", ".tsv", ".json") and is_text else None

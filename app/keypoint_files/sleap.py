@@ -5,11 +5,13 @@ from __future__ import annotations
 import importlib
 import json
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from app.keypoint_files.keypoint_people import Person, table_of_people
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
@@ -21,7 +23,7 @@ from app.keypoint_files.keypoint_table import (
 from app.keypoint_files.self_contained import require_self_contained
 from app.recognition.errors import KeypointFileError, OsgError
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.people import Choice, People, SeenPerson, prominence_over
+from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
 
 
@@ -58,25 +60,24 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
         raise KeypointFileError(f"{path} has no labelled frame; give a file with predictions")
     frames = np.array([int(frame.frame_idx) for frame in labelled], dtype=np.float64)
     tracks = list(labels.tracks)
+    track: Any = _most_prominent(labelled, tracks) if tracks else None
+    everybody = [
+        [Person(_points(each)) for each in frame.instances if not tracks or each.track is track]
+        for frame in labelled
+    ]
+    if not any(everybody):
+        raise KeypointFileError(f"{path}: nobody is seen in any of {len(labelled)} frames")
+    times = Times(frames, counted=True)
+    table = table_of_people(everybody, times, path, options, names=names)
     if tracks:
-        track = _most_prominent(labelled, tracks)
-        followed = _read_track(labelled, track, len(names))
-        notes = _notes(len(tracks), f"track {track.name!r} stands out most and is followed")
-        people = np.array([_count_tracks(frame) for frame in labelled])
-    else:
-        followed, choice = _choose_person(labelled, frames / options.nominal_rate, len(names))
-        notes, people = choice.notes, choice.count
-    if len(labels.videos) > 1:
-        notes += (f"the file holds {len(labels.videos)} videos; the first is read",)
-    return KeypointTable(
-        names=names,
-        xy=mask_unseen(followed[..., :2], followed[..., 2], 0.0),
-        confidence=np.clip(np.nan_to_num(followed[..., 2]), 0, 1),
-        times=Times(frames, counted=True),
-        frame_size=_size(labels),
-        notes=notes,
-        people=people,
-    )
+        table = replace(
+            table,
+            notes=_notes(len(tracks), f"track {track.name!r} stands out most and is followed"),
+            people=np.array([_count_tracks(frame) for frame in labelled]),
+        )
+    more = len(labels.videos) > 1
+    notes = (f"the file holds {len(labels.videos)} videos; the first is read",) if more else ()
+    return replace(table, frame_size=_size(labels), notes=table.notes + notes)
 
 
 def _labels(path: Path, limits: VideoLimits) -> Any:
@@ -157,7 +158,7 @@ def _points(instance: Any) -> FloatArray:
     stored = instance.points
     score = np.ones(len(points))
     if "score" in (stored.dtype.names or ()):
-        score = np.asarray(stored["score"], dtype=np.float64)
+        score = np.nan_to_num(np.asarray(stored["score"], dtype=np.float64))
     return np.column_stack([points, score])
 
 
@@ -180,41 +181,6 @@ def _measure_prominence(points: list[FloatArray]) -> float:
 
 def _count_tracks(frame: Any) -> int:
     return len({id(instance.track) for instance in frame.instances if instance.track})
-
-
-def _read_track(labelled: list[Any], track: Any, nodes: int) -> FloatArray:
-    """Return ``(T, K, 3)`` x, y, score of one track."""
-    points = np.full((len(labelled), nodes, 3), np.nan)
-    for row, frame in enumerate(labelled):
-        for instance in frame.instances:
-            if instance.track is track:
-                points[row] = _points(instance)
-    return points
-
-
-def _choose_person(labelled: list[Any], times: FloatArray, nodes: int) -> tuple[FloatArray, Choice]:
-    """Return ``(T, K, 3)`` of the person who stands out most, and the choice of that person."""
-    people, seen = People(), []
-    for frame, time in zip(labelled, times.tolist(), strict=True):
-        points = [_points(instance) for instance in frame.instances]
-        seen.append([one for one in points if np.isfinite(one[:, :2]).any()])
-        scores = [_mean_score(one) for one in seen[-1]]
-        people.add(
-            time,
-            [SeenPerson(one[:, :2], score) for one, score in zip(seen[-1], scores, strict=True)],
-        )
-    choice = people.choose()
-    chosen = np.full((len(labelled), nodes, 3), np.nan)
-    for row, place in enumerate(choice.index):
-        if place is not None:
-            chosen[row] = seen[row][place]
-    return chosen, choice
-
-
-def _mean_score(points: FloatArray) -> float:
-    """Return the mean score of points ``(K, 3)``, of those that have one; else 0."""
-    known = points[np.isfinite(points[:, 2]), 2]
-    return float(known.mean()) if len(known) else 0.0
 
 
 def _size(labels: Any) -> tuple[int, int] | None:

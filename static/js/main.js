@@ -48,6 +48,7 @@ import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart, recover } from "./studio/workspace.js";
+import { forgetArrived } from "./clips/arrived-clips.js";
 import { acceptFiles, drawUploads, tellUnsent } from "./upload/upload-list.js";
 
 /** @import { State } from "./core/types.d.ts" */
@@ -218,6 +219,7 @@ async function start() {
   });
   // No tour after a link: its reader came for the linked content.
   if (!linked) offerTour();
+  forgetArrived(state.clips);
   tellUnsent();
 }
 

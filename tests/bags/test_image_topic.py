@@ -18,6 +18,7 @@ from app.bags.image_messages import raw_image
 from app.bags.image_topic import BagFrames
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
+from app.recognition.recording.timestamps import LONGEST_PAUSE
 from app.recognition.recording.video import VideoFrame
 from app.recognition.recording.video_limits import VideoLimits
 from tests.bags.bag_files import DELAY, START, Row, compressed, header, message, raw, write_bag
@@ -76,6 +77,43 @@ def test_a_clock_that_jumps_back_is_repaired_and_told(tmp_path: Path) -> None:
     assert (np.diff(times) > 0).all()
     assert times[-1] < 1
     assert "2 of 6 messages had no timestamp, or one not later" in reader.warnings[0]
+
+
+@pytest.mark.parametrize("jump", [20, 3600, 1_700_000_000])
+@pytest.mark.parametrize("whole", [False, True], ids=["headers", "whole machine"])
+def test_a_clock_that_is_set_while_recording_is_noticed_and_told(
+    tmp_path: Path, jump: int, whole: bool
+) -> None:
+    times = [0.1 * place for place in range(8)]
+    taken = [10**9 + round(time * 1e9) + (time > 0.35) * jump * 10**9 for time in times]
+    rows: list[Row] = [
+        ("/camera", raw(picture(place), "rgb8", stamp), stamp if whole else START + place * 10**8)
+        for place, stamp in enumerate(taken)
+    ]
+    frames, reader = frames_of(tmp_path, rows)
+    if whole and jump < LONGEST_PAUSE:  # The camera may as well have paused.
+        assert frames[-1].time == pytest.approx(times[-1] + jump)
+        assert reader.warnings == ()
+        return
+    assert [frame.time for frame in frames] == pytest.approx(times)
+    assert f"ahead by {jump} s; time goes on" in " ".join(reader.warnings)
+
+
+def test_messages_that_arrive_late_and_at_once_keep_their_stamps(tmp_path: Path) -> None:
+    late = [0, 0, 5 * 10**9, 0, 0]
+    rows: list[Row] = [
+        (
+            "/camera",
+            raw(picture(place), "rgb8", START + place * 10**8),
+            START + place * 10**8 + wait,
+        )
+        for place, wait in enumerate(late)
+    ]
+    frames, reader = frames_of(tmp_path, rows)
+    assert sorted(frame.time for frame in frames) == pytest.approx(
+        [0.0, 0.1, 0.2, 0.3, 0.4], abs=0.2
+    )
+    assert not any("clock" in told for told in reader.warnings)
 
 
 def to_uyvy(image: Image) -> Image:

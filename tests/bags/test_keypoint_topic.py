@@ -116,6 +116,7 @@ def test_nobody_unknown_names_and_numbers_out_of_all_bounds_are_landmarks_not_se
                 content.keypoints[0].name = "THIRD_ARM"
                 content.keypoints[15].x = float("inf")
                 content.keypoints[16].x = 1e30
+                content.keypoints[13].x = content.keypoints[13].y = -1.0
                 if index == 0:
                     content.keypoints = []
             yield topic, content, received
@@ -123,6 +124,7 @@ def test_nobody_unknown_names_and_numbers_out_of_all_bounds_are_landmarks_not_se
     read = record_bag(write_bag(tmp_path / "dive", spoiled()), video=tmp_path / "video")
     assert np.isnan(read.poses.column("left_wrist")).all()
     assert np.isnan(read.poses.column("right_wrist")).all()
+    assert np.isnan(read.poses.column("left_elbow")).all()
     warnings = " ".join(read.warnings)
     assert "no person in 1 of" in warnings
     assert "/pose_keypoints has no nose" in warnings

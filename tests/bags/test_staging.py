@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import shutil
+import sqlite3
 import stat
 import tempfile
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 from backports import zstd
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -17,7 +19,16 @@ from app.bags import staging
 from app.bags.bag import open_bag
 from app.bags.staging import is_bag_archive, stage
 from app.recognition.errors import BagError
-from tests.bags.bag_files import START, Storage, file_of, message, write_bag, zip_of
+from tests.bags.bag_files import (
+    START,
+    Storage,
+    file_of,
+    message,
+    raw,
+    write_bag,
+    zip_of,
+    zipped,
+)
 
 
 @pytest.fixture(autouse=True)
@@ -219,3 +230,27 @@ def test_a_message_definition_runs_no_code(tmp_path: Path) -> None:
             store.register(get_types_from_msg(text, "std_msgs/msg/String"))
             store.deserialize_cdr(b"\0\1\0\0\4\0\0\0abc\0", "std_msgs/msg/String")
     assert not marker.exists()
+
+
+def test_messages_that_wait_in_a_log_beside_the_file_are_named(tmp_path: Path) -> None:
+    """A recorder that is killed leaves them there, and the file itself seems to be empty."""
+    rows = [("/camera", raw(np.zeros((2, 2, 3), np.uint8), "rgb8", START), START)]
+    folder = write_bag(tmp_path / "dive", rows, "sqlite3")
+    file = file_of(folder)
+    whole = sqlite3.connect(file)
+    whole.execute("PRAGMA journal_mode=WAL")
+    whole.execute("PRAGMA wal_autocheckpoint=0")
+    whole.execute("UPDATE messages SET timestamp = timestamp + 1")
+    whole.commit()
+    killed = Path(shutil.copytree(folder, tmp_path / "killed"))
+    whole.close()
+    for path in (killed, killed / file.name, zipped(killed)):
+        words = rf"messages wait in '{file.name}-wal'.*sqlite3 {file.name}"
+        with pytest.raises(BagError, match=words), open_bag(path):
+            pass
+    # What the message says to do.
+    with contextlib.closing(sqlite3.connect(killed / file.name)) as once:
+        once.execute("PRAGMA wal_checkpoint")
+    for path in (folder, killed):
+        with open_bag(path) as bag:
+            assert bag.topics[0].messages == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from app.cli import clip_argument
 from tests.command_line import OsgStudio
 from tests.keypoint_files.files import write_named
+from tests.recognition.damaged_clips import write_clip
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import circle, line, recording
 
@@ -57,6 +59,21 @@ def test_every_clip_is_in_the_table_with_its_faults(
     assert "3/3 day 2/b.csv: line" in ended.error
     assert "3 clips, 2 gestures recognised" in ended.error
     assert "left out, no clip by its first bytes: notes.txt\n" in ended.error
+
+
+def test_copies_of_a_clip_are_not_counted_again(
+    osg_studio: OsgStudio, folder: Path, command: list[str]
+) -> None:
+    clip = write_clip(folder / "clip.mp4").rename(folder / "GL010042.LRV")
+    shutil.copy(clip, folder / "dive.mp4.part")
+    for name in ("GX010042.MP4", "dive.mp4"):  # damaged, so that the test is fast
+        (folder / name).write_bytes(b"\0\0\0\x18ftypmp42")
+    ended = osg_studio(*command)
+    clips = {row["clip"] for row in read(folder / "takes.csv")}
+    assert {"GX010042.MP4", "dive.mp4"} < clips
+    assert not {"GL010042.LRV", "dive.mp4.part"} & clips
+    copies = "GL010042.LRV, dive.mp4.part"
+    assert f"left out, a small or unfinished copy of a clip: {copies}\n" in ended.error
 
 
 def test_a_batch_of_nothing_but_pairs_recognises_nothing(

@@ -22,6 +22,7 @@ from tests.keypoint_files.files import (
     renamed,
     sleap_labels,
     write_deeplabcut,
+    write_hands,
     write_named,
     write_numbered,
     write_openpose,
@@ -250,3 +251,16 @@ def test_an_empty_folder_is_refused(osg_studio: OsgStudio, tmp_path: Path, langu
     ended = osg_studio("recognize", tmp_path / "empty", "--language", language)
     assert ended.code == 2
     assert "neither a dive recording (metadata.yaml) nor frames of OpenPose" in ended.error
+
+
+def test_a_chapter_without_a_take_names_the_next_one(
+    osg_studio: OsgStudio, language: Path, tmp_path: Path
+) -> None:
+    poses = recording(circle, frames=50)
+    path = write_hands(tmp_path / "GX010042.csv", poses, hand_xy(salute()), "left_hand_{}_{}")
+    options = ("--frame-rate", "30", "--frame-size", "640x480")
+    ended = osg_studio("recognize", path, "--language", language, *options)
+    assert ended.code == 1
+    assert "GX010042.csv is a chapter of a recording that may go on in GX020042.csv" in (
+        " ".join(ended.error.split())
+    )

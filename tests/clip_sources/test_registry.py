@@ -107,3 +107,10 @@ def test_the_page_accepts_the_endings_of_every_source() -> None:
     videos = {ending for ending, kind in types.items() if kind.startswith("video/")}
     assert "video/*" in accepted
     assert endings - videos <= accepted
+
+
+def test_a_copy_without_its_clip_beside_it_is_a_take(tmp_path: Path) -> None:
+    copy = write_clip(tmp_path / "clip.mp4").rename(tmp_path / "GL010042.LRV")
+    assert is_take(copy)
+    (tmp_path / "GX010042.MP4").touch()
+    assert not is_take(copy)

@@ -181,6 +181,12 @@ def test_a_table_that_cannot_be_read_is_told_where(
         "[[1, 2]]",
         '[[{"x": "a", "y": 1}]]',
         "[[[[[]]]]]",
+        '{"images": [{}], "annotations": [{"image_id": 1, "keypoints": [1, 2, 1]}]}',
+        '{"images": 3, "annotations": [{"image_id": 1, "keypoints": [1, 2, 1]}]}',
+        '[{"image_id": 1, "keypoints": [1, 2]}]',
+        '[{"instances": 3}]',
+        '[{"instances": [{"keypoints": [[1, 2]], "keypoint_scores": [1, 1]}]}]',
+        '{"meta_info": {"keypoint_id2name": {"a": 1}}, "frames": [[[1, 2]]]}',
         "[" * 100_000,
     ],
 )

@@ -140,7 +140,7 @@ def test_a_folder_is_openpose_s_when_it_holds_its_files(tmp_path: Path) -> None:
         ('{"people": 3}', "is no frame of OpenPose"),
         ('{"people": [{"pose_keypoints_2d": [1, 2]}]}', "x, y, confidence in a row"),
         ('{"people": [{"pose_keypoints_2d": ["a", 2, 3]}]}', "is no frame of OpenPose"),
-        ('{"people": [{"pose_keypoints_2d": [1, 2, 0.5]}]}', "a person of 1 keypoints, needed: 25"),
+        ('{"people": [{"pose_keypoints_2d": [1, 2, 0.5]}]}', "has 1 keypoints without names"),
         ('{"people": []}', "nobody is seen in any of 1 frames"),
         ('{"people": [{"pose_keypoints_2d": []}]}', "a person of 0 keypoints"),
         ("[" * 100_000, "is no frame of OpenPose"),

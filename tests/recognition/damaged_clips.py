@@ -15,6 +15,7 @@ from pathlib import Path
 import av
 import numpy as np
 from av.container import OutputContainer
+from av.stream import Disposition
 from av.video.stream import VideoStream
 
 from app.recognition.poses.frame import Image
@@ -138,10 +139,18 @@ def huge_motion_jpeg(path: Path, side: int, *, stated: bool) -> Path:
     return path
 
 
-def sound_only(path: Path) -> Path:
-    """Write a clip with half a second of sound and no picture."""
+def sound_only(path: Path, cover: bytes = b"") -> Path:
+    """Write a clip with half a second of sound and no picture, but for a song's cover (JPEG)."""
     with av.open(str(path), "w") as container:
         stream = container.add_stream("aac", rate=16000)
+        if cover:
+            shown = container.add_stream("mjpeg", rate=1)
+            shown.width, shown.height, shown.pix_fmt = WIDTH, HEIGHT, "yuvj420p"
+            shown.disposition = Disposition.attached_pic
+            packet = av.Packet(cover)
+            packet.stream, packet.pts, packet.dts = shown, 0, 0
+            container.start_encoding()
+            container.mux(packet)
         frame = av.AudioFrame.from_ndarray(
             np.zeros((1, 8000), dtype=np.float32), format="fltp", layout="mono"
         )

@@ -40,6 +40,7 @@ INVITATION_FILES = frozenset(
         "js/camera/trouble.js",
         "js/camera/video-source.js",
         "js/core/api.js",
+        "js/core/browser-store.js",
         "js/core/dom.js",
         "js/core/text-limit.js",
         "js/invitation/gesture-takes.js",

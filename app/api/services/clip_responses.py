@@ -6,6 +6,7 @@ import json
 
 from app.api.http.schemas.clips import ClipView
 from app.clip_sources import source_named
+from app.recognition.recording.chapters import tell_chapters
 from app.store import Clip, ClipWithJob, JobStatus
 
 
@@ -18,6 +19,7 @@ def shows_pictures(clip: Clip) -> bool:
 def view_clip(found: ClipWithJob) -> ClipView:
     """Return a clip and the state of its newest job."""
     clip, job = found.clip, found.job
+    missing = json.loads(job.salute_warnings)
     hidden = {"idempotency_key", "deleted", "topics", "source", "options"}
     return ClipView(
         **clip.model_dump(exclude=hidden),
@@ -28,6 +30,6 @@ def view_clip(found: ClipWithJob) -> ClipView:
         error=job.error,
         error_code=job.error_code,
         warnings=json.loads(job.warnings),
-        salute_warnings=json.loads(job.salute_warnings),
+        salute_warnings=[*missing, *(tell_chapters(clip.name) if missing else ())],
         job_id=job.id,
     )

@@ -7,10 +7,17 @@ OpenPose's neck and mid-hip have none: they follow from the shoulders and the hi
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Final
 
-from app.recognition.poses.landmarks import POSE_LANDMARKS, UPPER_BODY, name_both_sides
+from app.recognition.poses.frame import Side
+from app.recognition.poses.landmarks import (
+    HAND_LANDMARKS,
+    POSE_LANDMARKS,
+    UPPER_BODY,
+    name_both_sides,
+)
 
 LandmarkSet = tuple[str | None, ...]
 
@@ -64,6 +71,111 @@ BODY_25: Final[LandmarkSet] = (
     "right_heel",
 )
 """OpenPose's default model (Cao et al. 2019)."""
+
+HALPE_26: Final[LandmarkSet] = (
+    *COCO_17,
+    *(None, None, None),  # top of the head, neck, middle of the hips
+    "left_foot_index",
+    "right_foot_index",
+    *(None, None),  # small toes
+    "left_heel",
+    "right_heel",
+)
+"""Halpe's body with feet (Fang et al. 2022), of AlphaPose and RTMPose."""
+
+H36M_17: Final[LandmarkSet] = (
+    None,  # middle of the hips
+    *("right_hip", "right_knee", "right_ankle"),
+    *("left_hip", "left_knee", "left_ankle"),
+    *(None, None, None, None),  # spine, thorax, neck, top of the head
+    *("left_shoulder", "left_elbow", "left_wrist"),
+    *("right_shoulder", "right_elbow", "right_wrist"),
+)
+"""Human3.6M's joints (Ionescu et al. 2014), of estimators of 3D poses."""
+
+CROWDPOSE_14: Final[LandmarkSet] = (*COCO_17[5:], None, None)
+"""CrowdPose (Li et al. 2019): COCO's body, then the top of the head and the neck."""
+
+FACE: Final = 68
+"""Keypoints of a face, between body and hands of a whole body."""
+
+
+@dataclass(frozen=True)
+class KeypointSet:
+    """A set of keypoints that is known by its count, its name or the names in it.
+
+    Attributes
+    ----------
+    title
+        Its name for people.
+    landmarks
+        N landmarks, one a keypoint; None stands for a keypoint that is left out.
+    words
+        What a file's own name of the set contains, in lower case, letters and digits alone.
+    by_count
+        Whether N keypoints without any name are of this set. Other sets of 14 and 17 are common.
+    hands
+        Place of the first of a hand's 21 keypoints, by its side.
+
+    """
+
+    title: str
+    landmarks: LandmarkSet
+    words: tuple[str, ...] = ()
+    by_count: bool = True
+    hands: Mapping[Side, int] = field(default_factory=dict)
+
+
+def _whole_body(title: str, body: LandmarkSet, word: str) -> KeypointSet:
+    left = len(body) + FACE
+    right = left + len(HAND_LANDMARKS)
+    landmarks = (*body, *(None,) * (FACE + 2 * len(HAND_LANDMARKS)))
+    return KeypointSet(title, landmarks, (word,), hands={"left": left, "right": right})
+
+
+KEYPOINT_SETS: Final = (
+    KeypointSet("COCO", COCO_17, ("coco",)),
+    KeypointSet("OpenPose's COCO", COCO_18),
+    KeypointSet("BODY_25", BODY_25),
+    KeypointSet("Halpe", HALPE_26),
+    KeypointSet("MediaPipe", POSE_LANDMARKS),
+    _whole_body("COCO-WholeBody", (*COCO_17, *(None,) * 6), "coco"),
+    _whole_body("Halpe", HALPE_26, "halpe"),
+    KeypointSet("H36M", H36M_17, ("h36m", "human36m"), by_count=False),
+    KeypointSet("CrowdPose", CROWDPOSE_14, ("crowdpose",), by_count=False),
+)
+"""The known sets of keypoints."""
+
+
+def find_keypoint_set(
+    count: int, called: str = "", names: Sequence[str] = ()
+) -> KeypointSet | None:
+    """Return the known set of a file's keypoints.
+
+    Parameters
+    ----------
+    count
+        Number of keypoints.
+    called
+        The file's name of the set or of the data it comes from, in any spelling; it may be unknown.
+    names
+        The keypoints' names, if the file gives them: a set is known where each landmark in it has
+        its name.
+
+    """
+    found = [each for each in KEYPOINT_SETS if len(each.landmarks) == count]
+    wanted = re.sub(r"[^a-z0-9]", "", called.lower())
+    if known := [each for each in found if any(word in wanted for word in each.words)]:
+        return known[0]
+    if names:
+        own = [translate_landmark(name) for name in names]
+        return next((each for each in found if _agrees(each.landmarks, own)), None)
+    return next((each for each in found if each.by_count), None)
+
+
+def _agrees(landmarks: LandmarkSet, own: LandmarkSet | list[str | None]) -> bool:
+    return all(one in (None, other) for one, other in zip(landmarks, own, strict=True))
+
 
 _SIDES: Final = {"left": "left", "l": "left", "right": "right", "r": "right"}
 

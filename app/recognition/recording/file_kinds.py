@@ -1,8 +1,9 @@
-"""File kinds: what a file is by its first bytes, for those that hold no clip for us."""
+"""File kinds: what a file is by its first bytes: a video, or what holds no clip for us."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Final
 
 CONVERT: Final = "convert it to MP4 with H.264"
@@ -36,6 +37,8 @@ _MARKS: Final = (
     (0, b"GIF8", "a GIF picture", CONVERT),
     (0, b"\x89PNG", "a PNG picture", _PICTURE),
     (0, b"\xff\xd8\xff", "a JPEG picture", _PICTURE),
+    (8, b"WEBP", "a WebP picture", _PICTURE),
+    (0, b"II*\0", "a TIFF picture", _PICTURE),
     (4, b"ftypheic", "an HEIC picture", _PICTURE),
     (4, b"ftypheix", "an HEIC picture", _PICTURE),
     (4, b"ftypmif1", "an HEIF picture", _PICTURE),
@@ -48,13 +51,26 @@ _MARKS: Final = (
     (0, b"\0\0\0\1\x67", _H264, CONVERT),
     (0, b"\0\0\0\1\x27", _H264, CONVERT),
     (0, b"\0\0\0\1\x09", _H264, CONVERT),
+    (0, b"\0\0\0\1\x06", _H264, CONVERT),
+    (0, b"\0\0\1\x67", _H264, CONVERT),
+    (0, b"\0\0\1\x27", _H264, CONVERT),
+    (0, b"\0\0\1\x06", _H264, CONVERT),
     (0, b"\0\0\0\1\x40\1", _H265, CONVERT),
     (0, b"\0\0\0\1\x46\1", _H265, CONVERT),
+    (0, b"\0\0\0\1\x4e\1", _H265, CONVERT),
     (0, b"OggS", "an Ogg file", CONVERT),
     (0, b"ID3", "an MP3 file, which has no pictures", SEND_VIDEO),
     (8, b"WAVE", "a WAV file, which has no pictures", SEND_VIDEO),
+    (0, b"fLaC", "a FLAC file, which has no pictures", SEND_VIDEO),
     (0, b"HIERARCHY", "a BVH motion file", SEND_VIDEO),
     (0, b"PathFileType", "a TRC motion file", SEND_VIDEO),
+    (0, b"\x02\x50", "a C3D motion file", SEND_VIDEO),
+    (0, b"CDF\1", "a NetCDF file", SEND_VIDEO),
+    (0, b"CDF\2", "a NetCDF file", SEND_VIDEO),
+    (0, b"CDF\5", "a NetCDF file", SEND_VIDEO),
+    (0, b"MATLAB 5.0", "a MATLAB file", SEND_VIDEO),
+    (0, b"PAR1", "a Parquet table", SEND_VIDEO),
+    (0, b"version https://git-lfs", "a Git LFS pointer in place of the file", "run `git lfs pull`"),
     (0, b"<?xml", "an XML file", SEND_VIDEO),
     (0, b"\xef\xbb\xbf<?xml", "an XML file", SEND_VIDEO),
     (0, b"<!DOCTYPE html", "a web page", SEND_VIDEO),
@@ -65,6 +81,9 @@ _MARKS: Final = (
     (0, b"\x80\x05\x95", _PICKLE, SEND_VIDEO),
     (0, b"PK\x03\x04", "a zip archive", UNPACK),
     (0, b"\x1f\x8b", "a gzip archive", UNPACK),
+    (0, b"\x28\xb5\x2f\xfd", "a Zstandard archive", UNPACK),
+    (0, b"\xfd7zXZ\0", "an xz archive", UNPACK),
+    (0, b"BZh", "a bzip2 archive", UNPACK),
     (0, b"7z\xbc\xaf\x27\x1c", "a 7z archive", UNPACK),
     (0, b"Rar!", "a RAR archive", UNPACK),
 )
@@ -72,7 +91,74 @@ _MARKS: Final = (
 
 
 def find_file_kind(head: bytes) -> FileKind | None:
-    """Return what a file that begins with `head` is; None for an unknown kind."""
+    """Return what a file that begins with `head` is; None for a video or an unknown kind."""
+    if head and not head.strip(b"\0"):
+        return FileKind("only zeros at its beginning", "copy it again")
     found = ((name, do) for at, mark, name, do in _MARKS if head[at : at + len(mark)] == mark)
     kind = next(found, None)
     return None if kind is None else FileKind(*kind)
+
+
+HEAD_BYTES = 4096
+"""Bytes from the beginning of a file that `video_type` needs."""
+
+_MPEG_TS_PACKET = 188
+
+_ISO_BOXES = frozenset({b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot"})
+"""First boxes of an ISO or QuickTime file; old cameras write no ``ftyp``."""
+
+
+def video_type(head: bytes) -> str | None:
+    """Return the media type of a video that begins with `head`, or None when it is no video.
+
+    The kinds are those that `recording.video` opens: MP4 and QuickTime, Matroska and WebM,
+    AVI, MPEG transport streams.
+    """
+    if head[4:8] in _ISO_BOXES:
+        return "video/quicktime" if head[4:12] == b"ftypqt  " else "video/mp4"
+    if head[:4] == b"\x1aE\xdf\xa3":
+        return "video/webm" if b"webm" in head[:64] else "video/x-matroska"
+    if head[:4] == b"RIFF" and head[8:12] == b"AVI ":
+        return "video/x-msvideo"
+    if head[:4] == b"\0\0\1\xba":
+        return "video/mpeg"
+    return "video/mp2t" if _is_transport_stream(head) else None
+
+
+FEW_PACKETS, MANY_PACKETS = 3, 8
+"""Packets that tell a transport stream, where a file begins with one, and where it does not."""
+
+
+def _is_transport_stream(head: bytes) -> bool:
+    """Return whether MPEG transport packets begin within the first one, as in a broken-off start.
+
+    Camcorders (AVCHD) and Blu-ray write a time stamp of four bytes before each packet.
+    """
+    for size in (_MPEG_TS_PACKET, _MPEG_TS_PACKET + 4):
+        for first in range(min(size, len(head))):
+            packets = head[first::size]
+            # A file that begins in mid packet needs more of them: other bytes may be alike.
+            least = FEW_PACKETS if first in (0, 4) else MANY_PACKETS
+            if len(packets) >= least and set(packets) == {0x47}:
+                return True
+    return False
+
+
+def describe_unreadable(path: Path) -> str:
+    """Return, in a sentence, why a file cannot be read as a video, and what to do."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD_BYTES)
+    except OSError as error:
+        return f"{path.name} cannot be read ({error.strerror}); check the path"
+    if (kind := find_file_kind(head)) is not None:
+        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
+    if video_type(head) is not None:
+        return (
+            f"{path.name} is not a readable video: its index is cut off, or it is damaged; record "
+            "or export it again"
+        )
+    return (
+        f"{path.name} is not a readable video: it begins as no MP4, MOV, MKV, WebM, AVI, MPEG-TS "
+        "or MPG file does; export it as one of them, or name a table of keypoints .csv or .json"
+    )

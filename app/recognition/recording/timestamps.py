@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 FALLBACK_STEP = 1 / 25
@@ -23,19 +24,23 @@ DISCONTINUITY = 1.0
 """Seconds back from which a jump is a restart of the clock (joined files, a counter that wraps) and
 not a frame out of order: B-frames reorder by a few frames at most."""
 
+LONGEST_PAUSE = 60.0
+"""Seconds ahead from which a jump is a clock that is set, as on a computer without a battery for
+its clock: a camera that rests for so long, in the midst of a clip, shows no gesture over it."""
+
 
 @dataclass
 class FrameClock:
     """Computes a strictly increasing time for every frame, in display order.
 
     The first frame is at 0 s, every other one at the container's timestamp, whatever the nominal
-    rate. Three errors are repaired and counted:
+    rate. Four errors are repaired and counted:
 
     - no timestamp: one step after the frame before;
     - not later than the frame before (duplicates, frames out of order): `NUDGE` of a step after
       it;
-    - more than `DISCONTINUITY` back: the clock restarted; this frame comes one step after the
-      one before, and all later ones are moved along with it.
+    - more than `DISCONTINUITY` back, or `LONGEST_PAUSE` ahead: the clock restarted or was set; this
+      frame comes one step after the one before, and all later ones are moved along with it.
 
     A step is the last plausible difference of two timestamps.
 
@@ -45,11 +50,14 @@ class FrameClock:
         Seconds between frames as far as known: the nominal value first, then as seen.
     repaired
         Number of frames whose timestamp was missing or not usable.
+    jumps
+        Seconds by which the clock was set ahead, each time.
 
     """
 
     step: float = FALLBACK_STEP
     repaired: int = 0
+    jumps: list[float] = field(default_factory=list)
     _last: float | None = field(default=None, init=False)
     _last_stamp: float | None = field(default=None, init=False)
     _shift: float = field(default=0.0, init=False)
@@ -90,6 +98,10 @@ class FrameClock:
             gap = stamp - self._last_stamp
             if SHORTEST_STEP <= gap <= LONGEST_STEP:
                 self.step = gap
+        if now > last + LONGEST_PAUSE:
+            self.jumps.append(now - last - self.step)
+            self._shift -= self.jumps[-1]
+            return last + self.step
         if now > last:
             return now
         self.repaired += 1
@@ -97,3 +109,14 @@ class FrameClock:
             self._shift += last + self.step - now
             return last + self.step
         return last + NUDGE * self.step
+
+
+def tell_jumps(jumps: Sequence[float]) -> tuple[str, ...]:
+    """Return a sentence about seconds by which a clock was set ahead; none without any."""
+    if not jumps:
+        return ()
+    times = f", {len(jumps)} times in all" if len(jumps) > 1 else ""
+    return (
+        f"the clock was set while it was recorded, ahead by {jumps[0]:.0f} s{times}; time goes on "
+        "at the rate of the frames",
+    )

@@ -18,6 +18,7 @@ from typing import Literal, Protocol
 import av
 import numpy as np
 from av.container import InputContainer
+from av.stream import Disposition
 from av.video.frame import VideoFrame as DecodedFrame
 from av.video.reformatter import VideoReformatter
 from av.video.stream import VideoStream
@@ -25,8 +26,8 @@ from typing_extensions import Self
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.file_kinds import find_file_kind
-from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
+from app.recognition.recording.file_kinds import describe_unreadable
+from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
 __all__ = [
@@ -57,6 +58,9 @@ DECODER_THREADS = 2
 MISSING_SHARE, MISSING_SECONDS = 0.1, 0.5
 """Share and seconds of the stated duration that may be missing at the end, whichever is greater,
 before a clip counts as cut short: containers round, and sound may last a little longer."""
+
+COVER = Disposition.attached_pic | Disposition.timed_thumbnails
+"""Streams of pictures that are no video."""
 
 MOST_STREAMS = 64
 """Most streams that FFmpeg may open; a film with many languages has fewer."""
@@ -225,7 +229,7 @@ class FrameReader(Iterator[VideoFrame]):
         """Problems of the frames read so far, as sentences."""
         found = []
         read = f"{self._count} of {self.info.frames or 'an unknown number of'} frames were read"
-        stated = self.info.duration or 0.0
+        stated = (self.info.duration or 0.0) - sum(self._clock.jumps)
         if self._broken or self._faults:
             found.append(f"the clip is damaged: {read}, {self._faults} pieces of data were not")
         elif self._ended and stated - self._time > max(MISSING_SECONDS, MISSING_SHARE * stated):
@@ -238,14 +242,17 @@ class FrameReader(Iterator[VideoFrame]):
                 f"{self._clock.repaired} of {self._count} frames had no usable timestamp; "
                 "their time is estimated"
             )
-        return tuple(found)
+        return (*found, *tell_jumps(self._clock.jumps))
 
     def _check_statement(self) -> None:
         """Check the limits against the metadata, before decoding."""
         context = self._stream.codec_context
         self._limits.require_pixels(context.width, context.height)
         self._limits.require_frames(self._stream.frames)
-        self._limits.require_seconds(_stated_seconds(self._container, self._stream) or 0.0)
+        stated = _stated_seconds(self._container, self._stream) or 0.0
+        if stated > self._limits.seconds:
+            stated -= _measure_jumps(self._path, self._limits)
+        self._limits.require_seconds(stated)
 
     def _decode(self) -> Generator[DecodedFrame, None, None]:
         """Decode frames, counting those that cannot be decoded."""
@@ -349,21 +356,7 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
             "memory, or record or export it again"
         ) from error
     except (av.error.FFmpegError, OSError) as error:
-        raise VideoError(_describe_unreadable(path)) from error
-
-
-def _describe_unreadable(path: Path) -> str:
-    try:
-        with path.open("rb") as file:
-            kind = find_file_kind(file.read(64))
-    except OSError as error:
-        return f"{path.name} cannot be read ({error.strerror}); check the path"
-    if kind is not None:
-        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
-    return (
-        f"{path.name} is not a readable video: it is no MP4, MOV, MKV, WebM, AVI, MPEG-TS or "
-        "MPG file, or its index is cut off; record or export it again"
-    )
+        raise VideoError(describe_unreadable(path)) from error
 
 
 def _video_stream(container: InputContainer, path: Path) -> VideoStream:
@@ -373,9 +366,12 @@ def _video_stream(container: InputContainer, path: Path) -> VideoStream:
             f"{path.name} holds more streams than the limit of {MOST_STREAMS}; export its picture "
             "alone"
         )
-    stream = container.streams.best("video")
-    if not isinstance(stream, VideoStream):
-        others = sorted({other.type for other in container.streams})
+    best = container.streams.best("video")
+    # The cover of a song is a stream of one picture.
+    pictures = [each for each in container.streams.video if not each.disposition & COVER]
+    stream = best if best in pictures else next(iter(pictures), None)
+    if stream is None:
+        others = sorted({other.type for other in container.streams} - {"video"})
         raise VideoError(
             f"{path.name} holds no video, only {others or 'nothing'}; choose a clip with a picture"
         )
@@ -417,10 +413,32 @@ def _time_base(frame: DecodedFrame, stream: VideoStream) -> Fraction:
     return frame.time_base or stream.time_base or Fraction(1, av.time_base)
 
 
-def _stated_seconds(container: InputContainer, stream: VideoStream) -> float | None:
+def _stated_seconds(
+    container: InputContainer, stream: VideoStream, first: DecodedFrame | None = None
+) -> float | None:
     if stream.duration is not None and stream.time_base is not None:
-        return float(stream.duration * stream.time_base)
-    return None if container.duration is None else container.duration / av.time_base
+        whole = float(stream.duration * stream.time_base)
+    elif container.duration is not None:
+        whole = container.duration / av.time_base
+    else:
+        return None
+    begun = (container.start_time or 0) / av.time_base
+    if not begun and first is not None and first.pts is not None:
+        begun = float(first.pts * _time_base(first, stream))
+    # Matroska counts from 0, not from its first frame.
+    return whole - begun if "matroska" in container.format.name and 0 < begun < whole else whole
+
+
+def _measure_jumps(path: Path, limits: VideoLimits) -> float:
+    """Return by how many seconds the clock of a clip is set ahead, without decoding it."""
+    clock = FrameClock()
+    with suppress(av.error.FFmpegError, OSError), _open(path, limits) as container:
+        for packet in container.demux(_video_stream(container, path)):
+            if packet.dts is None or packet.time_base is None:
+                continue
+            if clock.seconds(float(packet.dts * packet.time_base)) > limits.seconds:
+                break
+    return sum(clock.jumps)
 
 
 def _info(
@@ -437,7 +455,7 @@ def _info(
     return VideoInfo(
         width=width,
         height=height,
-        duration=_stated_seconds(container, stream),
+        duration=_stated_seconds(container, stream, frame),
         frames=stream.frames or None,
         rotation=rotation,
         codec=_codec(stream),

@@ -1,5 +1,6 @@
 // The card above the clips while several wait: how many are done, which one runs, the time left.
 
+import { tabStore } from "../core/browser-store.js";
 import { byId, h } from "../core/dom.js";
 import { about, plural } from "../core/format.js";
 import { follow, queueOf, secondsLeft } from "./batch.js";
@@ -7,14 +8,14 @@ import { BUSY } from "./busy.js";
 
 /** @import { Batch, Clip, Job, State } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.queue"; // sessionStorage: clips of the batch, whose count a reload keeps
+const KEY = "osg-studio.queue"; // Clips of the batch, whose count a reload keeps
 
 /** @type {Batch | null | undefined} */
 let batch; // undefined before the first drawing after a load of the page
 
 /** @returns {Batch | null} */
 function kept() {
-  const members = JSON.parse(sessionStorage.getItem(KEY) ?? "null");
+  const members = tabStore.read(KEY);
   return members && { members, began: null, frames: 0, left: 0, at: 0 };
 }
 
@@ -46,7 +47,7 @@ export function drawBatch({ clips, jobs, loaded }) {
   const box = byId("batch");
   if (!loaded && !clips.length) return undefined; // The clips are not known yet.
   batch = follow(batch === undefined ? kept() : batch, clips, jobs, performance.now());
-  sessionStorage.setItem(KEY, JSON.stringify(batch?.members ?? null));
+  tabStore.write(KEY, batch?.members ?? null);
   box.hidden = !batch || batch.members.length < 2;
   if (!batch || box.hidden) return box.replaceChildren();
   const { total, done, title, now } = wordsOf(batch, clips, jobs);

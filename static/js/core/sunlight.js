@@ -1,18 +1,11 @@
 // The look for direct sunlight: black on white with large targets, kept by the browser.
 
+import { browserStore } from "./browser-store.js";
 import { byId } from "./dom.js";
 import { bind } from "./key-bindings.js";
 
-const KEY = "osg-studio.look"; // localStorage: a tablet on a boat stays as it was set.
+const KEY = "osg-studio.look"; // A tablet on a boat stays as it was set.
 const SUN = "sun";
-
-const stored = () => {
-  try {
-    return localStorage.getItem(KEY);
-  } catch {
-    return null;
-  }
-};
 
 /** @param {boolean} on */
 function show(on) {
@@ -24,16 +17,12 @@ function show(on) {
 function toggle() {
   const on = document.documentElement.dataset.look !== SUN;
   show(on);
-  try {
-    localStorage.setItem(KEY, on ? SUN : "");
-  } catch {
-    /* a browser without storage starts with the default */
-  }
+  browserStore.set(KEY, on ? SUN : null);
 }
 
 /** Bind the button in the header, and show the look that was chosen last. */
 export function bindSun() {
   byId("sun").onclick = toggle;
   bind({ keys: ["Shift+L"], text: "Readable in the sun", group: "Everywhere", run: toggle });
-  show(stored() === SUN);
+  show(browserStore.get(KEY) === SUN);
 }

@@ -1,24 +1,17 @@
 // Undo and redo of what was done in this tab, kept over reloads until the tab closes.
 
+import { tabStore } from "./browser-store.js";
 import { byId } from "./dom.js";
 import { bind } from "./key-bindings.js";
 import { complain, toast } from "./toasts.js";
 
 /** @import { Action, UndoHandlers } from "./types.d.ts" */
 
-const KEY = "osg-studio.undo"; // sessionStorage: a tab undoes what was done in it.
+const KEY = "osg-studio.undo"; // A tab undoes what was done in it.
 const MOST = 100;
 
-const stored = () => {
-  try {
-    return JSON.parse(sessionStorage.getItem(KEY) ?? "null");
-  } catch {
-    return null;
-  }
-};
-
 /** @type {{ done: Action[], undone: Action[] }} */
-let { done, undone } = stored() ?? { done: [], undone: [] };
+let { done, undone } = tabStore.read(KEY) ?? { done: [], undone: [] };
 
 /** @type {Map<string, UndoHandlers>} */
 const kinds = new Map();
@@ -80,7 +73,7 @@ export const undo = () => (working = working.then(() => step(done, undone, "undo
 export const redo = () => (working = working.then(() => step(undone, done, "redo", "Redone")));
 
 function keep() {
-  sessionStorage.setItem(KEY, JSON.stringify({ done, undone }));
+  tabStore.write(KEY, { done, undone });
 }
 
 /** Undo applies to the newest action only, so older messages must not offer it any more. */

@@ -1,4 +1,6 @@
-// The draft of a gesture: unsaved changes with their own undo, kept in localStorage.
+// The draft of a gesture: unsaved changes with their own undo, kept by the browser.
+
+import { browserStore } from "../core/browser-store.js";
 
 /** @import { Gesture, SwitchName } from "../core/types.d.ts" */
 
@@ -15,7 +17,7 @@
  * @typedef {Pick<Gesture, "label" | "description" | SwitchName> & { command: string, salient: string[] | null, clip: Where | null }} Draft
  */
 
-const KEY = "osg-studio.draft"; // localStorage: a draft outlives its tab, and a crash.
+const KEY = "osg-studio.draft"; // A draft outlives its tab, and a crash.
 const MOST_STEPS = 200; // Of undo: an hour of tireless clicking, a few hundred bytes each.
 const SHELF_LIFE = 30 * 24 * 3600e3; // ms. An older draft is dropped.
 
@@ -144,12 +146,12 @@ export function takeAlong(at) {
   );
   forget();
   const values = Object.fromEntries(changes);
-  localStorage.setItem(at, JSON.stringify({ values, time: Date.now() }));
+  browserStore.write(at, { values, time: Date.now() });
 }
 
 /** Delete the draft, after it was saved or dropped. */
 export function forget() {
-  if (place) localStorage.removeItem(place);
+  if (place) browserStore.set(place, null);
 }
 
 /** Drop the draft and go back to what it began from; one undo brings it back. */
@@ -158,13 +160,8 @@ export function discard() {
 }
 
 function keep() {
-  try {
-    if (place && isChanged())
-      localStorage.setItem(place, JSON.stringify({ values: now, time: Date.now() }));
-    else forget();
-  } catch {
-    /* Storage is full or forbidden: the draft lives as long as its tab. */
-  }
+  if (place && isChanged()) browserStore.write(place, { values: now, time: Date.now() });
+  else forget();
 }
 
 /**
@@ -172,10 +169,6 @@ function keep() {
  * @returns {{ values: Draft, time: number } | null}
  */
 function read(at) {
-  try {
-    const kept = JSON.parse((at && localStorage.getItem(at)) || "null");
-    return kept && Date.now() - kept.time < SHELF_LIFE ? kept : null;
-  } catch {
-    return null;
-  }
+  const kept = at && browserStore.read(at);
+  return kept && Date.now() - kept.time < SHELF_LIFE ? kept : null;
 }

@@ -3,6 +3,7 @@
 import { labelInName } from "../clips/clip-label.js";
 import { BUSY } from "../clips/busy.js";
 import * as api from "../core/api.js";
+import { tabStore } from "../core/browser-store.js";
 import { state, update } from "../core/state.js";
 import { complain, toast } from "../core/toasts.js";
 import { addToTestSet, putIntoTestSet, removeTake, runWithNews } from "../languages/test-set.js";
@@ -10,22 +11,14 @@ import { addFiles } from "../upload/upload-list.js";
 
 /** @import { Clip, LabelledTake, PendingClip } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.batch"; // sessionStorage: clips that wait for their poses.
+const KEY = "osg-studio.batch"; // Clips that wait for their poses.
 
-const stored = () => {
-  try {
-    return JSON.parse(sessionStorage.getItem(KEY) ?? "null") ?? [];
-  } catch {
-    return [];
-  }
-};
-
-update({ pending: stored() });
+update({ pending: tabStore.read(KEY) ?? [] });
 
 /** @param {PendingClip[]} pending */
 function setPending(pending) {
   update({ pending });
-  sessionStorage.setItem(KEY, JSON.stringify(pending));
+  tabStore.write(KEY, pending);
 }
 
 /**

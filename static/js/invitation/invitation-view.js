@@ -1,5 +1,6 @@
 // The page of an invited person: what the invitation is, and who shows.
 
+import { browserStore } from "../core/browser-store.js";
 import { h } from "../core/dom.js";
 import { limit } from "../core/text-limit.js";
 import { capital, showGestures } from "./gesture-takes.js";
@@ -61,20 +62,8 @@ async function open() {
 function memoryOf({ id }) {
   const key = `osg-studio.invitation.${id}`;
   /** @type {{ name: string, takes: Record<string, string> }} */
-  let kept = { name: "", takes: {} };
-  try {
-    kept = JSON.parse(localStorage.getItem(key) ?? "") ?? kept;
-  } catch {
-    // Nothing is kept, or not readable: the person begins anew.
-  }
-  const write = () => {
-    try {
-      localStorage.setItem(key, JSON.stringify(kept));
-    } catch {
-      // Private windows may keep nothing.
-    }
-  };
-  return { kept, write };
+  const kept = browserStore.read(key) ?? { name: "", takes: {} };
+  return { kept, write: () => browserStore.write(key, kept) };
 }
 
 /** @param {Invited} invited */

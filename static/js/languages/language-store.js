@@ -1,6 +1,7 @@
 // The languages as the server has them: loading, selecting, creating and importing.
 
 import * as api from "../core/api.js";
+import { browserStore } from "../core/browser-store.js";
 import { ask } from "../core/dialogs.js";
 import { plural } from "../core/format.js";
 import { refresh } from "../core/list-refresh.js";
@@ -15,7 +16,7 @@ const LAST = "osg-studio.language"; // A new tab starts with the language used l
 export async function reloadLanguages() {
   const languages = await attempt("Loading the languages", api.languages.list);
   if (!languages) return;
-  const wanted = [state.language, localStorage.getItem(LAST)].find((id) =>
+  const wanted = [state.language, browserStore.get(LAST)].find((id) =>
     languages.some((each) => each.id === id),
   );
   update({ languages, language: wanted ?? firstLanguage(languages)?.id ?? null });
@@ -64,7 +65,7 @@ const firstLanguage = (languages) => languages.find(knowsSampleClips) ?? languag
 export async function reloadLanguage() {
   const id = state.language;
   if (!id) return update({ gestures: null });
-  localStorage.setItem(LAST, id);
+  browserStore.set(LAST, id);
   const language = await attempt("Loading the language", () => api.languages.get(id));
   if (language && state.language === id) showNewest(language);
   return undefined;

@@ -1,6 +1,7 @@
 // Edits of a language: each makes a new revision, can be undone, and settles edit conflicts.
 
 import * as api from "../core/api.js";
+import { tabStore } from "../core/browser-store.js";
 import { currentLanguage, state } from "../core/state.js";
 import { recordAction, registerUndo } from "../core/undo.js";
 import { settleConflict } from "./edit-conflict.js";
@@ -8,19 +9,11 @@ import { reloadLanguage, reloadLanguages, showNewest } from "./language-store.js
 
 /** @import { Language } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.heads"; // sessionStorage, beside what can be undone
-
-const stored = () => {
-  try {
-    return JSON.parse(sessionStorage.getItem(KEY) ?? "null");
-  } catch {
-    return null;
-  }
-};
+const KEY = "osg-studio.heads"; // Beside what can be undone
 
 // Per language the newest revision that this tab made, and the revision whose content it has.
 /** @type {Record<string, { revision: number, shows: number }>} */
-const heads = stored() ?? {};
+const heads = tabStore.read(KEY) ?? {};
 
 /**
  * @param {string} language
@@ -28,7 +21,7 @@ const heads = stored() ?? {};
  */
 function setHead(language, head) {
   heads[language] = head;
-  sessionStorage.setItem(KEY, JSON.stringify(heads));
+  tabStore.write(KEY, heads);
 }
 
 /**

@@ -6,6 +6,7 @@ import { statusText } from "../clips/clip-store.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
+import { tabStore } from "../core/browser-store.js";
 import { h, WRITES } from "../core/dom.js";
 import { follow, state } from "../core/state.js";
 import { limit } from "../core/text-limit.js";
@@ -23,7 +24,7 @@ import { recordCard } from "./practice-records.js";
  * @typedef {{ language: string, diver: string, expected: string }} Attempt
  */
 
-const KEY = "osg-studio.diver"; // sessionStorage: one diver practises in a tab.
+const KEY = "osg-studio.diver"; // One diver practises in a tab.
 const LONGEST_NAME = 80;
 
 /** The clips that can be chosen: their poses are found, and they are not demonstrations. */
@@ -58,9 +59,9 @@ export function open(section) {
       type: "text",
       id: "practice-diver",
       autocomplete: "off",
-      value: sessionStorage.getItem(KEY) ?? "",
+      value: tabStore.get(KEY) ?? "",
       oninput: () => {
-        sessionStorage.setItem(KEY, diver.value);
+        tabStore.set(KEY, diver.value);
         draw();
       },
     }),

@@ -1,5 +1,6 @@
 // The picture of the clip: flat or as a space-time cube by viser, or drawn by the page itself.
 
+import { browserStore } from "../core/browser-store.js";
 import { figure } from "./pose-picture.js";
 import { versionOf } from "../clips/clip-store.js";
 import { byId, h, svg } from "../core/dom.js";
@@ -11,9 +12,9 @@ import { movingWrists, strokeOver } from "./wrist-motion.js";
 
 /** @import { Clip, Poses, State } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.cube"; // localStorage: whether the cube was shown last.
+const KEY = "osg-studio.cube"; // Whether the cube was shown last.
 
-let cube = localStorage.getItem(KEY) !== null;
+let cube = browserStore.get(KEY) !== null;
 let own = false; // whether the page draws the picture itself
 /** @type {(flat: boolean) => void} */
 let send = () => {};
@@ -35,8 +36,7 @@ function draw() {
 export function toggleCube() {
   if (own) return;
   cube = !cube;
-  if (cube) localStorage.setItem(KEY, "shown");
-  else localStorage.removeItem(KEY);
+  browserStore.set(KEY, cube ? "shown" : null);
   draw();
   send(!cube);
 }

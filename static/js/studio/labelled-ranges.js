@@ -1,5 +1,6 @@
 // Ranges of a clip that were labelled by hand, saved together as gestures or as takes to test.
 
+import { tabStore } from "../core/browser-store.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { moment, plural } from "../core/format.js";
 import { selectedClip, selectedRange, state, update } from "../core/state.js";
@@ -10,7 +11,7 @@ import { addToTestSet } from "../languages/test-set.js";
 
 /** @import { SelectedRange, State } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.ranges"; // sessionStorage: they survive a reload.
+const KEY = "osg-studio.ranges"; // They survive a reload.
 const ASKS = "What this range shows";
 
 const names = { placeholder: ASKS, "aria-label": ASKS };
@@ -25,7 +26,7 @@ const areTests = () => here().every(({ label }) => state.gestures?.labels.includ
 
 /** @param {State["ranges"]} ranges */
 function keep(ranges) {
-  sessionStorage.setItem(KEY, JSON.stringify(ranges));
+  tabStore.write(KEY, ranges);
   update({ ranges });
 }
 
@@ -88,7 +89,7 @@ export function buildRanges(hasLanguage) {
     if (saved && tests) toast("In the test set", "They are recognised again after every change.");
   };
   byId("ranges").replaceChildren(form, send);
-  update({ ranges: JSON.parse(sessionStorage.getItem(KEY) ?? "[]") });
+  update({ ranges: tabStore.read(KEY) ?? [] });
 }
 
 /**

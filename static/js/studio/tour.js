@@ -1,5 +1,6 @@
 // The tour of a first visit: a card that points at parts of the page, which stays usable.
 
+import { browserStore } from "../core/browser-store.js";
 import { byId, h } from "../core/dom.js";
 import { follow, selectedClip } from "../core/state.js";
 import { go } from "../core/views.js";
@@ -8,7 +9,7 @@ import { showExample } from "./welcome.js";
 /** `onClip`: the step needs a clip; without one the example is offered. */
 /** @typedef {{ title: string, text: string, places: string[], onClip?: boolean }} Step */
 
-const KEY = "osg-studio.tour"; // localStorage: the tour starts by itself once.
+const KEY = "osg-studio.tour"; // The tour starts by itself once.
 const GAP = 12; // px between the card and what it points at.
 
 /**
@@ -107,7 +108,7 @@ function end() {
   card.remove();
   card = null;
   came?.focus?.();
-  localStorage.setItem(KEY, "seen");
+  browserStore.set(KEY, "seen");
 }
 
 /**
@@ -194,5 +195,5 @@ export function startTour() {
 
 /** Start the tour on a first visit, without taking the focus. */
 export function offerTour() {
-  if (localStorage.getItem(KEY) === null) begin(false);
+  if (browserStore.get(KEY) === null) begin(false);
 }

@@ -3,6 +3,7 @@
 import { nearestFrame } from "../clips/frame-times.js";
 import { versionOf } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
+import { browserStore } from "../core/browser-store.js";
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
 import { selectedClip, selectedRange, state } from "../core/state.js";
@@ -12,9 +13,9 @@ import { movingWrists, tracksOf } from "./wrist-motion.js";
 
 /** @import { Clip, Poses } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.tracks"; // localStorage: whether the tracks were shown last.
+const KEY = "osg-studio.tracks"; // Whether the tracks were shown last.
 
-let open = localStorage.getItem(KEY) !== null;
+let open = browserStore.get(KEY) !== null;
 
 /** @type {{ clip: string, poses: Promise<Poses | null> } | null} */
 let loaded = null;
@@ -39,8 +40,7 @@ export const tracksButton = () =>
 /** Show the tracks, or hide them; remembered. */
 export function toggleTracks() {
   open = !open;
-  if (open) localStorage.setItem(KEY, "shown");
-  else localStorage.removeItem(KEY);
+  browserStore.set(KEY, open ? "shown" : null);
   document.getElementById("do-tracks")?.setAttribute("aria-pressed", String(open));
   drawTracks();
 }

@@ -1,6 +1,7 @@
 // The viser iframe: one workspace per tab, kept over reloads.
 
 import * as api from "../core/api.js";
+import { tabStore } from "../core/browser-store.js";
 import { byId, h } from "../core/dom.js";
 import { listenToKeys } from "../core/key-bindings.js";
 import { state } from "../core/state.js";
@@ -10,7 +11,7 @@ import { drawByPage, drawByViser, isFlat } from "./clip-picture.js";
 
 /** @import { WorkspaceView } from "../core/types.d.ts" */
 
-const KEY = "osg-studio.workspace"; // sessionStorage: each tab has a workspace of its own.
+const KEY = "osg-studio.workspace"; // Each tab has a workspace of its own.
 const LOADING_LIMIT = 20000; // ms. The client is one file of 3 MB from this machine.
 
 const hasWebgl = Boolean(document.createElement("canvas").getContext("webgl2"));
@@ -22,15 +23,15 @@ let opened = null; // promise of the workspace's id
 let wanted = null; // the view to show
 let shown = Promise.resolve();
 
-// A duplicated tab begins with a copy of the first one's sessionStorage. So the workspace's id is
+// A duplicated tab begins with a copy of what the first one keeps. So the workspace's id is
 // stored there only while no page is open to hold it, and the copy has none.
-let mine = sessionStorage.getItem(KEY);
-sessionStorage.removeItem(KEY);
+let mine = tabStore.get(KEY);
+tabStore.set(KEY, null);
 addEventListener("pagehide", () => {
-  if (mine) sessionStorage.setItem(KEY, mine);
+  if (mine) tabStore.set(KEY, mine);
 });
 addEventListener("pageshow", ({ persisted }) => {
-  if (persisted) sessionStorage.removeItem(KEY);
+  if (persisted) tabStore.set(KEY, null);
 });
 
 /** The workspace of this tab, if it still exists on the server. */

@@ -4,6 +4,10 @@ import { ask } from "../core/dialogs.js";
 
 const HEAD = 65536; // bytes at the beginning of a file, which show its kind.
 
+// Keys of a list of frames, of people (MMPose, COCO) or of their images.
+const KEYS = "frames|poses|data|results|instance_info|annotations|images|categories";
+const LISTS = new RegExp(`^\\s*(\\[|\\{[^]*?"(${KEYS})"\\s*:\\s*\\[)`);
+
 /**
  * The kind of a .json file: "language", "keypoints", or "frame", one frame of OpenPose.
  * A language is an object of gestures; keypoints are a list of frames, or an object with one.
@@ -14,9 +18,7 @@ export async function kindOfJson(file) {
   const head = await file.slice(0, HEAD).text();
   if (/"osg-studio\/gesture-language"/.test(head)) return "language";
   if (/^\s*\{[^{]*"people"\s*:\s*\[/.test(head)) return "frame";
-  return /^\s*(\[|\{[^]*?"(frames|poses|data|results)"\s*:\s*\[)/.test(head)
-    ? "keypoints"
-    : "language";
+  return LISTS.test(head) ? "keypoints" : "language";
 }
 
 /** @type {Record<string, string>} */

@@ -1,6 +1,7 @@
 // Resumable uploads (tus 1.0.0): they survive a lost connection, a reload and a server's restart.
 
 import { ApiError, BASE, isAway, problemOf, unreachable } from "../core/api.js";
+import { browserStore } from "../core/browser-store.js";
 
 /** @import { Stand } from "../core/types.d.ts" */
 
@@ -25,21 +26,12 @@ const keyOf = ({ name, size, lastModified }) => `osg-studio.upload.${size}.${las
  * @param {string | null} place
  */
 function keep(file, place) {
-  try {
-    if (place) localStorage.setItem(keyOf(file), place);
-    else localStorage.removeItem(keyOf(file));
-  } catch {
-    /* Storage is full or forbidden: the upload can be resumed only in this tab. */
-  }
+  browserStore.set(keyOf(file), place);
 }
 
 /** @param {File} file */
 function kept(file) {
-  try {
-    return localStorage.getItem(keyOf(file));
-  } catch {
-    return null;
-  }
+  return browserStore.get(keyOf(file));
 }
 
 /**

@@ -3,6 +3,7 @@
 import { loadClip } from "../clips/clip-pages.js";
 import { needsTopic, select } from "../clips/clip-store.js";
 import { openTopics } from "../clips/topic-dialog.js";
+import { tabStore } from "../core/browser-store.js";
 import { byId, h, icon, iconButton, reconcile } from "../core/dom.js";
 import { bytes, timeLeft } from "../core/format.js";
 import { state, update } from "../core/state.js";
@@ -14,7 +15,7 @@ import { upload as send } from "./tus-upload.js";
 
 /** @import { State, Upload } from "../core/types.d.ts" */
 
-const UNSENT = "osg-studio.unsent"; // sessionStorage: names of files that a reload has dropped.
+const UNSENT = "osg-studio.unsent"; // Names of files that a reload has dropped.
 
 const AT_ONCE = 2; // More would share the same bandwidth, and each would finish later.
 
@@ -27,14 +28,14 @@ addEventListener("beforeunload", (event) => {
 });
 addEventListener("pagehide", () => {
   const names = unsent().map(({ file }) => file.name);
-  if (names.length) sessionStorage.setItem(UNSENT, JSON.stringify(names));
+  if (names.length) tabStore.write(UNSENT, names);
 });
 
 /** Tell which files were not sent when this tab was left. */
 export function tellUnsent() {
   /** @type {string[]} */
-  const names = JSON.parse(sessionStorage.getItem(UNSENT) ?? "[]");
-  sessionStorage.removeItem(UNSENT);
+  const names = tabStore.read(UNSENT) ?? [];
+  tabStore.set(UNSENT, null);
   if (!names.length) return;
   const named = names.slice(0, 3).join(", ") + (names.length > 3 ? ", \u2026" : "");
   toast(

@@ -10,7 +10,7 @@ import httpx
 import numpy as np
 import pytest
 
-from app.recognition.poses.skeletons import BODY_25
+from app.recognition.poses.skeletons import BODY_25, HALPE_26
 from app.recognition.recording.video import probe
 from app.settings import Settings
 from tests.api.ingest.test_bag_clips import CLIPS, assert_nothing_kept, finished, upload
@@ -21,6 +21,7 @@ from tests.keypoint_files.files import (
     write_numbered,
     write_openpose,
 )
+from tests.keypoint_files.test_keypoint_sets import WHOLE, alphapose, mmpose, points_of, wide
 from tests.recognition.demonstrations import pool
 from tests.recognition.strategies import BODY, circle, line, recording
 
@@ -90,6 +91,32 @@ def test_a_keypoint_file_becomes_a_clip_that_is_recognised(
     answer = recognised(client, clip["id"], language)
     assert answer.status_code == 201, answer.text
     assert answer.json()["label"] == "circle"
+
+
+def test_files_of_other_tools_are_read_or_refused_by_their_reason(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    points = points_of(HALPE_26)
+    assert added(client, alphapose(tmp_path, points), **BOTH)["frames"] == len(points)
+    tabs = wide(tmp_path, points).rename(tmp_path / "pose.tsv")
+    tabs.write_text(tabs.read_text().replace(",", "\t"))
+    assert added(client, tabs, **BOTH)["status"] == "done"
+    whole = mmpose(tmp_path, points_of(WHOLE[133]), meta_info={"dataset_name": "coco"})
+    told = added(client, whole, **BOTH)["salute_warnings"]
+    assert not any("no hands in this file" in each for each in told)
+    content = whole.read_text()
+    pointer = "version https://git-lfs.github.com/spec/v1\n"
+    for name, text, code, words in (
+        ("cut.json", content[:5000], "keypoints_unreadable", "breaks off at byte 5000"),
+        ("few.json", "[[[1, 2], [3, 4]]]", "keypoints_unreadable", "has 2 keypoints without names"),
+        ("pose.json", pointer, "keypoints_unreadable", "is a Git LFS pointer"),
+        ("dive.mp4", pointer, "unsupported_media_type", "is a Git LFS pointer"),
+        ("dive.h264", "\0\0\0\1\6\5", "unsupported_media_type", "a raw stream of H.264"),
+    ):
+        (tmp_path / name).write_text(text)
+        answer = upload(client, tmp_path / name, name, **BOTH)
+        status = 415 if code == "unsupported_media_type" else 422
+        assert words in str(assert_problem(answer, status, code)["detail"])
 
 
 def test_what_a_file_does_not_tell_is_asked_for_and_taken_with_it(

@@ -18,5 +18,7 @@ test("the published format is a language too", async () => {
 test("lists of frames are keypoints, one frame of OpenPose is a frame", async () => {
   assert.equal(await kind('[{"keypoints": []}]'), "keypoints");
   assert.equal(await kind('{"meta": {"fps": 30}, "frames": []}'), "keypoints");
+  assert.equal(await kind('{"meta_info": {"a": [1]}, "instance_info": [{}]}'), "keypoints");
+  assert.equal(await kind('{"info": {}, "images": [], "annotations": []}'), "keypoints");
   assert.equal(await kind('{"version": 1.3, "people": []}'), "frame");
 });

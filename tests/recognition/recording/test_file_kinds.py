@@ -38,6 +38,13 @@ def text(content: str, path: Path) -> Path:
         ("a.xml", '<?xml version="1.0"?>', "an XML file"),
         ("a.flv", "FLV\x01", "a Flash video"),
         ("a.h264", "\0\0\0\x01g", "a raw stream of H.264"),
+        ("sei.h264", "\0\0\0\x01\x06\x05", "a raw stream of H.264"),
+        ("sei.h265", "\0\0\0\x01N\x01\x05", "a raw stream of H.265"),
+        ("a.webp", "RIFF\0\0\0\0WEBPVP8 ", "a WebP picture"),
+        ("a.c3d", "\x02P\0\0", "a C3D motion file"),
+        ("a.nc", "CDF\x01\0", "a NetCDF file"),
+        ("a.mp4", "version https://git-lfs.github.com/spec/v1\n", "a Git LFS pointer"),
+        ("b.mp4", "\0" * 5000, "only zeros at its beginning"),
     ],
 )
 def test_what_is_no_video_is_named_and_ffmpeg_is_not_quoted(
@@ -51,8 +58,24 @@ def test_what_is_no_video_is_named_and_ffmpeg_is_not_quoted(
     with pytest.raises(VideoError, match=kind) as raised:
         probe(path)
     assert "Invalid" not in str(raised.value)
-    video = name in ("a.flv", "a.h264")
+    video = name.endswith((".flv", ".h264", ".h265"))
     assert ("convert it to MP4 with H.264" in str(raised.value)) is video
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("a.txt", "time nose_x nose_y\n0 1 2\n"),
+        ("a.jsonl", '{"time": 0}\n{"time": 1}\n'),
+        ("a.mp4", "\x07\x05 of no kind"),
+    ],
+)
+def test_only_a_video_may_lack_its_index(tmp_path: Path, name: str, content: str) -> None:
+    with pytest.raises(VideoError, match=r"name a table of keypoints \.csv or \.json") as raised:
+        probe(text(content, tmp_path / name))
+    assert "index" not in str(raised.value)
+    with pytest.raises(VideoError, match="its index is cut off, or it is damaged"):
+        probe(text("\0\0\0\x18ftypmp42\0\0\0\0", tmp_path / "video.mp4"))
 
 
 @pytest.mark.parametrize(

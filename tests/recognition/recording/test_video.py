@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import av
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -221,6 +222,36 @@ def test_an_address_is_not_a_file(name: str) -> None:
 def test_sound_without_a_picture_is_refused_by_name(tmp_path: Path) -> None:
     with pytest.raises(VideoError, match=r"no video, only.*audio"):
         probe(sound_only(tmp_path / "clip.mp4"))
+
+
+def test_the_cover_of_a_song_is_no_video(tmp_path: Path) -> None:
+    cover = cv2.imencode(".jpg", np.zeros((HEIGHT, WIDTH, 3), np.uint8))[1].tobytes()
+    with pytest.raises(VideoError, match=r"holds no video, only \['audio'\]"):
+        probe(sound_only(tmp_path / "song.mp4", cover))
+
+
+@pytest.mark.parametrize("name", ["clip.mkv", "clip.mp4", "clip.mov", "clip.ts"])
+def test_a_complete_recording_that_begins_late_is_not_cut_short(tmp_path: Path, name: str) -> None:
+    times = [68.672 + 0.04 * index for index in range(50)]
+    frames, warnings = read(write_clip(tmp_path / name, frames=50, times=times))
+    assert (len(frames), warnings) == (50, ())
+    assert frames[-1].time == pytest.approx(1.96, abs=1e-3)
+    cut = cut_off(write_clip(tmp_path / "cut.mkv", frames=50, times=times), 0.5)
+    assert "cut short" in read(cut)[1][0]
+    assert "of the 2.0 s" in read(cut)[1][0]
+
+
+@pytest.mark.parametrize(
+    ("name", "jump"),
+    [("clip.mkv", 300), ("clip.mkv", 1_700_000_000), ("clip.mp4", 3600), ("clip.ts", 3600)],
+)
+def test_a_clock_that_is_set_in_a_clip_is_told(tmp_path: Path, name: str, jump: int) -> None:
+    times = [0.04 * index + (jump if index >= 25 else 0) for index in range(50)]
+    frames, warnings = read(write_clip(tmp_path / name, frames=50, times=times))
+    assert frames[-1].time == pytest.approx(1.96, abs=1e-3)
+    assert [told.split(";")[0] for told in warnings] == [
+        f"the clock was set while it was recorded, ahead by {jump} s"
+    ]
 
 
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.9])

@@ -1,0 +1,53 @@
+"""Message clock: when a message's picture was taken, by the stamp in its header."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from app.bags.bag import Message
+from app.recognition.recording.timestamps import DISCONTINUITY
+
+
+@dataclass
+class MessageClock:
+    """Computes the times of a topic's messages.
+
+    Time is the stamp in the headers, at which the picture was taken; if the first message has none,
+    it is the time of reception. Where the stamps jump ahead and reception does not, their clock was
+    set: time goes on as reception does.
+
+    Attributes
+    ----------
+    by_header
+        Whether time is that of the headers; None before the first message.
+    jumps
+        Seconds by which the headers' clock was set ahead, each time.
+
+    """
+
+    by_header: bool | None = None
+    jumps: list[float] = field(default_factory=list)
+    _last: tuple[int, int] | None = field(default=None, init=False)
+    _first: int = field(default=0, init=False)
+
+    def stamp(self, message: Message) -> int:
+        """Return the stamp of a message in nanoseconds as it is, 0 without one."""
+        if self.by_header is None:
+            self.by_header = message.stamp > 0
+        return message.stamp if self.by_header else message.received
+
+    def after_first(self, message: Message) -> int | None:
+        """Return the exact nanoseconds after the first stamp; None without a stamp."""
+        stamp = self.stamp(message)
+        if not stamp:
+            return None
+        if self._last is None:
+            self._first = stamp
+        else:
+            ahead = stamp - self._last[0]
+            jump = ahead - max(0, message.received - self._last[1])
+            if min(ahead, jump) > DISCONTINUITY * 1e9:
+                self.jumps.append(jump / 1e9)
+                self._first += jump
+        self._last = stamp, message.received
+        return stamp - self._first

@@ -1,0 +1,277 @@
+"""Keypoints by number: their names by their known set, and the one of several people to follow."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
+from typing import Final
+
+import numpy as np
+
+from app.keypoint_files.keypoint_table import (
+    MOST_PEOPLE,
+    KeypointOptions,
+    KeypointTable,
+    Times,
+    hands_of,
+    mask_unseen,
+    visibility_of,
+)
+from app.recognition.errors import KeypointFileError
+from app.recognition.poses.frame import Hand, Side
+from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.skeletons import (
+    COCO_17,
+    KEYPOINT_SETS,
+    KeypointSet,
+    find_keypoint_set,
+)
+from app.recognition.recording.people import Choice, People, SeenPerson
+from app.recognition.recording.salute import best_salute
+
+EYES_AND_EARS: Final = [1, 2, 3, 4]
+"""Their places in COCO's order and in all that build on it."""
+
+LARGEST_FACE: Final = 0.35
+"""Largest share of a body's extent that is between eyes and ears, also without legs in view."""
+
+LEAST_HAND: Final = 0.3
+"""Least mean score of a hand among a whole body's keypoints: its model places both hands always."""
+
+
+@dataclass(frozen=True, eq=False)
+class Person:
+    """One person in one frame.
+
+    Attributes
+    ----------
+    points
+        ``(N, 3)`` x, y and score; NaN, or a score of 0: not seen. A score of NaN is unknown.
+    hands
+        ``(21, 3)`` of each hand that the file has beside the body.
+
+    """
+
+    points: FloatArray
+    hands: Mapping[Side, FloatArray] = field(default_factory=dict)
+
+    @property
+    def xy(self) -> FloatArray:
+        """``(N, 2)``; NaN: not seen."""
+        return mask_unseen(self.points[:, :2], visibility_of(self.points), 0.0)
+
+    @property
+    def score(self) -> float:
+        """Mean score of the keypoints."""
+        return float(visibility_of(self.points).mean())
+
+    def find_hands(self, kind: KeypointSet) -> tuple[Hand, ...]:
+        """Return the hands of which all keypoints are seen, larger first."""
+        within = {side: self.points[first:] for side, first in kind.hands.items()}
+        found = {
+            side: points[: len(HAND_LANDMARKS)] for side, points in {**within, **self.hands}.items()
+        }
+        whole = [
+            side
+            for side, points in found.items()
+            if len(points) == len(HAND_LANDMARKS)
+            and (side in self.hands or visibility_of(points).mean() >= LEAST_HAND)
+        ]
+        if not whole:
+            return ()
+        hands = hands_of(np.concatenate([found[side] for side in whole])[None], whole)
+        return () if hands is None else hands[0]
+
+
+def name_points(
+    numbers: Sequence[str],
+    path: Path,
+    options: KeypointOptions,
+    called: str = "",
+    names: Sequence[str] = (),
+) -> KeypointSet:
+    """Return the set of a file's keypoints, whose numbers the user's own names replace.
+
+    Parameters
+    ----------
+    numbers
+        Numbers of the keypoints.
+    path, options
+        The file, for messages, and the names given by the user.
+    called, names
+        Name of the set and of its keypoints, if the file gives them.
+
+    Raises
+    ------
+    KeypointFileError
+        When nothing tells which keypoints these are: an order is never guessed.
+
+    """
+    count = len(numbers)
+    if set(options.landmarks) & set(numbers):
+        return KeypointSet("", tuple(numbers))
+    if names and len(names) != count:
+        raise KeypointFileError(
+            f"{path} names {len(names)} keypoints and has {count}; export it again"
+        )
+    found = find_keypoint_set(count, called, names)
+    if names and (found is None or not found.hands):
+        return KeypointSet("", tuple(names))
+    if found is None or not is_numbered(numbers):
+        known = ", ".join(
+            f"{len(each.landmarks)} ({each.title})" for each in KEYPOINT_SETS if each.by_count
+        )
+        raise _unnamed(path, count, f"and their order is known only of {known}")
+    return found
+
+
+def is_numbered(names: Sequence[str]) -> bool:
+    """Return whether names are the numbers from 0 or 1 on, in order."""
+    return any(
+        list(names) == [str(first + place) for place in range(len(names))] for first in (0, 1)
+    )
+
+
+def _unnamed(path: Path, count: int, why: str) -> KeypointFileError:
+    return KeypointFileError(
+        f"{path} has {count} keypoints without names, {why}; name them in the file (categories, or "
+        'meta_info with "dataset_name": "h36m" or "crowdpose"), or say which they are, as in '
+        "--landmark 10=right_wrist"
+    )
+
+
+def table_of(
+    kind: KeypointSet,
+    points: FloatArray,
+    times: Times,
+    path: Path,
+    hands: tuple[tuple[Hand, ...], ...] | None = None,
+) -> KeypointTable:
+    """Create the table of one person.
+
+    Parameters
+    ----------
+    kind
+        Set of the keypoints.
+    points
+        ``(T, N, 3)``: x, y and visibility; NaN: unknown.
+    times
+        Times of the frames.
+    path
+        The file, for messages.
+    hands
+        Hands of each frame; None: those of the set, if it has some.
+
+    Raises
+    ------
+    KeypointFileError
+        When the keypoints are not in the order of their set.
+
+    """
+    if kind.landmarks[:5] == COCO_17[:5] and _begins_without_face(points):
+        raise _unnamed(path, points.shape[1], "of which the first are no face, as COCO's would be")
+    if hands is None and kind.hands:
+        hands = tuple(Person(row).find_hands(kind) for row in points)
+    kept = [place for place, name in enumerate(kind.landmarks) if name is not None]
+    known = bool(np.isfinite(points[..., 2]).any())
+    confidence = visibility_of(points[:, kept]) if known else None
+    return KeypointTable(
+        names=tuple(name for name in kind.landmarks if name is not None),
+        xy=mask_unseen(points[:, kept, :2], confidence, 0.0),
+        confidence=confidence,
+        times=times,
+        hands=hands,
+    )
+
+
+def _begins_without_face(points: FloatArray) -> bool:
+    """Return whether the first keypoints are mostly as far from each other as all of a body."""
+    xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)[:, : len(COCO_17)]
+    known = np.isfinite(xy[..., 0])
+    xy = xy[known[:, EYES_AND_EARS].all(axis=1) & (2 * known.sum(axis=1) > len(COCO_17))]
+    face, body = (
+        np.linalg.norm(np.nanmax(part, axis=1) - np.nanmin(part, axis=1), axis=1)
+        for part in (xy[:, EYES_AND_EARS], xy)
+    )
+    return bool(len(xy)) and bool(np.median(face) > LARGEST_FACE * np.median(body))
+
+
+def table_of_people(
+    everybody: Sequence[Sequence[Person]],
+    times: Times,
+    path: Path,
+    options: KeypointOptions,
+    called: str = "",
+    names: Sequence[str] = (),
+) -> KeypointTable:
+    """Create the table of the person who salutes, or stands out most.
+
+    Parameters
+    ----------
+    everybody
+        People of each frame; somebody in one of them at least.
+    times
+        Times of the frames.
+    path, options, called, names
+        See `name_points`.
+
+    Raises
+    ------
+    KeypointFileError
+        When people have different numbers of keypoints, or `name_points` or `table_of` refuse.
+
+    """
+    sizes = sorted({len(one.points) for persons in everybody for one in persons})
+    if len(sizes) > 1:
+        raise KeypointFileError(
+            f"{path} mixes people of {' and '.join(map(str, sizes))} keypoints; find them with one "
+            "model in all frames"
+        )
+    kind = name_points([*map(str, range(sizes[0]))], path, options, called, names)
+    beside = bool(kind.hands) or any(one.hands for persons in everybody for one in persons)
+    nobody, choice = Person(np.full((sizes[0], 3), np.nan)), None
+    if max(map(len, everybody)) > 1:
+        everybody, choice = _choose_person(everybody, kind, times, options)
+    followed = [persons[0] if persons else nobody for persons in everybody]
+    table = table_of(
+        kind,
+        np.stack([one.points for one in followed]),
+        times,
+        path,
+        tuple(one.find_hands(kind) for one in followed) if beside else None,
+    )
+    return table if choice is None else replace(table, notes=choice.notes, people=choice.count)
+
+
+def _choose_person(
+    everybody: Sequence[Sequence[Person]],
+    kind: KeypointSet,
+    times: Times,
+    options: KeypointOptions,
+) -> tuple[list[list[Person]], Choice]:
+    """Return the one person in each frame, if they are seen, and the choice of them."""
+    people, seen = People(), []
+    seconds = times.values / (options.nominal_rate if times.counted else 1.0)
+    for persons, time in zip(everybody, seconds.tolist(), strict=True):
+        # By score, so that the work for a frame is bounded.
+        shown = [one for one in persons if np.isfinite(one.xy).any()]
+        seen.append(sorted(shown, key=lambda one: -one.score)[:MOST_PEOPLE])
+        people.add(
+            time,
+            [SeenPerson(one.xy, one.score, best_salute(one.find_hands(kind))) for one in seen[-1]],
+        )
+    choice = people.choose()
+    followed = [
+        [] if place is None else [persons[place]]
+        for persons, place in zip(seen, choice.index, strict=True)
+    ]
+    return followed, choice
+
+
+def frame_number(name: str) -> int | None:
+    """Return the number of a frame in the name of its file or image: the last one; else None."""
+    digits = re.search(r"(\d{1,15})\D*$", PurePath(name).stem)
+    return None if digits is None else int(digits[1])
