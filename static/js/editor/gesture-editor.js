@@ -219,7 +219,7 @@ function build(section, about) {
   function abandon() {
     forget();
     close();
-    go(null, { gesture: null });
+    return go(null, { gesture: null });
   }
 
   /** @param {SubmitEvent} event */
@@ -233,7 +233,7 @@ function build(section, about) {
       const label = draft().label.trim();
       const more = further();
       const now = await save(about.language, gesture, draft(), saved());
-      abandon();
+      await abandon();
       const shown = now.gestures.find((each) => each.label === (more || label));
       const strokes = shown?.demonstrations.at(more ? -1 : 0)?.strokes;
       const what = strokes ? `${label}: ${strokes}` : `${label}, in ${now.name}`;
