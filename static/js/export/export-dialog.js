@@ -7,8 +7,6 @@ import { bytes, plural, readable } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
-import { failingWords } from "../health/expectation.js";
-import { isCurrent } from "../health/health-check.js";
 import { tuningWords } from "../languages/language-tuning.js";
 
 /** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
@@ -150,6 +148,9 @@ const slateLinks = (language) =>
     slateLink(language, "svg"),
   );
 
+/** @type {{ isCurrent: (found: State["health"]) => boolean, failingWords: (set: State["testSet"]) => string }} */
+let health;
+
 /**
  * What the health check says of the language, as the view Health does.
  *
@@ -163,11 +164,12 @@ function healthLine({ id, revision }) {
   };
   const link = h("button", { type: "button", className: "link", onclick: see }, "See health");
   const line = h("p", { className: "export-health", role: "status" }, words, " ", link);
-  const known = isCurrent(state.health) && state.health?.status === "done" && state.health.report;
+  const known =
+    health.isCurrent(state.health) && state.health?.status === "done" && state.health.report;
   Promise.resolve(known || api.languages.check(id, revision)).then(
     ({ warnings }) => {
       const errors = warnings.filter(({ error }) => error).length;
-      const failing = failingWords(state.testSet);
+      const failing = health.failingWords(state.testSet);
       line.classList.toggle("unwell", Boolean(errors || failing));
       const found = [errors ? plural(errors, "error") : "", failing].filter(Boolean).join(", ");
       words.textContent = `Health: ${found || "no errors"}.`;
@@ -242,8 +244,13 @@ export async function openExport() {
   dialog.showModal();
 }
 
-/** Bind the button in the header. */
-export function bindExport() {
+/**
+ * Bind the button in the header; `judging` is how the view Health judges.
+ *
+ * @param {typeof health} judging
+ */
+export function bindExport(judging) {
+  health = judging;
   byId("export").onclick = openExport;
 }
 
