@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, Locator, Page, ViewportSize, expect
+from playwright.sync_api import Browser, FloatRect, Locator, Page, ViewportSize, expect
 
 from tests.api.running import Running, client_of
 from tests.browser.conftest import WITHOUT_SCENE, new_context
@@ -68,17 +68,17 @@ def touch(
     context.close()
 
 
-def box_of(element: Locator) -> dict[str, float]:
+def box_of(element: Locator) -> FloatRect:
     box = element.bounding_box()
     assert box is not None
-    return dict(box)
+    return box
 
 
 def end_of(tabs: Locator) -> bytes:
     """Return the picture of the last few pixels of the row of views."""
     box = box_of(tabs)
-    clip = {"x": box["x"] + box["width"] - 4, "y": box["y"] + 2, "width": 4, "height": 6}
-    return tabs.page.screenshot(clip=clip)  # type: ignore[arg-type]
+    end = FloatRect(x=box["x"] + box["width"] - 4, y=box["y"] + 2, width=4, height=6)
+    return tabs.page.screenshot(clip=end)
 
 
 def test_the_picker_shows_a_name_and_the_views_a_shade_where_more_follow(touched: Page) -> None:
