@@ -31,7 +31,7 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 ) -> None:
     page = open_page(library.address | {"start": "1", "end": "2"}, scene=False)
     expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
-    expect(page.get_by_text("Takes lie between two salutes.")).to_be_visible()
+    expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
     page.get_by_role("button", name="Change what begins and ends a take").click()
     dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
     expect(dialog.get_by_role("radio", name="A Vulcan salute")).to_be_checked()
@@ -60,7 +60,7 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 
     page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
-    expect(page.get_by_text("Takes lie between two salutes.")).to_be_visible()
+    expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
     expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
 
 

@@ -200,5 +200,5 @@ def test_a_film_shows_how_a_gesture_is_made_and_what_is_not_ones_own_is_folded(
         add_clip(server, "circle", name="mine.mp4")
         page.reload()
         expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
-        expect(page.get_by_text("Takes lie between two salutes.")).to_be_visible()
+        expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
         context.close()
