@@ -28,8 +28,8 @@ class VideoSource:
 
     name = "video"
     noun = "a video"
-    formats = "MP4, MOV, WebM, MKV, AVI, MPEG-TS"
-    endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".webm")
+    formats = "MP4, MOV, WebM, MKV, AVI, MPEG-TS, MPG"
+    endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpg", ".webm")
     folder: str | None = None
     has_pictures = True
     has_topics = False

@@ -48,6 +48,9 @@ import { drawVotes } from "./studio/votes.js";
 import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart, recover } from "./studio/workspace.js";
+import { forgetArrived } from "./clips/arrived-clips.js";
+import { failingWords } from "./health/expectation.js";
+import { isCurrent } from "./health/health-check.js";
 import { acceptFiles, drawUploads, tellUnsent } from "./upload/upload-list.js";
 
 /** @import { State } from "./core/types.d.ts" */
@@ -187,7 +190,7 @@ async function start() {
   acceptFiles();
   findClips();
   bindPicker();
-  bindExport();
+  bindExport({ isCurrent, failingWords });
   stageButtons();
   followTheme();
   drawEverything();
@@ -218,6 +221,7 @@ async function start() {
   });
   // No tour after a link: its reader came for the linked content.
   if (!linked) offerTour();
+  forgetArrived(state.clips);
   tellUnsent();
 }
 

@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlencode
 
 import pytest
@@ -162,8 +163,8 @@ def shared_context(browser: Browser) -> Iterator[BrowserContext]:
     context.close()
 
 
-def new_context(browser: Browser) -> BrowserContext:
-    context = browser.new_context(reduced_motion="reduce")
+def new_context(browser: Browser, **options: Any) -> BrowserContext:
+    context = browser.new_context(reduced_motion="reduce", **options)
     context.set_default_timeout(PATIENCE_MS)
     return context
 

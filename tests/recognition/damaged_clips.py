@@ -236,3 +236,17 @@ def _alias(other: Path) -> bytes:
 
 def _box(kind: bytes, content: bytes) -> bytes:
     return struct.pack(">I4s", len(content) + 8, kind) + content
+
+
+def write_program_stream(path: Path, frames: int = 50) -> Path:
+    """Write an MPEG program stream as old camcorders do: MPEG-2, 25 frames a second."""
+    with av.open(str(path), "w", format="vob") as container:
+        stream = container.add_stream("mpeg2video", rate=RATE)
+        stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
+        for index in range(frames):
+            grey = np.full((HEIGHT, WIDTH, 3), 4 * index, np.uint8)
+            picture = av.VideoFrame.from_ndarray(grey, format="rgb24")
+            picture.pts, picture.time_base = index, Fraction(1, RATE)
+            container.mux(stream.encode(picture))
+        container.mux(stream.encode())
+    return path

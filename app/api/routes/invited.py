@@ -21,7 +21,7 @@ from app.api.http.schemas.invitations import (
     InvitedView,
 )
 from app.api.http.schemas.values import Diver, Label
-from app.api.ingest.intake import Inspected, inspect, require_place_in_queue, store
+from app.api.ingest.intake import UNSUPPORTED, Inspected, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
@@ -166,11 +166,15 @@ async def _receive_within(
 
 
 async def _inspect_video(received: Path, studio: Studio, upload: Upload) -> Inspected:
-    """Probe a received file as `inspect`; refuse what is no video."""
-    made = await inspect(received, studio, name=upload.name, size=upload.size)
+    """Probe a received file as `inspect`; refuse what is no video in a sentence for divers."""
+    detail = f"{upload.name} is no video; record one, or choose another file"
+    no_video = ProblemError(415, UNSUPPORTED, detail)
+    try:
+        made = await inspect(received, studio, name=upload.name, size=upload.size)
+    except ProblemError as error:
+        raise no_video if error.code == UNSUPPORTED else error from error
     if made.clip.source != VIDEO:
-        detail = f"{upload.name} is no video; record one, or choose another file"
-        raise ProblemError(415, "unsupported_media_type", detail)
+        raise no_video
     return made
 
 

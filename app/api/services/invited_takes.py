@@ -59,6 +59,10 @@ DOUBT: Final = 0.25
 """Confidence below which a take is read with doubt; at 0.5 ten to thirty percent more of the right
 takes would be asked about, see `benchmarks.invited_takes`."""
 
+FEW_BODIES: Final = 0.2
+"""Share of the frames with a body below which nobody is taken to be in a clip: in pictures without
+any person the model of the pose finds one now and then."""
+
 MOST_MENDED: Final = 2
 """Ranges that are tried for a take whose first range is not the best one: its stroke, and that
 without rest."""
@@ -333,7 +337,7 @@ def choose_range(
     """
     draft = DemonstrationDraft(label=take.label, clip_id=take.clip_id, diver=take.diver)
     recording = studio.recording(take.clip_id)
-    if not recording.poses.seen.any():
+    if recording.poses.seen.any(axis=1).mean() < FEW_BODIES:
         raise Returned("Nobody is seen. Stand so that your head and both arms are in the picture.")
     if trigger.kind in ("salute", "pose"):
         closed = [each for each in find_brackets(recording, trigger) if each.closed]

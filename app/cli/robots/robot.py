@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Final, Literal
 
 import typer
 
-from app.cli.clip_argument import EstimatorOption, HandsOption, WaterOption
+from app.cli.clip_argument import EstimatorOption, HandsOption, TurnOption, WaterOption
 from app.cli.robots.channels import Channels, describe_event
 from app.cli.robots.run import (
     Control,
@@ -61,6 +61,7 @@ def robot(
     without_salutes: Annotated[
         bool, typer.Option("--without-salutes", help="Recognise gestures without triggers.")
     ] = False,
+    turn: TurnOption = 0,
     water: WaterOption = "auto",
     estimator: EstimatorOption = "onnx",
     hands: HandsOption = MEDIAPIPE_HANDS,
@@ -131,6 +132,7 @@ def robot(
     options = RobotOptions(
         language=language,
         source=source,
+        turn=turn,
         profile=profile,
         without_salutes=without_salutes,
         water=water,

@@ -26,6 +26,7 @@ from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
+from app.recognition.recording.video import Turn
 from app.robot import (
     ActiveLanguage,
     Event,
@@ -60,6 +61,7 @@ class RobotOptions:
 
     language: Path
     source: str
+    turn: Turn
     profile: str | None
     without_salutes: bool
     water: WaterCorrection
@@ -202,7 +204,7 @@ def run_robot(
     with ExitStack() as opened:
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
-        frames = opened.enter_context(closing(open_source(options.source)))
+        frames = opened.enter_context(closing(open_source(options.source, options.turn)))
         finder = create_estimator(options.estimator, hands=options.hands)
         opened.enter_context(closing(finder))
         handlers: list[Handler] = []
@@ -311,7 +313,7 @@ def profile_until_stopped(options: RobotOptions) -> None:
     with ExitStack() as opened:
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
-        source = opened.enter_context(closing(open_source(options.source)))
+        source = opened.enter_context(closing(open_source(options.source, options.turn)))
         whole = create_estimator(options.estimator, hands=options.hands)
         opened.enter_context(closing(whole))
         body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))

@@ -35,6 +35,9 @@ DIRECTORY_VARIABLE: Final = "OSG_MODELS_DIR"
 PACKAGED: Final = Path(__file__).parent / "files"
 """The package's own folder: a wheel has the models there, a checkout after `make models`."""
 
+CHECKOUT_MAKEFILE: Final = Path(__file__).parents[3] / "Makefile"
+"""It makes the models; beside an installed package there is none."""
+
 TAUGHT: Final = Path(__file__).parent / "taught"
 """Folder of the model that is the project's own; git has it."""
 
@@ -178,7 +181,12 @@ def verify_models(file: InstalledFile, directory: Path) -> Path:
 
 
 def mending_command(directory: Path) -> str:
-    """Return the command that completes a models folder; intact files are kept."""
+    """Return the command that completes a models folder; intact files are kept.
+
+    `install_models` copies from the package's own folder, so it cannot complete that of a checkout.
+    """
+    if directory == PACKAGED and CHECKOUT_MAKEFILE.is_file():
+        return "make models"
     command = "osg-studio models install"
     if directory == models_dir():
         return command

@@ -46,7 +46,6 @@ _MARKS: Final = (
     (0, b"\x30\x26\xb2\x75\x8e\x66\xcf\x11", "a Windows Media file (WMV)", CONVERT),
     (0, b"FLV\x01", "a Flash video (FLV)", CONVERT),
     (0, b".RMF", "a RealMedia file", CONVERT),
-    (0, b"\0\0\1\xba", "an MPEG program stream (MPG, VOB)", CONVERT),
     (0, b"\0\0\1\xb3", "an MPEG video stream", CONVERT),
     # The type of the first unit follows: boxes of MP4 may begin with the same four bytes.
     (0, b"\0\0\0\1\x67", _H264, CONVERT),
@@ -121,6 +120,8 @@ def video_type(head: bytes) -> str | None:
         return "video/webm" if b"webm" in head[:64] else "video/x-matroska"
     if head[:4] == b"RIFF" and head[8:12] == b"AVI ":
         return "video/x-msvideo"
+    if head[:4] == b"\0\0\1\xba":
+        return "video/mpeg"
     return "video/mp2t" if _is_transport_stream(head) else None
 
 
@@ -158,6 +159,6 @@ def describe_unreadable(path: Path) -> str:
             "or export it again"
         )
     return (
-        f"{path.name} is not a readable video: it begins as no MP4, MOV, MKV, WebM, AVI or MPEG-TS "
-        "file does; export it as one of them, or name a table of keypoints .csv or .json"
+        f"{path.name} is not a readable video: it begins as no MP4, MOV, MKV, WebM, AVI, MPEG-TS "
+        "or MPG file does; export it as one of them, or name a table of keypoints .csv or .json"
     )

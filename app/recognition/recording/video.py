@@ -42,7 +42,7 @@ __all__ = [
     "read_frames",
 ]
 
-CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts")
+CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts", "mpeg")
 """Names of the FFmpeg demuxers that may open a clip: what phones, action and dive cameras, screen
 recorders and browsers write. None of them is a playlist."""
 

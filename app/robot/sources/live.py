@@ -9,8 +9,11 @@ from collections.abc import Callable, Iterator
 from datetime import datetime, timezone
 from typing import Final, Protocol
 
+import numpy as np
+
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
+from app.recognition.recording.video import Turn
 from app.robot.events import SourceLost, SourceRestored
 from app.robot.sources.source import Frame, NoFrame, Notice
 
@@ -59,6 +62,31 @@ class Camera(Protocol):
     def close(self) -> None:
         """Release the camera."""
         ...
+
+
+class TurnedCamera:
+    """A camera that is mounted turned; a `Camera`.
+
+    Parameters
+    ----------
+    opened
+        Opens the camera itself.
+    turn
+        Degrees, clockwise, by which its pictures are turned.
+
+    """
+
+    def __init__(self, opened: Callable[[], Camera], turn: Turn) -> None:
+        self._camera = opened()
+        self._quarters = -turn // 90
+
+    def read(self) -> Image:
+        """Wait for the next frame; see `Camera`."""
+        return np.ascontiguousarray(np.rot90(self._camera.read(), self._quarters))
+
+    def close(self) -> None:
+        """Release the camera."""
+        self._camera.close()
 
 
 class LiveSource:

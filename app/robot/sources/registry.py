@@ -11,10 +11,10 @@ from pathlib import Path
 from app.bags import bag_and_topic
 from app.clip_sources import VIDEO, ReadOptions, source_of
 from app.recognition.errors import SourceError
-from app.recognition.recording.video import FrameSource
+from app.recognition.recording.video import FrameSource, Turn
 from app.robot.events import SourceWarned
 from app.robot.sources.cameras import CameraDevice, NetworkStream, is_address, without_password
-from app.robot.sources.live import LiveSource
+from app.robot.sources.live import LiveSource, TurnedCamera
 from app.robot.sources.rtp import is_description_file
 from app.robot.sources.source import Frame, Notice, Source
 
@@ -85,7 +85,7 @@ class SourceKind:
     """
 
     accepts: Callable[[str], bool]
-    open: Callable[[str], Source]
+    open: Callable[[str, Turn], Source]
 
 
 def is_device(text: str) -> bool:
@@ -93,18 +93,20 @@ def is_device(text: str) -> bool:
     return re.fullmatch(r"\d{1,2}|/dev/video\d{1,2}", text) is not None
 
 
-def open_camera(text: str) -> Source:
+def open_camera(text: str, turn: Turn) -> Source:
     """Open a camera of this machine by number or device file."""
     device = int(text) if text.isdigit() else text
-    return LiveSource(f"camera {text}", partial(CameraDevice, device))
+    camera = partial(CameraDevice, device)
+    return LiveSource(f"camera {text}", partial(TurnedCamera, camera, turn))
 
 
-def open_stream(address: str) -> Source:
+def open_stream(address: str, turn: Turn) -> Source:
     """Open a stream from the network."""
-    return LiveSource(without_password(address), partial(NetworkStream, address))
+    stream = partial(NetworkStream, address)
+    return LiveSource(without_password(address), partial(TurnedCamera, stream, turn))
 
 
-def open_clip(text: str) -> Source:
+def open_clip(text: str, turn: Turn) -> Source:
     """Open a video file, or a dive recording as ``BAG`` or ``BAG@/TOPIC``."""
     path, topic = bag_and_topic(text)
     if is_picture_sequence(path):
@@ -113,9 +115,9 @@ def open_clip(text: str) -> Source:
             "ffmpeg -framerate 10 -i %04d.png clip.mp4, and give that"
         )
     if path.exists():
-        clip = source_of(path, topic).open_frames(path, ReadOptions(topic=topic))
+        clip = source_of(path, topic).open_frames(path, ReadOptions(topic=topic, turn=turn))
     else:
-        clip = VIDEO.open_frames(Path(text), ReadOptions())
+        clip = VIDEO.open_frames(Path(text), ReadOptions(turn=turn))
     return RecordedSource(text, clip.frames, clip.close)
 
 
@@ -138,7 +140,7 @@ KINDS: tuple[SourceKind, ...] = (
 """Kinds in the order in which they are tried; any other text is the path of a clip."""
 
 
-def open_source(text: str) -> Source:
+def open_source(text: str, turn: Turn = 0) -> Source:
     """Open the source that a user names.
 
     Parameters
@@ -147,6 +149,8 @@ def open_source(text: str) -> Source:
         A camera's number (``0``) or device file (``/dev/video0``), a stream's address
         (``rtsp://...``, ``udp://...``) or session description (``.sdp``), the path of a dive
         recording (``BAG`` or ``BAG@/TOPIC``) or of a clip.
+    turn
+        Degrees, clockwise, by which the pictures are turned: the camera is mounted turned.
 
     Raises
     ------
@@ -158,4 +162,4 @@ def open_source(text: str) -> Source:
         When a dive recording cannot be read, or has no such topic of pictures.
 
     """
-    return next(kind for kind in KINDS if kind.accepts(text)).open(text)
+    return next(kind for kind in KINDS if kind.accepts(text)).open(text, turn)

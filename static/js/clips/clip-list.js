@@ -143,7 +143,6 @@ function draw(clip, element) {
       {
         type: "button",
         className: "clip-open",
-        "aria-label": `Show ${clip.name}`,
         title: `${clip.name}, ${clip.width} \u00d7 ${clip.height} pixels`,
         "aria-pressed": String(chosen),
         onclick: () => select(clip.id),
@@ -152,6 +151,7 @@ function draw(clip, element) {
       h(
         "span",
         { className: "clip-text" },
+        h("span", { className: "visually-hidden" }, "Show "),
         h("b", {}, clip.name),
         h("span", { className: "stage-text" }, statusText(clip, job)),
         clip.status === "running"

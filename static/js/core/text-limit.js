@@ -13,7 +13,7 @@ export function cut(text, most) {
 }
 
 /**
- * Let a field take `most` code points.
+ * Let a field take `most` code points; a note beside it says when a text was cut.
  *
  * @template {HTMLInputElement | HTMLTextAreaElement} T
  * @param {T} input
@@ -21,12 +21,18 @@ export function cut(text, most) {
  * @returns {T}
  */
 export function limit(input, most) {
+  const note = document.createElement("small");
+  note.className = "cut-note";
+  note.setAttribute("role", "alert");
   // In the capturing phase, so that other listeners of the input read the shortened text.
   input.addEventListener(
     "input",
     () => {
       const kept = cut(input.value, most);
-      if (kept !== input.value) input.value = kept;
+      if (kept === input.value) return note.remove();
+      input.value = kept;
+      note.textContent = `At most ${most} letters: the end was left out.`;
+      return input.after(note);
     },
     { capture: true },
   );

@@ -99,10 +99,19 @@ function drawTabs(current) {
   );
 }
 
+/** Scroll the row of tabs, on a phone, to the one that is selected. */
+function revealTab() {
+  const tabs = byId("views");
+  /** @type {HTMLElement | null} */
+  const tab = tabs.querySelector("[aria-current]");
+  if (tab) tabs.scrollLeft = tab.offsetLeft - (tabs.clientWidth - tab.offsetWidth) / 2;
+}
+
 /** Show the view that is selected. */
 async function show() {
   const current = nameOf(state.view);
   drawTabs(current);
+  revealTab();
   document.body.dataset.view = current;
   for (const { name } of views) byId(`view-${name}`).hidden = name !== current;
   const load = views.find((each) => each.name === current)?.load;

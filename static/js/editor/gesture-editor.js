@@ -8,6 +8,7 @@ import { currentLanguage, follow, selectedRange, state } from "../core/state.js"
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
+import { focusCard } from "../gestures/gesture-cards.js";
 import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
@@ -203,7 +204,8 @@ function build(section, about) {
     redoing.disabled = !canRedo();
     status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
     restored.hidden = restored.hidden || !isChanged();
-    saving.disabled = gesture !== null && !isChanged();
+    saving.disabled =
+      (gesture !== null && !isChanged()) || textProblem(draft(), others())?.id === "editor-label";
     if (gesture === null) saving.textContent = further() ? `Add to ${further()}` : "Save gesture";
   }
 
@@ -218,7 +220,7 @@ function build(section, about) {
   function abandon() {
     forget();
     close();
-    go(null, { gesture: null });
+    return go(null, { gesture: null });
   }
 
   /** @param {SubmitEvent} event */
@@ -232,9 +234,10 @@ function build(section, about) {
       const label = draft().label.trim();
       const more = further();
       const now = await save(about.language, gesture, draft(), saved());
-      abandon();
+      await abandon();
       const shown = preview?.strokes ? `: ${preview.strokes}` : `, in ${now.name}`;
       showDone(more ? "Demonstration added" : "Gesture saved", label + shown);
+      focusCard(more || label);
     } catch (error) {
       if (error.code !== "cancelled") showProblem(error.message);
       else abandon(); // The user kept somebody else's edit.

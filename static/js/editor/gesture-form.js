@@ -145,6 +145,9 @@ export function texts(taken) {
  */
 function labelProblem(label, taken) {
   const trimmed = label.trim();
+  if (!trimmed) return "Label is empty; type one.";
+  if (!/[\p{L}\p{N}]/u.test(trimmed)) return "Write the label in letters or digits.";
+  if (/[<>]/.test(trimmed)) return "Leave out < and >.";
   return taken.includes(trimmed)
     ? `There is a gesture \u201c${trimmed}\u201d already; choose another label.`
     : null;
@@ -157,7 +160,6 @@ function labelProblem(label, taken) {
  * @param {string[]} taken
  */
 export function textProblem(values, taken) {
-  if (!values.label.trim()) return { id: "editor-label", text: "Label is empty; type one." };
   const label = labelProblem(values.label, taken);
   if (label) return { id: "editor-label", text: label };
   const { problem } = read(values.command);

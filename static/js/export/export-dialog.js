@@ -6,6 +6,7 @@ import { byId, h } from "../core/dom.js";
 import { bytes, plural, readable } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
+import { go } from "../core/views.js";
 import { tuningWords } from "../languages/language-tuning.js";
 
 /** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
@@ -147,6 +148,39 @@ const slateLinks = (language) =>
     slateLink(language, "svg"),
   );
 
+/** @type {{ isCurrent: (found: State["health"]) => boolean, failingWords: (set: State["testSet"]) => string }} */
+let health;
+
+/**
+ * What the health check says of the language, as the view Health does.
+ *
+ * @param {Language} language
+ */
+function healthLine({ id, revision }) {
+  const words = h("span", {}, "Health is being checked\u2026");
+  const see = () => {
+    byId("dialog").close();
+    go("health");
+  };
+  const link = h("button", { type: "button", className: "link", onclick: see }, "See health");
+  const line = h("p", { className: "export-health", role: "status" }, words, " ", link);
+  const known =
+    health.isCurrent(state.health) && state.health?.status === "done" && state.health.report;
+  Promise.resolve(known || api.languages.check(id, revision)).then(
+    ({ warnings }) => {
+      const errors = warnings.filter(({ error }) => error).length;
+      const failing = health.failingWords(state.testSet);
+      line.classList.toggle("unwell", Boolean(errors || failing));
+      const found = [errors ? plural(errors, "error") : "", failing].filter(Boolean).join(", ");
+      words.textContent = `Health: ${found || "no errors"}.`;
+    },
+    () => {
+      words.textContent = "Health could not be checked.";
+    },
+  );
+  return line;
+}
+
 /** Show the contents of the export. */
 export async function openExport() {
   const language = state.gestures;
@@ -188,6 +222,7 @@ export async function openExport() {
         { className: "dim" },
         `${contents.name}, revision ${contents.revision}, code ${language.code}, ${plural(language.gestures.length, "gesture")}`,
       ),
+      healthLine(language),
       h(
         "div",
         { role: "radiogroup", "aria-label": "Format", className: "export-choices" },
@@ -209,8 +244,13 @@ export async function openExport() {
   dialog.showModal();
 }
 
-/** Bind the button in the header. */
-export function bindExport() {
+/**
+ * Bind the button in the header; `judging` is how the view Health judges.
+ *
+ * @param {typeof health} judging
+ */
+export function bindExport(judging) {
+  health = judging;
   byId("export").onclick = openExport;
 }
 

@@ -112,6 +112,21 @@ function draw(gesture, element) {
 }
 
 /**
+ * Fold away the gestures of a sample while the studio has nothing of the user's own.
+ *
+ * @param {State} state
+ */
+function foldSample({ clips, gestures, languages, loaded }) {
+  const fold = byId("gestures-fold");
+  if (!loaded || !gestures) return;
+  const own = !gestures.sample || clips.length > 0 || languages.some(({ sample }) => !sample);
+  byId("gesture-whose").textContent = own ? "" : `of the sample \u201c${gestures.name}\u201d`;
+  if (fold.dataset.own === String(own)) return; // The user may have unfolded it.
+  fold.dataset.own = String(own);
+  fold.open = own;
+}
+
+/**
  * The revision and the short code, for comparison with the language on a robot.
  *
  * @param {Language | null} language
@@ -122,15 +137,17 @@ function drawCarried(language) {
   box.hidden = !carried;
   if (!carried) return;
   box.replaceChildren(
-    `Revision ${carried.revision}, code `,
+    `A robot that has revision ${carried.revision} shows `,
     h("code", {}, carried.code),
-    h("span", { className: "dim" }, ", as a robot with it shows. "),
+    ". ",
     h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
   );
 }
 
 /** @param {State} state */
-export function drawGestures({ gestures, result, languages, loaded }) {
+export function drawGestures(state) {
+  const { gestures, result, languages, loaded } = state;
+  foldSample(state);
   const members = gestures?.gestures ?? [];
   byId("gesture-count").textContent = members.length ? String(members.length) : "";
   drawCarried(gestures);
@@ -169,4 +186,15 @@ function drawExpected(members, result) {
     ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),
   );
   expected.value = members.some((gesture) => gesture.label === expectedLabel) ? expectedLabel : "";
+}
+
+/**
+ * Give the focus, which was on the button that is gone, to the card of a gesture.
+ *
+ * @param {string} label
+ */
+export function focusCard(label) {
+  const cards = /** @type {HTMLElement[]} */ ([...byId("gestures").children]);
+  const card = cards.find(({ dataset }) => dataset.key === label);
+  (card?.querySelector("button") ?? byId("stage")).focus({ preventScroll: true });
 }

@@ -226,7 +226,17 @@ export function drawTrigger({ gestures }) {
   box.hidden = !gestures;
   if (!gestures) return box.replaceChildren();
   return box.replaceChildren(
-    h("span", { className: "dim" }, `Takes: ${gestures.trigger_words}. `),
-    h("button", { type: "button", className: "link", ...WRITES, onclick: openTrigger }, "Trigger"),
+    h("span", { className: "dim" }, `Takes lie ${gestures.trigger_words}. `),
+    h(
+      "button",
+      {
+        type: "button",
+        className: "link",
+        ...WRITES,
+        onclick: openTrigger,
+        "aria-label": "Change what begins and ends a take",
+      },
+      "Change",
+    ),
   );
 }

@@ -178,7 +178,6 @@ function gestureButton({ label, thumbnail }, next, item) {
         { type: "button", className: "try-gesture", onclick: () => press(label) },
         h("img", { alt: "", width: 56, height: 56 }),
         h("span", {}, label),
-        h("small"),
       ),
     );
   const button = /** @type {HTMLElement} */ (drawn.querySelector("button"));
@@ -187,9 +186,8 @@ function gestureButton({ label, thumbnail }, next, item) {
   button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
   const source = api.beside(thumbnail);
   if (picture.getAttribute("src") !== source) picture.src = source;
-  drawn
-    .querySelector("small")
-    ?.replaceChildren(next ? "next" : ROLES.filter((role) => grammar()[role] === label).join(", "));
+  const roles = ROLES.filter((role) => grammar()[role] === label).join(", ");
+  button.dataset.role = next ? "next" : roles;
   return drawn;
 }
 

@@ -14,6 +14,7 @@ import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
+import { enlargePicture } from "./picture-zoom.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
 
@@ -192,14 +193,14 @@ export async function loadResult() {
 }
 
 /**
- * The confidence, the weight of the voters for the nearest gesture, and the trial.
+ * The confidence, the share of the votes for the nearest gesture, and the trial.
  *
  * @param {Recognition} result
  */
 const supportWords = (result) =>
   [
     `confidence ${percent(result.confidence)}`,
-    `voters with ${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the weight`,
+    `${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the votes`,
     result.pair && result.votes.second_opinion === result.pair[1]
       ? "the two ways of comparing disagree"
       : "",
@@ -299,5 +300,6 @@ export function stageButtons() {
     saveGesture().catch((error) => complain(error, "Saving the gesture"));
   byId("recognise").onclick = recognise;
   buildTransport();
+  enlargePicture();
   buildRanges(hasLanguage);
 }

@@ -7,6 +7,7 @@ import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { keepFrame, seek } from "./playback.js";
+import { drawOverview, overview } from "./timeline-overview.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
 
@@ -68,13 +69,7 @@ function takeButton(take, index, duration) {
       onclick: () => update({ take: index, start: null, end: null, recognition: null }),
     },
     stroke,
-    h(
-      "span",
-      { className: "take-name" },
-      h("i", {}, "Take "),
-      String(index + 1),
-      take.closed ? null : h("small", {}, " open"),
-    ),
+    h("span", { className: "take-name" }, String(index + 1)),
   );
 }
 
@@ -298,6 +293,7 @@ export function drawTimeline() {
     .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
     .flatMap((take) => saluteMarks(take, duration));
   drawNote(range, state.takes);
+  drawOverview(box, state.takes, duration, zoom > 1);
   // While a clip is being read, its end moves.
   const drawn = `${clip.id} ${duration}`;
   if (track && box.dataset.clip === drawn) {
@@ -334,6 +330,7 @@ export function drawTimeline() {
     zoomBy(2 ** (-event.deltaY / 200), event.clientX);
   });
   box.replaceChildren(
+    overview(seen),
     seen,
     h(
       "div",

@@ -234,7 +234,7 @@ const undecided = () =>
     h(
       "p",
       { className: "dim" },
-      "Recognise the take to see every voter\u2019s distance to every gesture, or save it as a gesture.",
+      "Recognise the take to see how near each gesture is, or save it as a gesture.",
     ),
   );
 

@@ -19,17 +19,14 @@ import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.j
 /** @typedef {{ sample: Sample, language: LanguageSummary }} Example */
 
 const STEPS = [
-  ["Show", "Drop a clip of a diver: Vulcan salute, the gesture, Vulcan salute."],
-  [
-    "Save",
-    "Save the take, what lies between the salutes, as a gesture. One demonstration is enough.",
-  ],
-  [
-    "Ask why",
-    "Recognise another clip, and see what differs from the gesture meant, where, and what would help.",
-  ],
-  ["Export", "Export the language for the robot as one JSON file."],
+  ["Show", "Drop a clip of a diver: salute, gesture, salute."],
+  ["Save", "Save the take, what lies between the salutes, as a gesture."],
+  ["Ask why", "Recognise another clip, and see what differs and what helps."],
+  ["Export", "Export the language for the robot as one file."],
 ];
+
+const FILM = new URL("../../first-take.mp4", import.meta.url).href; // made by languages/first_take.py
+const END = "#t=3.2"; // s: the drawing and its name are shown
 
 /**
  * A few clips to begin with, one of each kind; the library lists all. Clips to recognise come
@@ -51,19 +48,45 @@ function offered(samples) {
   return [...kinds.values()];
 }
 
-/** The salute, for people who have never seen one. */
-const salutePicture = () =>
-  h(
+/** A take, for people who have never seen one; who wants no motion sees its end, until a click. */
+function firstTake() {
+  const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const film = h("video", {
+    muted: true,
+    loop: true,
+    autoplay: !still,
+    playsInline: true,
+    preload: "auto",
+    "aria-hidden": "true",
+    src: still ? FILM + END : FILM,
+  });
+  return h(
     "figure",
-    { className: "salute-picture" },
-    h("div", { role: "img", "aria-label": "Hand in a Vulcan salute" }, icon("salute")),
+    { className: "first-take" },
+    h(
+      "button",
+      {
+        type: "button",
+        title: "Play or pause",
+        "aria-label":
+          "A diver draws a circle between two Vulcan salutes; the gesture is there. Play or pause",
+        onclick: () => (film.paused ? film.play() : film.pause()),
+      },
+      film,
+    ),
     h(
       "figcaption",
       {},
-      h("b", {}, "Vulcan salute"),
-      " Raise a hand with the palm forward, fingers parted two by two, thumb out, and hold it for half a second. It opens a take and ends it.",
+      icon("salute"),
+      h(
+        "span",
+        {},
+        h("b", {}, "Vulcan salute: "),
+        "palm forward, fingers parted two by two, held for half a second.",
+      ),
     ),
   );
+}
 
 /**
  * A button that opens the explanation of the misread sample; null if it or its language is gone.
@@ -147,12 +170,12 @@ export async function showExample() {
 function welcome(samples, languages) {
   return [
     h("h1", {}, "One demonstration makes a gesture"),
+    firstTake(),
     h(
       "ol",
       { className: "steps" },
       STEPS.map(([title, text]) => h("li", {}, h("b", {}, title), h("span", {}, text))),
     ),
-    salutePicture(),
     ...[question(samples, languages)].flat(),
     h(
       "div",

@@ -100,7 +100,21 @@ def test_a_long_timeline_is_enlarged_and_its_labels_never_overlap(
             assert all(one[1] <= other[0] + 0.5 for one, other in pairwise(sides)), labels
         page.get_by_role("button", name="Enlarge the timeline").click()
     assert box_of(track)["width"] == pytest.approx(8 * width, rel=0.01)
-    expect(page.locator(".take-name i").first).to_be_visible()
+    named = "(name) => getComputedStyle(name, '::before').content"
+    assert page.locator(".take-name").first.evaluate(named) == '"Take "'
+    # The whole clip lies above in small, with the part in sight, which a press moves.
+    whole, part = box_of(page.locator(".overview")), box_of(page.locator(".in-sight"))
+    assert part["width"] == pytest.approx(whole["width"] / 8, abs=4)
+    expect(page.locator(".overview i:not(.in-sight)")).to_have_count(
+        page.locator(".track .take").count()
+    )
+    page.mouse.click(whole["x"] + whole["width"] - 4, whole["y"] + 5)
+    assert (
+        page.locator(".seen").evaluate("(e) => e.scrollLeft + e.clientWidth - e.scrollWidth") > -2
+    )
+    page.mouse.click(whole["x"] + 4, whole["y"] + 5)
+    assert page.locator(".seen").evaluate("(e) => e.scrollLeft") < 2
+    page.mouse.click(whole["x"] + part["x"] - whole["x"] + part["width"] / 2, whole["y"] + 5)
     # The moment on display stays in sight, and the one under the pointer where it is.
     expect(page.locator("#now")).to_be_in_viewport()
     seen = box_of(page.locator(".seen"))

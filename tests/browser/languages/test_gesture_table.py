@@ -209,7 +209,7 @@ def test_the_page_shows_the_code_that_the_exported_file_gives(
     page = open_page(library.address, scene=False)
     exported = client.get(f"/api/v1/languages/{library.language}/export").json()
     code = short_code(exported["sha256"])
-    expect(page.locator("#carried")).to_contain_text(f"Revision 3, code {code}")
+    expect(page.locator("#carried")).to_contain_text(f"A robot that has revision 3 shows {code}")
     page.get_by_role("button", name="Export").click()
     expect(page.get_by_role("dialog", name="Export")).to_contain_text(f"code {code}")
 

@@ -31,8 +31,8 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 ) -> None:
     page = open_page(library.address | {"start": "1", "end": "2"}, scene=False)
     expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
-    expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
-    page.get_by_role("button", name="Trigger", exact=True).click()
+    expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
+    page.get_by_role("button", name="Change what begins and ends a take").click()
     dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
     expect(dialog.get_by_role("radio", name="A Vulcan salute")).to_be_checked()
     expect(dialog.get_by_role("button", name="Save")).to_be_disabled()
@@ -60,7 +60,7 @@ def test_a_gesture_is_defined_and_recognised_between_two_poses(
 
     page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
-    expect(page.get_by_text("Takes: between two salutes.")).to_be_visible()
+    expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
     expect(page.get_by_text("No Vulcan salute was found")).to_be_visible()
 
 
@@ -70,7 +70,7 @@ def test_one_gesture_begins_takes_and_another_one_ends_them(
     with client_of(server.address) as client:
         library = library_of(server, client, "by gestures")
         page = open_page(library.address, scene=False)
-        page.get_by_role("button", name="Trigger", exact=True).click()
+        page.get_by_role("button", name="Change what begins and ends a take").click()
         dialog = page.get_by_role("dialog", name="What begins and ends a gesture")
         dialog.get_by_role("radio", name="A gesture of the language").check()
         dialog.get_by_label("Gesture that begins a take").select_option("line")
@@ -79,7 +79,7 @@ def test_one_gesture_begins_takes_and_another_one_ends_them(
         dialog.get_by_role("button", name="Save").click()
         expect(dialog).to_be_hidden()
         expect(page.get_by_text("between the gestures 'line' and 'circle'").first).to_be_visible()
-        page.get_by_role("button", name="Trigger", exact=True).click()
+        page.get_by_role("button", name="Change what begins and ends a take").click()
         expect(dialog.get_by_label("Gesture that begins a take")).to_have_value("line")
         expect(dialog.get_by_label("Gesture that ends a take")).to_have_value("circle")
         expect(dialog.get_by_role("radio", name="A gesture of the language")).to_be_checked()

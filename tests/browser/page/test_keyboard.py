@@ -70,6 +70,8 @@ def test_from_a_clip_to_the_file_for_the_robot(
     page.keyboard.type("other way")
     press(page, "Save gesture")
     expect(page.get_by_text("Gesture saved")).to_be_visible()
+    # Where the button was, nothing is: the focus goes to the card.
+    expect(page.get_by_role("button", name="1 demonstration of other way")).to_be_focused()
     expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(3)
 
     # Another clip is recognised, and its explanation is opened.

@@ -259,9 +259,19 @@ def test_a_label_that_is_taken_is_refused_in_the_editor(
     page.get_by_role("button", name="Save as gesture").click()
     label = page.get_by_role("textbox", name="Label")
     label.fill("")
-    page.get_by_role("button", name="Save gesture").click()
-    problem = page.get_by_role("alert")
-    expect(problem.filter(has_text="Label is empty; type one.")).to_be_visible()
+    save = page.get_by_role("button", name="Save gesture")
+    for written, problem in (
+        ("   ", "Label is empty; type one."),
+        ("..", "Write the label in letters or digits."),
+        ("<b>x</b>", "Leave out < and >."),
+    ):
+        label.fill(written)
+        expect(page.locator("#editor-label-note")).to_have_text(problem)
+        expect(save).to_be_disabled()
+    label.fill("o" * 200)
+    expect(label).to_have_value("o" * 80)
+    expect(page.get_by_role("alert").filter(has_text="At most 80 letters")).to_be_visible()
+    expect(save).to_be_enabled()
     label.fill("circle")
     expect(page.get_by_role("button", name="Add to circle")).to_be_visible()
     page.get_by_role("button", name="Cancel").click()
@@ -269,8 +279,8 @@ def test_a_label_that_is_taken_is_refused_in_the_editor(
     expect(page.get_by_role("button", name="Save as gesture")).to_be_visible()
     page.goto(f"{page.url}&view=gesture&gesture=line")
     label.fill("circle")
-    page.get_by_role("button", name="Save", exact=True).click()
-    expect(problem.filter(has_text="There is a gesture \u201ccircle\u201d already")).to_be_visible()
+    expect(page.get_by_text("There is a gesture \u201ccircle\u201d already")).to_be_visible()
+    expect(page.get_by_role("button", name="Save", exact=True)).to_be_disabled()
 
 
 def test_a_range_can_be_chosen_by_hand_with_the_keyboard(

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Page, expect
 
 from app.recognition import Recording
-from tests.api.running import Running, client_of, until
+from app.settings import Settings
+from tests.api.running import Running, client_of, running, until
 from tests.browser.conftest import OpenPage
 from tests.browser.library import add_clip
 from tests.conftest import RECORDINGS
@@ -46,7 +47,7 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
     page = open_page(scene=False)
-    expect(page.get_by_role("img", name="Hand in a Vulcan salute")).to_be_visible()
+    expect(page.get_by_role("button", name="A diver draws a circle")).to_be_visible()
     start = page.locator("#welcome")
     expect(start).to_contain_text("the take, what lies between the salutes")
     words = page.locator("#view-studio").inner_text()
@@ -164,3 +165,40 @@ def test_the_first_gesture_goes_into_a_language_of_ones_own_unless_the_sample_is
     page.get_by_role("button", name="Save as gesture").click()
     page.get_by_role("button", name="Save into the sample").click()
     expect(page.locator(".in-language")).to_have_text(f"in {SAMPLE}")
+
+
+def test_a_film_shows_how_a_gesture_is_made_and_what_is_not_ones_own_is_folded(
+    browser: Browser, tmp_path: Path
+) -> None:
+    with running(Settings(data_dir=tmp_path)) as server:
+        context = browser.new_context(base_url=server.address)
+        context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
+        page = context.new_page()
+        page.goto("/")
+        film = page.get_by_role("button", name="A diver draws a circle")
+        expect(film).to_be_in_viewport(ratio=1)
+        video = film.locator("video")
+        for name in ("muted", "loop"):
+            expect(video).to_have_js_property(name, True)
+        until(lambda: bool(video.evaluate("(film) => !film.paused && film.currentTime > 0.5")))
+        film.click()
+        expect(video).to_have_js_property("paused", True)
+        # Who wants no motion sees the end, with the drawing, until a click.
+        page.emulate_media(reduced_motion="reduce")
+        page.reload()
+        until(lambda: bool(video.evaluate("(film) => film.currentTime > 3")))
+        expect(video).to_have_js_property("paused", True)
+
+        folded = page.get_by_text("of the sample \u201cTable 2: eight signs\u201d")
+        expect(folded).to_be_visible()
+        expect(page.get_by_role("list", name="Gestures")).to_be_hidden()
+        folded.click()
+        expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
+        page.reload()
+        expect(page.get_by_role("list", name="Gestures")).to_be_hidden()
+        # With a clip of one's own the gestures are what it is compared with.
+        add_clip(server, "circle", name="mine.mp4")
+        page.reload()
+        expect(page.get_by_role("list", name="Gestures").get_by_role("listitem")).to_have_count(8)
+        expect(page.get_by_text("Takes lie between two salutes.", exact=True)).to_be_visible()
+        context.close()

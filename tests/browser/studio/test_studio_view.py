@@ -256,7 +256,7 @@ def test_a_weight_is_tried_where_the_distances_are_shown(
     page = open_page(query, size=(1440, 900), scene=False)
     weight = page.get_by_label(re.compile("^Weight of velocity:"))
     expect(weight).to_have_value("1")
-    expect(page.locator("#outcome")).to_contain_text("voters with 100 % of the weight")
+    expect(page.locator("#outcome")).to_contain_text("100 % of the votes")
     joint = page.get_by_label("Joint whose paths are drawn")
     drawn = joint.input_value()
     weight.select_option("off")

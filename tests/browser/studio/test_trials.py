@@ -70,9 +70,7 @@ def test_a_tuning_that_is_kept_goes_with_the_language_and_can_be_taken_back(
     expect(tuning).to_contain_text(f"Recognised by the profile paper, {REPAIR}")
     expect(trial).to_have_count(0)
     outcome = page.locator("#outcome")
-    expect(outcome).to_contain_text(
-        re.compile(r"as expectedconfidence \d+ %, voters with \d+ % of the weight$")
-    )
+    expect(outcome).to_contain_text(re.compile(r"as expectedconfidence \d+ %, \d+ % of the votes$"))
 
     # The export for the robot has the change too.
     page.get_by_role("button", name="Export").click()

@@ -65,6 +65,15 @@ def test_a_missing_model_is_named_with_the_mending_command(models: Path) -> None
     assert model_path("pose_detection").is_file()
 
 
+def test_a_checkout_without_models_is_told_to_make_them(
+    models: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.recognition.models.storage.PACKAGED", models)
+    (models / "hand_landmark_full.onnx").unlink()
+    with pytest.raises(ModelError, match=r"missing; run `make models`$"):
+        model_path("hand_landmark_full")
+
+
 @pytest.mark.parametrize("kept", [0, 1, 1000, -1])
 @pytest.mark.withstands(row="H25")
 def test_a_truncated_model_is_named_with_its_size(models: Path, kept: int) -> None:

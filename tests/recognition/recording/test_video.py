@@ -39,6 +39,7 @@ from tests.recognition.damaged_clips import (
     of_another_file,
     sound_only,
     write_clip,
+    write_program_stream,
 )
 
 RED, BLUE = 0, 2
@@ -447,3 +448,9 @@ def test_anything_else_is_read_to_its_end(content: bytes) -> None:
     size = read_jpeg_size(b"\xff\xd8" + content)
     assert size is None or all(0 <= side < 2**16 for side in size)
     assert read_jpeg_size(content.replace(b"\xff\xd8", b"")) is None
+
+
+def test_a_program_stream_of_an_old_camcorder_is_read(tmp_path: Path) -> None:
+    frames, warnings = read(write_program_stream(tmp_path / "dive.mpg"))
+    assert [frame.time for frame in frames] == pytest.approx(np.arange(50) / 25)
+    assert warnings == ()

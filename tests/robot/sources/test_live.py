@@ -8,6 +8,7 @@ from contextlib import closing
 from datetime import datetime, timezone
 from functools import partial
 from itertools import islice
+from pathlib import Path
 from queue import Queue
 
 import numpy as np
@@ -15,10 +16,12 @@ import pytest
 
 from app.recognition.errors import SourceError
 from app.recognition.poses.frame import Image
+from app.recognition.recording.video import Turn
 from app.robot import Frame, NoFrame, Notice, SourceLost, SourceRestored
 from app.robot.sources.cameras import SILENT_SECONDS, NetworkStream
-from app.robot.sources.live import LiveSource
+from app.robot.sources.live import LiveSource, TurnedCamera
 from app.robot.sources.registry import open_source
+from tests.recognition.damaged_clips import write_clip
 from tests.robot.mjpeg_server import FRAME_SIZE, MjpegServer
 from tests.robot.rtsp_server import RtspServer
 
@@ -170,3 +173,31 @@ def test_a_camera_that_does_not_exist_is_refused_by_name(
     with pytest.raises(SourceError, match=rf"camera {name} cannot be opened"):
         open_source(name)
     assert capfd.readouterr() == ("", "")  # OpenCV would complain of its own accord
+
+
+@pytest.mark.parametrize("turn", [90, 180, 270])
+def test_pictures_of_a_camera_that_is_mounted_turned_are_turned_upright(
+    turn: Turn, tmp_path: Path
+) -> None:
+    stored = np.zeros((4, 6, 3), np.uint8)
+    stored[0, 0] = 255
+
+    class Sideways:
+        def read(self) -> Image:
+            return stored
+
+        def close(self) -> None:
+            pass
+
+    upright = TurnedCamera(Sideways, turn).read()
+    # The upper left corner goes to the upper right with a quarter clockwise.
+    height, width = upright.shape[:2]
+    corner = {90: (0, width - 1), 180: (height - 1, width - 1), 270: (height - 1, 0)}[turn]
+    assert upright[corner].tolist() == [255, 255, 255]
+    assert (width, height) == ((6, 4) if turn == 180 else (4, 6))
+    clip = write_clip(tmp_path / "sideways.mp4", frames=3)
+    plain, turned = open_source(str(clip)), open_source(str(clip), turn)
+    with closing(plain), closing(turned):
+        assert turned.frame_size == plain.frame_size[:: 1 if turn == 180 else -1]
+    with MjpegServer() as server, closing(open_source(server.address, turn)) as source:
+        assert source.frame_size == FRAME_SIZE[:: 1 if turn == 180 else -1]

@@ -11,7 +11,13 @@ from app.settings import Limits, Settings
 from app.store import Clip, Job
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import assert_problem, client_of, running, until
-from tests.recognition.damaged_clips import IMPOSTORS, flipped, sound_only, write_clip
+from tests.recognition.damaged_clips import (
+    IMPOSTORS,
+    flipped,
+    sound_only,
+    write_clip,
+    write_program_stream,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -70,6 +76,19 @@ def test_a_clip_gets_poses_takes_and_a_poster(client: httpx.Client, small_clip: 
     poster = client.get(f"{CLIPS}/{clip_id}/poster")
     assert poster.headers["content-type"] == "image/jpeg"
     assert poster.content[:2] == b"\xff\xd8"
+
+
+@pytest.mark.usefixtures("installed_models")
+def test_the_program_stream_of_an_old_camcorder_gets_poses_and_a_poster(
+    client: httpx.Client, tmp_path: Path
+) -> None:
+    sent = upload(client, write_program_stream(tmp_path / "dive.mpg"), "dive.mpg")
+    assert sent.status_code == 202, sent.text
+    place = f"{CLIPS}/{sent.json()['id']}"
+    until(lambda: client.get(place).json()["status"] in ("done", "failed"))
+    clip = client.get(place).json()
+    assert (clip["status"], clip["frames"]) == ("done", 50)
+    assert client.get(f"{place}/poster").content[:2] == b"\xff\xd8"
 
 
 @pytest.mark.usefixtures("installed_models")
