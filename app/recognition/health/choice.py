@@ -1,9 +1,9 @@
 """Choice: which gestures of a language, or of candidates, are told apart best.
 
-Each demonstration is compared with every gesture: with those of other people where several have
-shown the language, else with the other gestures alone. Its distance to its own gesture and to each
-other one gives how often two gestures are mixed up, and the sum of that over all pairs is the cost
-of a language. Nothing is simulated.
+Each demonstration is compared with every other gesture, as other people show it where several have
+shown the language. The nearer two gestures are, the more they are mixed up, and the sum over all
+pairs is the cost of a language. Nothing is simulated. How far a gesture's own demonstrations are
+apart does not count: the limit of a language follows from that (`docs/results.md`, *Choosing*).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.explanation.causes import ALIKE, USUAL
+from app.recognition.explanation.causes import ALIKE
 from app.recognition.explanation.context import KnownTake
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.gesture import Gesture
@@ -26,9 +26,12 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.recognizer import Recognizer
 from app.recognition.text.look_alikes import find_confusable
 
-SPREAD: Final = 0.4
-"""How far apart two novelties must be for one of two gestures to be read mostly: people's takes
-scatter as much. Chosen of four values with sets left out (`docs/results.md`, *Choosing*)."""
+SPREAD: Final = 0.2
+"""Mean novelty of two gestures for each other at which they cost a third of what the same gesture
+would (`docs/results.md`, *Choosing*)."""
+
+FAR: Final = 3.0
+"""Largest novelty; what cannot be compared counts as much."""
 
 MOST_TRIED: Final = 20_000
 """Most choices of which every one is tried; of more, one gesture after the other is exchanged."""
@@ -84,8 +87,7 @@ class Confusions:
     labels
         Of G gestures.
     rates
-        ``(G, G)`` in [0, 1]: the share of takes of a row's gesture that is nearer to the column's;
-        on the diagonal the share that is refused.
+        ``(G, G)`` in [0, 1], symmetric: how much two gestures are mixed up; 0 on the diagonal.
     nearest
         ``(G, G)``: least novelty of a demonstration of the row's gesture for the column's.
     mixed, compared
@@ -104,7 +106,7 @@ class Confusions:
     people: int
 
     def measure_cost(self, chosen: Sequence[int]) -> float:
-        """Return the mean over gestures of the share that is refused or mixed up with another."""
+        """Return the mean over gestures of how much they are mixed up with others."""
         rows = np.array(chosen, dtype=np.intp)
         return float(self.rates[np.ix_(rows, rows)].sum() / max(len(rows), 1))
 
@@ -115,12 +117,11 @@ class Confusions:
 
     def list_pairs(self, among: Sequence[int] | None = None) -> list[ConfusedPair]:
         """Return the pairs of gestures, those that are mixed up most first."""
-        both = (self.rates + self.rates.T) / 2
         least, mixed = np.fmin(self.nearest, self.nearest.T), self.mixed + self.mixed.T
         found = [
             ConfusedPair(
                 gestures=(self.labels[one], self.labels[other]),
-                rate=float(both[one, other]),
+                rate=float(self.rates[one, other]),
                 distance=float(least[one, other]),
                 mixed=int(mixed[one, other]),
                 compared=int(self.compared[one] + self.compared[other]),
@@ -136,9 +137,8 @@ class Confusions:
         as long as that helps.
         """
         free = [index for index in range(len(self.labels)) if index not in {*fixed}]
-        both = self.rates + self.rates.T
-        costs = both[np.ix_(free, free)] / 2
-        costs += np.diag(both[np.ix_(free, list(fixed))].sum(axis=1))
+        costs = self.rates[np.ix_(free, free)].copy()
+        costs += np.diag(2 * self.rates[np.ix_(free, list(fixed))].sum(axis=1))
         return [free[at] for at in _choose_cheapest(costs, min(count, len(free)))]
 
 
@@ -275,7 +275,7 @@ def measure_confusions(
 
     """
     size = len(language.gestures)
-    rates, shown = np.zeros((size, size)), np.zeros(size)
+    total, shown = np.zeros((size, size)), np.zeros(size)
     nearest, mixed = np.full((size, size), np.inf), np.zeros((size, size))
     people, rows = compare_people(language, advance)
     rows += _compare_takes(language, known, advance)
@@ -285,32 +285,23 @@ def measure_confusions(
     # Of gestures that one person has shown and nobody repeated, distances alone are known.
     rows += _compare_demonstrations(language, {own for own, _ in rows}, advance)
     for own, novelty in rows:
-        rates[own] += _estimate(own, novelty)
+        total[own] += np.minimum(np.nan_to_num(novelty, nan=FAR, posinf=FAR), FAR)
         nearest[own] = np.fmin(nearest[own], novelty)
         shown[own] += 1
-    rates /= np.maximum(shown, 1)[:, None]
+    apart = np.where(shown[:, None] > 0, total / np.maximum(shown, 1)[:, None], FAR)
+    rates = (np.exp(-apart / SPREAD) + np.exp(-apart.T / SPREAD)) / 2
+    np.fill_diagonal(rates, 0.0)
     return Confusions(tuple(language.labels), rates, nearest, mixed, compared, max(people, 1))
-
-
-def _estimate(own: int, novelty: FloatArray) -> FloatArray:
-    """Return ``(G,)`` how sure a take is mixed up with each gesture, and refused at its own."""
-    against = np.where(np.isfinite(novelty), novelty, 1e9)
-    against[own] = 1.0
-    mine = novelty[own] if np.isfinite(novelty[own]) else 1e6
-    apart = np.clip((against - mine) / SPREAD, -50, 50)
-    return np.asarray(1 / (1 + np.exp(apart)))
 
 
 def _compare_demonstrations(
     language: Language, known: Set[int], advance: Callable[[], None]
 ) -> Iterator[tuple[int, FloatArray]]:
-    """Yield index and novelties of each other gesture; for itself that of a usual take."""
+    """Yield index and novelties of each gesture that is not known."""
     recognizer = Recognizer(language, "full")
     for index, gesture in enumerate(language.gestures):
         if index not in known and gesture.trajectory is not None:
-            novelty = recognizer.compare(condense(gesture.trajectory)).novelty.copy()
-            novelty[index] = USUAL
-            yield index, novelty
+            yield index, recognizer.compare(condense(gesture.trajectory)).novelty
             advance()
 
 

@@ -17,3 +17,15 @@ export function demonstratedBy(gestures, { clip_id: clip, start, end }) {
   const found = gestures.find((each) => each.demonstrations.some(({ source }) => shares(source)));
   return found?.label ?? null;
 }
+
+/**
+ * The demonstration of a source as the API takes it.
+ *
+ * @param {Span & { keep_transit: boolean }} source
+ */
+export const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
+  clip_id,
+  start,
+  end,
+  keep_transit,
+});

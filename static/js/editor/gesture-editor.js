@@ -8,6 +8,7 @@ import { currentLanguage, follow, selectedRange, state } from "../core/state.js"
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
+import { demonstrationOf } from "../clips/demonstration-ranges.js";
 import { focusCard } from "../gestures/gesture-cards.js";
 import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
@@ -72,18 +73,6 @@ function subject() {
  */
 const isThere = (where) =>
   where && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
-
-/**
- * The demonstration of a source as the API takes it.
- *
- * @param {Where} source
- */
-const demonstrationOf = ({ clip_id, start, end, keep_transit }) => ({
-  clip_id,
-  start,
-  end,
-  keep_transit,
-});
 
 /**
  * The gesture that is edited, for code that runs only where there is one.
