@@ -59,6 +59,8 @@ function firstTake() {
     preload: "auto",
     "aria-hidden": "true",
     src: still ? FILM + END : FILM,
+    // A browser without H.264 shows the drawing of the salute alone.
+    onerror: () => film.closest("button")?.remove(),
   });
   return h(
     "figure",
