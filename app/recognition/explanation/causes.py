@@ -105,7 +105,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "turned_away": "The diver is turned {degrees:.0f} degrees away. Face the camera, and repeat.",
     "too_small": "The movement is too small for {label}{also}. Show it larger.",
     "keypoints_jumped": "Keypoints jumped in {frames}. Film nearer, or in better light.",
-    "mixed": "Left and right were mixed in {frames}. Film nearer, or in better light.",
+    "mixed": "Left and right were mixed in {frames}. Film nearer or brighter.",
     "no_hand": "No fingers are seen, but their shape counts. Gloves? Show the hand nearer.",
     "other_person": "Another person's body was read in {frames}. Film one diver alone.",
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",

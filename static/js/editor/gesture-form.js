@@ -146,7 +146,7 @@ export function texts(taken) {
 function labelProblem(label, taken) {
   const trimmed = label.trim();
   if (!trimmed) return "Label is empty; type one.";
-  if (!/[\p{L}\p{N}]/u.test(trimmed)) return "Write the label in letters or digits.";
+  if (!/[\p{L}\p{N}\p{S}]/u.test(trimmed)) return "Write the label in letters or digits.";
   if (/[<>]/.test(trimmed)) return "Leave out < and >.";
   return taken.includes(trimmed)
     ? `There is a gesture \u201c${trimmed}\u201d already; choose another label.`

@@ -14,7 +14,7 @@ import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
 import { drawTimeline } from "./timeline.js";
-import { enlargePicture } from "./picture-zoom.js";
+import { enlargePicture } from "./clip-picture.js";
 import { buildTransport } from "./transport.js";
 import { show } from "./workspace.js";
 

@@ -7,7 +7,6 @@ import { LEAST_FRAMES, nearestFrame } from "../clips/frame-times.js";
 import { heldName, salutesIn, saluteWarning } from "../clips/salutes.js";
 import { isReadable, selectedClip, selectedRange, state, update } from "../core/state.js";
 import { keepFrame, seek } from "./playback.js";
-import { drawOverview, overview } from "./timeline-overview.js";
 import { curves, legend } from "./timeline-curves.js";
 import { tracksArea } from "./tracks.js";
 
@@ -24,6 +23,69 @@ const SALUTES_ROOM = 76; // px between two takes, for the salutes of both
 const MOST_ZOOM = 40; // Each screenful of it has thumbnails of its own.
 
 let zoom = 1; // The timeline's width, as a multiple of its room.
+
+/** @type {(part: number, whole: number) => string} */
+const share = (part, whole) => `${(100 * part) / whole}%`;
+
+/**
+ * Make the overview of a timeline that scrolls; a press or a drag moves the part in sight.
+ *
+ * @param {HTMLElement} seen
+ */
+function overview(seen) {
+  const bar = h("div", { className: "overview", "aria-hidden": "true", hidden: true });
+  /** @param {PointerEvent} event */
+  const to = (event) => {
+    const { left, width } = bar.getBoundingClientRect();
+    seen.scrollLeft = (seen.scrollWidth * (event.clientX - left)) / width - seen.clientWidth / 2;
+  };
+  bar.onpointerdown = (event) => {
+    bar.setPointerCapture(event.pointerId);
+    to(event);
+    bar.onpointermove = to;
+  };
+  bar.onpointerup = bar.onpointercancel = () => {
+    bar.onpointermove = null;
+  };
+  seen.addEventListener("scroll", () => drawInSight(seen, bar));
+  return bar;
+}
+
+/**
+ * Show which part is in sight.
+ *
+ * @param {HTMLElement} seen
+ * @param {HTMLElement} bar
+ */
+function drawInSight(seen, bar) {
+  const part = /** @type {HTMLElement | null} */ (bar.querySelector(".in-sight"));
+  if (!part) return;
+  part.style.left = share(seen.scrollLeft, seen.scrollWidth);
+  part.style.width = share(seen.clientWidth, seen.scrollWidth);
+}
+
+/**
+ * Draw the overview where the timeline is enlarged.
+ *
+ * @param {HTMLElement} box of the timeline
+ * @param {Take[]} takes
+ * @param {number} last second of the clip
+ * @param {boolean} enlarged
+ */
+function drawOverview(box, takes, last, enlarged) {
+  const [bar, seen] = [".overview", ".seen"].map(
+    (each) => /** @type {HTMLElement | null} */ (box.querySelector(each)),
+  );
+  if (!bar || !seen) return;
+  bar.hidden = !enlarged;
+  bar.replaceChildren(
+    ...takes.map(({ start, end }) =>
+      h("i", { style: { left: share(start, last), width: share(end - start, last) } }),
+    ),
+    h("i", { className: "in-sight" }),
+  );
+  drawInSight(seen, bar);
+}
 
 /** @param {number} duration */
 function ruler(duration) {

@@ -70,8 +70,7 @@ function firstTake() {
       {
         type: "button",
         title: "Play or pause",
-        "aria-label":
-          "A diver draws a circle between two Vulcan salutes; the gesture is there. Play or pause",
+        "aria-label": "Film: a circle between two Vulcan salutes becomes a gesture. Play or pause",
         onclick: () => (film.paused ? film.play() : film.pause()),
       },
       film,

@@ -47,7 +47,7 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     open_page: OpenPage, server: Running, clips: Path
 ) -> None:
     page = open_page(scene=False)
-    expect(page.get_by_role("button", name="A diver draws a circle")).to_be_visible()
+    expect(page.get_by_role("button", name="Film: a circle")).to_be_visible()
     start = page.locator("#welcome")
     expect(start).to_contain_text("the take, what lies between the salutes")
     words = page.locator("#view-studio").inner_text()
@@ -175,7 +175,7 @@ def test_a_film_shows_how_a_gesture_is_made_and_what_is_not_ones_own_is_folded(
         context.add_init_script("localStorage.setItem('osg-studio.tour', 'seen')")
         page = context.new_page()
         page.goto("/")
-        film = page.get_by_role("button", name="A diver draws a circle")
+        film = page.get_by_role("button", name="Film: a circle")
         expect(film).to_be_in_viewport(ratio=1)
         video = film.locator("video")
         for name in ("muted", "loop"):
