@@ -234,24 +234,23 @@ def find_replacements(
     -------
     Those with which fewer takes are not read right than now, the best first, `MOST_PROPOSED` at
     most. Novelties depend on how far the gestures of a language are apart, so all are measured in
-    one language of gestures and candidates, and what changes there is told as a share of now.
+    one language of gestures and candidates.
 
     """
-    own = measure_confusions(language, known, advance=advance)
     size = len(language.gestures)
     others = [at for at, each in enumerate(language.labels) if each != label]
     joined = join_candidates(language, candidates)
-    pool = measure_confusions(joined, known, advance=advance)
-    now, before = own.measure_misread(range(size)), pool.measure_misread(range(size))
-    kept = tuple(pair for pair in own.list_pairs(others) if pair.is_alike)
+    pool = measure_confusions(joined, known, only_seen=len(candidates), advance=advance)
+    now = pool.measure_misread(range(size))
+    kept = tuple(pair for pair in pool.list_pairs(others) if pair.is_alike)
     found = []
     for at in range(len(candidates)):
-        after = now * pool.measure_misread([*others, size + at]) / max(before, 1e-9)
+        after = pool.measure_misread([*others, size + at])
         pairs = (pool.list_pairs([size + at, other])[0] for other in others)
         alike = [
             replace(pair, gestures=(label, pair.gestures[1])) for pair in pairs if pair.is_alike
         ]
-        found.append(Replacement(at, now, after, (*kept, *alike), own.people))
+        found.append(Replacement(at, now, after, (*kept, *alike), pool.people))
     better = sorted((each for each in found if each.after < now), key=lambda each: each.after)
     return tuple(better[:MOST_PROPOSED])
 
@@ -260,6 +259,7 @@ def measure_confusions(
     language: Language,
     known: Sequence[KnownTake] = (),
     *,
+    only_seen: int = 0,
     advance: Callable[[], None] = lambda: None,
 ) -> Confusions:
     """Measure how often the gestures of a language are mixed up.
@@ -270,6 +270,9 @@ def measure_confusions(
         The gestures; those without a demonstration are mixed up with none.
     known
         Takes whose gesture is known.
+    only_seen
+        How many of the last gestures are compared with the others' demonstrations only, not theirs
+        with the others, which costs a comparison each.
     advance
         Called after each comparison; an exception that it raises ends the work.
 
@@ -283,24 +286,27 @@ def measure_confusions(
     for own, novelty in rows:
         mixed[own] += novelty < novelty[own]
     # Of gestures that one person has shown and nobody repeated, distances alone are known.
-    rows += _compare_demonstrations(language, {own for own, _ in rows}, advance)
+    left = {*range(size - only_seen)} - {own for own, _ in rows}
+    rows += _compare_demonstrations(language, left, advance)
     for own, novelty in rows:
         total[own] += np.minimum(np.nan_to_num(novelty, nan=FAR, posinf=FAR), FAR)
         nearest[own] = np.fmin(nearest[own], novelty)
         shown[own] += 1
-    apart = np.where(shown[:, None] > 0, total / np.maximum(shown, 1)[:, None], FAR)
+    apart = np.where(shown[:, None] > 0, total / np.maximum(shown, 1)[:, None], np.nan)
+    apart = np.where(np.isnan(apart), apart.T, apart)
+    apart = np.nan_to_num(apart, nan=FAR)
     rates = (np.exp(-apart / SPREAD) + np.exp(-apart.T / SPREAD)) / 2
     np.fill_diagonal(rates, 0.0)
     return Confusions(tuple(language.labels), rates, nearest, mixed, compared, max(people, 1))
 
 
 def _compare_demonstrations(
-    language: Language, known: Set[int], advance: Callable[[], None]
+    language: Language, chosen: Set[int], advance: Callable[[], None]
 ) -> Iterator[tuple[int, FloatArray]]:
-    """Yield index and novelties of each gesture that is not known."""
+    """Yield index and novelties of each chosen gesture that has a demonstration."""
     recognizer = Recognizer(language, "full")
     for index, gesture in enumerate(language.gestures):
-        if index not in known and gesture.trajectory is not None:
+        if index in chosen and gesture.trajectory is not None:
             yield index, recognizer.compare(condense(gesture.trajectory)).novelty
             advance()
 

@@ -156,6 +156,11 @@ def test_twenty_gestures_by_three_people_cost_at_most_a_hundred_comparisons() ->
     measure_confusions(Language("large", gestures), advance=lambda: steps.append(1))
     assert len(gestures) == 20
     assert len(steps) <= 100
+    candidates = [shown(f"candidate {seed}", wedge, seed) for seed in range(44)]
+    steps.clear()
+    large = Language("large", gestures)
+    find_replacements(large, "line 0", candidates, advance=lambda: steps.append(1))
+    assert 0 < len(steps) <= 100
 
 
 def test_it_is_said_by_whose_demonstrations_confusions_are_known() -> None:
