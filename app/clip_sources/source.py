@@ -16,8 +16,6 @@ from app.recognition.errors import OsgError
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.recording.extraction import Following
-from app.recognition.recording.file_kinds import HEAD_BYTES as HEAD_BYTES
-from app.recognition.recording.file_kinds import video_type as video_type
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 

@@ -8,18 +8,17 @@ from typing_extensions import Unpack
 
 from app.bags.extraction import copying, record_and_copy
 from app.clip_sources.source import (
-    HEAD_BYTES,
     ClipFacts,
     OpenFrames,
     ReadOptions,
     RecordedClip,
     Refusal,
-    video_type,
 )
 from app.recognition.errors import OsgError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.recording.extraction import Following
+from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
 from app.recognition.recording.video import FrameReader, probe, read_frames
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.clip_sources.source import HEAD_BYTES, video_type
+from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
 from app.recognition.recording.video import probe
 from tests.recognition.damaged_clips import write_clip
 

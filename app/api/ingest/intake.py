@@ -19,8 +19,7 @@ from app.api.ingest.quotas import quota_of
 from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
 from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
-from app.clip_sources.source import HEAD_BYTES
-from app.recognition.recording.file_kinds import find_file_kind
+from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
 from app.store import Clip, Upload
 
 UNSUPPORTED = "unsupported_media_type"

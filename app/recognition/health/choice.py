@@ -105,11 +105,6 @@ class Confusions:
     compared: FloatArray
     people: int
 
-    def measure_cost(self, chosen: Sequence[int]) -> float:
-        """Return the mean over gestures of how much they are mixed up with others."""
-        rows = np.array(chosen, dtype=np.intp)
-        return float(self.rates[np.ix_(rows, rows)].sum() / max(len(rows), 1))
-
     def measure_misread(self, chosen: Sequence[int]) -> float:
         """Return the mean over gestures of the estimated share of takes that is not read right."""
         rows = np.array(chosen, dtype=np.intp)
@@ -117,18 +112,19 @@ class Confusions:
 
     def list_pairs(self, among: Sequence[int] | None = None) -> list[ConfusedPair]:
         """Return the pairs of gestures, those that are mixed up most first."""
-        least, mixed = np.fmin(self.nearest, self.nearest.T), self.mixed + self.mixed.T
-        found = [
-            ConfusedPair(
-                gestures=(self.labels[one], self.labels[other]),
-                rate=float(self.rates[one, other]),
-                distance=float(least[one, other]),
-                mixed=int(mixed[one, other]),
-                compared=int(self.compared[one] + self.compared[other]),
-            )
-            for one, other in combinations(range(len(self.labels)) if among is None else among, 2)
-        ]
+        rows = range(len(self.labels)) if among is None else among
+        found = [self.compare(one, other) for one, other in combinations(rows, 2)]
         return sorted(found, key=lambda each: -each.rate)
+
+    def compare(self, one: int, other: int) -> ConfusedPair:
+        """Return what is known of two gestures."""
+        return ConfusedPair(
+            gestures=(self.labels[one], self.labels[other]),
+            rate=float(self.rates[one, other]),
+            distance=float(min(self.nearest[one, other], self.nearest[other, one])),
+            mixed=int(self.mixed[one, other] + self.mixed[other, one]),
+            compared=int(self.compared[one] + self.compared[other]),
+        )
 
     def choose(self, count: int, fixed: Sequence[int] = ()) -> list[int]:
         """Return the `count` gestures of least cost beside the `fixed` ones, in their order.
@@ -137,7 +133,7 @@ class Confusions:
         as long as that helps.
         """
         free = [index for index in range(len(self.labels)) if index not in {*fixed}]
-        costs = self.rates[np.ix_(free, free)].copy()
+        costs = self.rates[np.ix_(free, free)]
         costs += np.diag(2 * self.rates[np.ix_(free, list(fixed))].sum(axis=1))
         return [free[at] for at in _choose_cheapest(costs, min(count, len(free)))]
 
@@ -246,7 +242,7 @@ def find_replacements(
     found = []
     for at in range(len(candidates)):
         after = pool.measure_misread([*others, size + at])
-        pairs = (pool.list_pairs([size + at, other])[0] for other in others)
+        pairs = (pool.compare(size + at, other) for other in others)
         alike = [
             replace(pair, gestures=(label, pair.gestures[1])) for pair in pairs if pair.is_alike
         ]

@@ -238,10 +238,8 @@ def _choose(choice: ChoiceRequest, studio: Studio, advance: Callable[[], None]) 
 
 def _find_most_alike(confusions: Confusions, left_out: int, kept: Sequence[int]) -> tuple[int, str]:
     """Return which of the kept gestures another one is most like, and how much."""
-    both = confusions.rates[left_out, kept] + confusions.rates[kept, left_out]
-    nearest = kept[int(np.argmax(both))]
-    (pair,) = confusions.list_pairs([left_out, nearest])
-    return nearest, pair.words
+    nearest = kept[int(np.argmax(confusions.rates[left_out, kept]))]
+    return nearest, confusions.compare(left_out, nearest).words
 
 
 def _propose(
