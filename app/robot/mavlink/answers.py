@@ -137,23 +137,27 @@ class TiltOutput:
     def __init__(self, vehicle: Vehicle) -> None:
         self.vehicle = vehicle
         self.key = f"{self.name} {vehicle.system}"
+        self._yaw = 0.0
 
     def read(self, message: Message) -> float | None:
-        """Return the pitch of the reported attitude, a quaternion w, x, y, z."""
-        if message.get_type() != "GIMBAL_DEVICE_ATTITUDE_STATUS":
+        """Return the pitch of the reported attitude, a quaternion w, x, y, z; note its yaw."""
+        if message.get_msgId() != self.reported_by or not math.isfinite(sum(message.q)):
             return None
         w, x, y, z = message.q
-        sine = 2 * (w * y - z * x)
-        return math.degrees(math.asin(sine)) if -1 <= sine <= 1 else None
+        ahead, aside = 1 - 2 * (y * y + z * z), 2 * (w * z + x * y)
+        self._yaw = math.degrees(math.atan2(aside, ahead))
+        return math.degrees(math.atan2(2 * (w * y - z * x), math.hypot(ahead, aside)))
 
     def find_peak(self, before: float) -> float:
         """Return an angle further down, or up where the camera looks down already."""
         return before + (NOD_DEGREES if before < -30 else -NOD_DEGREES)
 
     def build(self, value: float) -> Message:
-        """Build the message that sets an angle and leaves the yaw as it is."""
-        rest = (math.nan, math.nan, math.nan, 0.0, 0.0, 0.0)
-        return build_command(self.vehicle, self.command, value, *rest)
+        """Build the message that sets an angle and leaves the yaw as it is.
+
+        ArduPilot refuses a pitch without a yaw, which it takes and reports from the vehicle's bow.
+        """
+        return build_command(self.vehicle, self.command, value, self._yaw, math.nan, math.nan)
 
 
 Output = LightsOutput | TiltOutput

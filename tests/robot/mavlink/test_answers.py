@@ -84,11 +84,12 @@ def test_lights_with_a_limit_of_their_own_blink_and_are_restored() -> None:
 
 
 def test_a_camera_nods_and_looks_where_it_looked_before() -> None:
-    with answering({"answers": {"show": ["tilt"]}}) as diver:
+    with answering({"answers": {"show": ["tilt"]}}, yaw=-25.0) as diver:
         diver.show("stop")
         wait_for_pattern(diver, PULSES[Answer.repeat])
     shown = [round(value) for _, _, value in diver.vehicle.shown]
     assert shown == [-12, 0] * PULSES[Answer.repeat]
+    assert diver.vehicle.yaw == pytest.approx(-25, abs=0.01)
 
 
 def test_the_pilot_keeps_the_lights_that_he_changes_during_a_pattern() -> None:

@@ -69,6 +69,7 @@ class Dive:
             if self.linked and message.command == mavlink.MAV_CMD_DO_SET_SERVO:
                 self.value = message.param2
             if self.linked and message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
+                assert not math.isnan(message.param2), "ArduPilot refuses a pitch without a yaw"
                 self.value = message.param1
 
     def _report(self) -> Any:

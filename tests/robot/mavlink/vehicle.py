@@ -38,6 +38,11 @@ X_OR_Y_OR_Z_IGNORED, Z_IGNORED = 0b111, 0b100
 """`MAVLINK_SET_POS_TYPE_MASK_POS_IGNORE` and `..._Z_IGNORE` in ArduSub/defines.h."""
 
 
+LOWEST, HIGHEST = -90.0, 20.0
+"""Limits of the camera's pitch in degrees, unless a parameter sets others: 058b1c50232a
+libraries/AP_Mount/AP_Mount_Params.cpp 59, 68."""
+
+
 @dataclass
 class Ardusub:
     """Simulated vehicle.
@@ -74,6 +79,8 @@ class Ardusub:
         Whether it does nothing, and what it is sent waits.
     lights, brightest
         Pulse length of its lights at the start, and the largest that it sets, in microseconds.
+    yaw
+        Of its camera, in degrees from the bow.
     key
         Key of its signatures; None: it signs nothing.
     function
@@ -105,6 +112,7 @@ class Ardusub:
     hangs: bool = False
     lights: float = 1100.0
     brightest: float = 1900.0
+    yaw: float = 0.0
     key: bytes | None = None
     function: int | None = 0
     servo: int = 13
@@ -193,8 +201,14 @@ class Ardusub:
             outputs = [*[1500] * 12, round(self.pulse), *[1500] * 3]
             self._send(mavlink.MAVLink_servo_output_raw_message(0, 0, *outputs))
         if mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS in self.reports:
-            half = math.radians(self.pitch) / 2
-            attitude = [math.cos(half), 0.0, math.sin(half), 0.0]
+            # 00e292165190 libraries/AP_Mount/AP_Mount_Backend.cpp 468: w, x, y, z.
+            pitch, yaw = math.radians(self.pitch) / 2, math.radians(self.yaw) / 2
+            attitude = [
+                math.cos(pitch) * math.cos(yaw),
+                -math.sin(pitch) * math.sin(yaw),
+                math.sin(pitch) * math.cos(yaw),
+                math.cos(pitch) * math.sin(yaw),
+            ]
             self._send(
                 mavlink.MAVLink_gimbal_device_attitude_status_message(
                     0, 0, uptime, 0, attitude, 0, 0, 0, 0
@@ -290,9 +304,7 @@ class Ardusub:
             done = "" if self.pulse == message.param2 else done
             self.turn_lights(message.param2)
         elif message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
-            if self.pitch != message.param1:
-                self.pitch = message.param1
-                self.shown.append((self._now(), "tilt", message.param1))
+            return self._point(message)
         elif message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self.reports.add(int(message.param1))
         elif message.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
@@ -302,6 +314,21 @@ class Ardusub:
             return int(mavlink.MAV_RESULT_UNSUPPORTED)
         if done:
             self.obeyed.append(done)
+        return int(mavlink.MAV_RESULT_ACCEPTED)
+
+    def _point(self, message: Any) -> int:
+        """Point the camera, whose pitch has limits; rates and locks are not simulated.
+
+        00e292165190 libraries/AP_Mount/AP_Mount.cpp 399-423, AP_Mount_Backend.cpp 200: pitch and
+        yaw, neither without the other.
+        """
+        if math.isnan(message.param1) or math.isnan(message.param2):
+            return int(mavlink.MAV_RESULT_FAILED)
+        pitch = min(max(message.param1, LOWEST), HIGHEST)
+        if self.pitch != pitch:
+            self.pitch = pitch
+            self.shown.append((self._now(), "tilt", pitch))
+        self.yaw = message.param2
         return int(mavlink.MAV_RESULT_ACCEPTED)
 
     def _take_mode(self, mode: int) -> None:
