@@ -269,7 +269,8 @@ def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, .
     vehicle
         Who should obey.
     picture
-        Number of the next picture; a repeated request with the same number takes no second picture.
+        Number of the next picture: a camera takes no second one for a repeated request, but
+        ArduPilot's own driver takes one for each.
 
     """
     address = (vehicle.system, vehicle.component)

@@ -8,7 +8,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from tests.robot.mavlink.test_bridge import diving
+from tests.robot.mavlink.test_bridge import TABLE, diving
 
 
 @pytest.mark.parametrize("version", [(4, 0, 3), (4, 1, 2), (4, 5, 3), (4, 7, 0)])
@@ -27,19 +27,23 @@ def test_a_depth_is_reached_by_every_version_of_ardusub(version: tuple[int, int,
 
 
 @pytest.mark.parametrize(
-    ("version", "label", "said"),
+    ("version", "mode", "said"),
     [
-        ((4, 5, 3), "up", "refused (FAILED): surface"),
-        ((4, 1, 2), "up", "done: surface"),
-        ((4, 7, 0), "up", "done: surface"),
+        ((4, 5, 3), "SURFACE", "refused (FAILED)"),
+        ((4, 1, 2), "SURFACE", "done"),
+        ((4, 7, 0), "SURFACE", "done"),
+        ((4, 7, 0), "POSHOLD", "refused (FAILED)"),
+        ((4, 7, 0), "SURFTRAK", "done"),
+        ((4, 1, 2), "SURFTRAK", "refused (FAILED)"),
     ],
 )
 def test_what_ardusub_refuses_is_told_as_refused(
-    version: tuple[int, int, int], label: str, said: str
+    version: tuple[int, int, int], mode: str, said: str
 ) -> None:
-    with diving(version=version) as diver:
-        diver.confirm(label)
-        assert diver.wait_for("done", "refused", "NOT DONE") == said
+    modes = {"gestures": {**TABLE["gestures"], "free": {"do": "mode", "mode": mode}}}
+    with diving(changes=modes, version=version) as diver:
+        diver.confirm("free")
+        assert diver.wait_for("done", "refused", "NOT DONE").startswith(f"{said}: ")
 
 
 def test_lights_with_a_function_of_their_own_are_told_as_refused() -> None:

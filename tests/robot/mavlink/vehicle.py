@@ -1,7 +1,7 @@
 """A vehicle like ArduSub, by pymavlink's connections: obeys, refuses, loses packets, restarts.
 
-It obeys what ArduSub's source obeys and nothing else. Each rule names the file of
-https://github.com/ArduPilot/ardupilot with the commit or branch and the lines, or the function.
+It obeys what ArduSub's source obeys and nothing else. Each rule names its commit, file and lines in
+https://github.com/ArduPilot/ardupilot. Losses, hangs and restarts are no rules.
 """
 
 from __future__ import annotations
@@ -24,23 +24,35 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 SYSTEM, COMPONENT = 1, 1
 BEAT_SECONDS = 0.01
 DEPTH = 1.0
-MODES: dict[int, str] = mavutil.mode_mapping_sub
-NEEDS_POSITION = ("AUTO", "GUIDED", "CIRCLE", "POSHOLD")
-"""Modes that need a position: `requires_GPS` in ArduSub/mode.h, as asked in ArduSub/mode.cpp at
-00d5b0f84fc2, lines 88-93. Before pull request 29996 SURFACE needed one as well."""
+MODES: dict[int, str] = {
+    **mavutil.mode_mapping_sub,
+    mavlink.SUB_MODE_MOTORDETECT: "MOTOR_DETECT",
+    mavlink.SUB_MODE_SURFTRAK: "SURFTRAK",
+}
+"""Modes that there are: 00d5b0f84fc2 ArduSub/mode.cpp 28-62; SURFTRAK since 4.5."""
 
-FREE_OUTPUTS = (0, 1, *range(51, 67))
-"""Functions of outputs that a command may set: none, manual, and the 16 inputs passed through.
-libraries/AP_ServoRelayEvents/AP_ServoRelayEvents.cpp at 13c39969d86c, `do_set_servo`, lines 35-44;
-the numbers are those of libraries/SRV_Channel/SRV_Channel.h. `Lights1` (181) is none of them."""
+NEEDS_POSITION = ("AUTO", "GUIDED", "CIRCLE", "POSHOLD")
+"""Modes that need a position: de0002527a77 ArduSub/mode.h 260, 314, 355, 382. The others need none:
+132, 155, 178, 201, 404, 427. Before pull request 29996 SURFACE did: 025df2550ac0, 468."""
+
+FREE_OUTPUTS = (0, 1, 22, 23, 28, *range(51, 67))
+"""Functions of outputs that a command may set: none, manual, and the 16 inputs passed through, by
+13c39969d86c libraries/AP_ServoRelayEvents/AP_ServoRelayEvents.cpp 35-44; sprayer and gripper since
+pull request 13481. `Lights1` (181) is none of them."""
 
 X_OR_Y_OR_Z_IGNORED, Z_IGNORED = 0b111, 0b100
-"""`MAVLINK_SET_POS_TYPE_MASK_POS_IGNORE` and `..._Z_IGNORE` in ArduSub/defines.h."""
-
+VELOCITY_IGNORED, ACCELERATION_IGNORED = 0b111000, 0b111000000
+"""Bits of a target's mask: 92e0e66054d3 ArduSub/defines.h 189-192."""
 
 LOWEST, HIGHEST = -90.0, 20.0
 """Limits of the camera's pitch in degrees, unless a parameter sets others: 058b1c50232a
 libraries/AP_Mount/AP_Mount_Params.cpp 59, 68."""
+
+REPORTED = (
+    mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
+    mavlink.MAVLINK_MSG_ID_GIMBAL_DEVICE_ATTITUDE_STATUS,
+)
+"""Messages that it reports on request, and simulates."""
 
 
 @dataclass
@@ -78,7 +90,9 @@ class Ardusub:
     hangs
         Whether it does nothing, and what it is sent waits.
     lights, brightest
-        Pulse length of its lights at the start, and the largest that it sets, in microseconds.
+        Pulse length of its lights at the start, and the largest that it reports, in microseconds:
+        ArduSub has no limit (00757fb77fa3 libraries/SRV_Channel/SRV_Channel.cpp 132-138), an
+        output board may have one.
     yaw
         Of its camera, in degrees from the bow.
     key
@@ -89,6 +103,8 @@ class Ardusub:
         Output of the lights.
     reports
         Messages that it was asked to report, by number: the lights' output, the gimbal's attitude.
+    pictures
+        Numbers in the requests for pictures, one for each picture.
     shown
         Every change of lights or tilt, with its time: what a diver sees.
 
@@ -111,12 +127,13 @@ class Ardusub:
     pilot: int | None = None
     hangs: bool = False
     lights: float = 1100.0
-    brightest: float = 1900.0
+    brightest: float = math.inf
     yaw: float = 0.0
     key: bytes | None = None
     function: int | None = 0
     servo: int = 13
     reports: set[int] = field(default_factory=set)
+    pictures: list[float] = field(default_factory=list)
     shown: list[tuple[float, str, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -157,7 +174,6 @@ class Ardusub:
         self.target = -DEPTH
         self.pulse = self.lights
         self.pitch = 0.0
-        self._picture = 0.0
         self._began = self._now() - 10
 
     def _run(self) -> None:
@@ -194,6 +210,7 @@ class Ardusub:
         self._send(mavlink.MAVLink_heartbeat_message(*heartbeat, self.mode, active, 3))
         self._send(mavlink.MAVLink_system_time_message(0, uptime))
         self._send(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -DEPTH, 0))
+        # 04b429a5076f ArduSub/GCS_MAVLink_Sub.cpp 91: metres from the height up to the target.
         error = self.target + DEPTH
         self._send(mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, error, 0, 0))
 
@@ -230,24 +247,29 @@ class Ardusub:
                 self.asked += 1
                 self._hear_command(message)
             case "PARAM_REQUEST_READ" if self.function is not None:
-                assert message.param_id == f"SERVO{self.servo}_FUNCTION"
-                name, kind = message.param_id.encode(), mavlink.MAV_PARAM_TYPE_INT16
-                self._send(mavlink.MAVLink_param_value_message(name, self.function, kind, 900, 77))
+                # 049a7b207c7c libraries/GCS_MAVLink/GCS_Param.cpp 354-366: an unknown name has no
+                # answer, and an answer repeats the requested index.
+                if message.param_id == f"SERVO{self.servo}_FUNCTION":
+                    told = (self.function, mavlink.MAV_PARAM_TYPE_INT16, 900, 65535)
+                    name = message.param_id.encode()
+                    self._send(mavlink.MAVLink_param_value_message(name, *told))
             case "SET_POSITION_TARGET_GLOBAL_INT":
                 self.asked += 1
                 self._hear_target(message)
             case "AUTOPILOT_VERSION_REQUEST":
-                # libraries/GCS_MAVLink/GCS_Common.cpp, `handle_send_autopilot_version`.
+                # c332c6474657 libraries/GCS_MAVLink/GCS_config.h 31-36, and 92e0e66054d3
+                # libraries/GCS_MAVLink/GCS_Common.cpp 2484-2487.
                 major, minor, patch = self.version
                 number = major << 24 | minor << 16 | patch << 8 | 255
                 rest = ([0] * 8, [0] * 8, [0] * 8, 0, 0, 0)
                 self._send(mavlink.MAVLink_autopilot_version_message(0, number, 0, 0, 0, *rest))
 
     def _hear_target(self, message: Any) -> None:
-        """Take a depth in ALT_HOLD; in all other modes a target needs a place on Earth.
+        """Take a depth in ALT_HOLD; in GUIDED swim to a place on Earth, or with a velocity.
 
-        Sub-4.0, ArduSub/GCS_Mavlink.cpp, lines 657-717: none of X, Y and Z may be ignored. From
-        4.5 on, ArduSub/GCS_MAVLink_Sub.cpp, `SET_POSITION_TARGET_GLOBAL_INT`: only Z counts.
+        Sub-4.0 ArduSub/GCS_Mavlink.cpp 657-717: none of X, Y and Z may be ignored for a depth. From
+        4.5 on, 04b429a5076f ArduSub/GCS_MAVLink_Sub.cpp 682-772, only Z counts; the newest drops a
+        place with an absolute height too (764-767), which this vehicle takes like the others.
         """
         refusing = X_OR_Y_OR_Z_IGNORED if self.version < (4, 5, 0) else Z_IGNORED
         if self.mode == mavlink.SUB_MODE_ALT_HOLD:
@@ -255,11 +277,14 @@ class Ardusub:
                 self.target = message.alt
                 self.obeyed.append(f"depth {-message.alt:g}")
             return
-        # `check_latlng`, libraries/AP_Math/location.cpp.
+        if self.mode != mavlink.SUB_MODE_GUIDED or not message.type_mask & ACCELERATION_IGNORED:
+            return
+        # 01874b1df9fe libraries/AP_Math/location.cpp 324-339.
         is_place = abs(message.lat_int) <= 90e7 and abs(message.lon_int) <= 180e7
-        takes = self.mode == mavlink.SUB_MODE_GUIDED and not message.type_mask & X_OR_Y_OR_Z_IGNORED
-        if takes and is_place:
+        if not message.type_mask & X_OR_Y_OR_Z_IGNORED and is_place:
             self.obeyed.append(f"swims to {message.lat_int}, {message.lon_int}")
+        elif message.type_mask & X_OR_Y_OR_Z_IGNORED and not message.type_mask & VELOCITY_IGNORED:
+            self.obeyed.append("swims with a velocity")
 
     def _hear_command(self, message: Any) -> None:
         if self.restarts_at_next:
@@ -278,14 +303,15 @@ class Ardusub:
         self._send(mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *asker))
 
     def _set_mode(self, message: Any) -> int:
-        # libraries/GCS_MAVLink/GCS_Common.cpp, `_set_mode_common`: custom modes alone.
+        # 92e0e66054d3 libraries/GCS_MAVLink/GCS_Common.cpp 2380-2412: custom modes alone.
         if not int(message.param1) & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
             return int(mavlink.MAV_RESULT_DENIED)
-        # ArduSub/mode.cpp at 00d5b0f84fc2, `Sub::set_mode`, lines 82-93.
+        # 00d5b0f84fc2 ArduSub/mode.cpp 82-93.
         name = MODES.get(int(message.param2))
         older = (4, 5, 0) <= self.version < (4, 7, 0)
         needs = name in NEEDS_POSITION or (name == "SURFACE" and older)
-        if name is None or (needs and not self.has_position):
+        is_missing = name is None or (name == "SURFTRAK" and self.version < (4, 5, 0))
+        if is_missing or (needs and not self.has_position):
             return int(mavlink.MAV_RESULT_FAILED)
         self._accepted = int(message.param2)
         if not self.is_slow:
@@ -297,7 +323,7 @@ class Ardusub:
         if message.command == mavlink.MAV_CMD_DO_SET_MODE:
             return self._set_mode(message)
         if message.command == mavlink.MAV_CMD_DO_SET_SERVO:
-            # libraries/GCS_MAVLink/GCS_ServoRelay.cpp at 0a9d1f1fb365, lines 12-19.
+            # 0a9d1f1fb365 libraries/GCS_MAVLink/GCS_ServoRelay.cpp 12-19.
             if message.param1 != self.servo or self.function not in (None, *FREE_OUTPUTS):
                 return int(mavlink.MAV_RESULT_FAILED)
             done = f"servo {message.param1:g} {message.param2:g}"
@@ -306,11 +332,19 @@ class Ardusub:
         elif message.command == mavlink.MAV_CMD_DO_GIMBAL_MANAGER_PITCHYAW:
             return self._point(message)
         elif message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+            # 92e0e66054d3 libraries/GCS_MAVLink/GCS_Common.cpp 2665-2702.
+            if message.param1 not in REPORTED:
+                return int(mavlink.MAV_RESULT_DENIED)
             self.reports.add(int(message.param1))
         elif message.command == mavlink.MAV_CMD_IMAGE_START_CAPTURE:
-            done = "" if self._picture == message.param4 else "picture"
-            self._picture = message.param4
+            # 2f0cf65f4117 libraries/AP_Camera/AP_Camera.cpp 334-351: a picture for each request,
+            # whatever its number.
+            if message.param1 < 0 or message.param3 != 1:
+                return int(mavlink.MAV_RESULT_UNSUPPORTED)
+            done = "picture"
+            self.pictures.append(message.param4)
         else:
+            # 000f342b5f12 libraries/GCS_MAVLink/GCS_Common.cpp 2493-2495.
             return int(mavlink.MAV_RESULT_UNSUPPORTED)
         if done:
             self.obeyed.append(done)
