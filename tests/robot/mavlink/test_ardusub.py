@@ -34,7 +34,7 @@ def test_a_depth_is_reached_by_every_version_of_ardusub(version: tuple[int, int,
         ((4, 7, 0), "SURFACE", "done"),
         ((4, 7, 0), "POSHOLD", "refused (FAILED)"),
         ((4, 7, 0), "SURFTRAK", "done"),
-        ((4, 1, 2), "SURFTRAK", "refused (FAILED)"),
+        ((4, 0, 3), "SURFTRAK", "refused (UNSUPPORTED)"),
     ],
 )
 def test_what_ardusub_refuses_is_told_as_refused(

@@ -312,7 +312,9 @@ class Ardusub:
         needs = name in NEEDS_POSITION or (name == "SURFACE" and older)
         is_missing = name is None or (name == "SURFTRAK" and self.version < (4, 5, 0))
         if is_missing or (needs and not self.has_position):
-            return int(mavlink.MAV_RESULT_FAILED)
+            # In 4.0: 000f342b5f12 libraries/GCS_MAVLink/GCS_Common.cpp 1363-1386.
+            old, new = mavlink.MAV_RESULT_UNSUPPORTED, mavlink.MAV_RESULT_FAILED
+            return int(old if self.version < (4, 1, 0) else new)
         self._accepted = int(message.param2)
         if not self.is_slow:
             self._take_mode(self._accepted)
