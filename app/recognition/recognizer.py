@@ -33,6 +33,7 @@ from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.recording.segmentation import Take
+from app.recognition.triggers.arm_pose import mostly_hang
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 
 
@@ -149,9 +150,11 @@ class Recognizer:
         return self.examine(poses).result
 
     def recognize_take(self, take: Take) -> Recognition:
-        """Recognise a take as `recognize` does; one that is not closed gets no label.
+        """Recognise a take as `recognize` does; two kinds of takes get no label.
 
-        Its gesture may be incomplete: the diver forgot the second trigger, or is not done.
+        The gesture of a take that is not closed may be incomplete: the diver forgot the second
+        trigger, or is not done. A take in which both arms hang most of the time, as they do not in
+        the gesture, lies between two gestures: a trigger before it was not seen.
 
         Raises
         ------
@@ -159,11 +162,26 @@ class Recognizer:
             As `recognize`.
 
         """
-        result = self.recognize(take.poses)
-        if take.closed:
+        result, noun = self.recognize(take.poses), self.language.trigger.noun
+        fault = result.fault
+        if not take.closed:
+            fault = fault or f"no second {noun} ended it"
+        elif result.outcome != "rejected" and self._is_rest(take.untrimmed, result):
+            fault = f"both arms hang most of the time, so that a {noun} was missed"
+        else:
             return result
-        fault = result.fault or f"no second {self.language.trigger.noun} ended it"
         return replace(result, label=None, pair=None, fault=fault)
+
+    def _is_rest(self, poses: PoseSequence, result: Recognition) -> bool:
+        """Return whether both arms mostly hang, as in no demonstration of the gestures named."""
+        shown = (
+            one.trajectory
+            for label in (result.nearest, *(result.pair or ()))
+            for one in self.language.gesture(label).single_demonstrations()
+        )
+        return mostly_hang(poses.landmarks, poses.xy) and not any(
+            each is not None and mostly_hang(each.landmarks, each.xy) for each in shown
+        )
 
     def examine(self, poses: PoseSequence) -> Trace:
         """Recognise as `recognize` does, and return the trace: query, score table and result.

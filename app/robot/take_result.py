@@ -77,7 +77,8 @@ def _reject(language: ActiveLanguage, reason: str, **about: Any) -> TakeRejected
 def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str:
     """Return why a recognition has no label, in words."""
     if recognition.fault:
-        return f"insufficient recording quality: {recognition.fault}"
+        poor = "insufficient recording quality: " if recognition.fault_kind else ""
+        return f"{poor}{recognition.fault}"
     if recognition.pair:
         return f"{ask_which(recognition.pair)} show it again"
     if recognition.between:

@@ -52,13 +52,26 @@ def rounded(share: FloatArray) -> FloatArray:
     return 0.46 * circle(share) + 0.54 * square(share)
 
 
+def valley(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of a V: down and up again, above the hips."""
+    down = np.clip(2.5 * np.minimum(share, 1 - share), 0, 1)
+    return np.stack([0.3 * down, 0.85 * down], axis=1)
+
+
+def dip(share: FloatArray) -> FloatArray:
+    """Return ``(T, 2)`` points of an arm that is lowered until it hangs, and raised again."""
+    return 2 * valley(share)
+
+
 SHAPES = {
     "circle": circle,
     "circle backwards": backwards,
     "line": line,
     "corner": corner,
+    "dip": dip,
     "square": square,
     "rounded square": rounded,
+    "valley": valley,
 }
 
 

@@ -220,6 +220,20 @@ def dive(*shapes: str, rest: float = 3.0) -> list[tuple[PoseSequence, float]]:
     return frames
 
 
+def lower_between(shapes: list[str]) -> list[tuple[PoseSequence, float]]:
+    """Return gestures between their salutes; after each, the arm is lowered, hangs and is raised."""
+    lowered = [moment for moment, salute in moments_of(recording_of("dip")) if not salute]
+    lowest = len(lowered) * 2 // 5
+    arm = [*lowered[:lowest], *[lowered[lowest]] * (2 * RATE), *lowered[lowest:]]
+    frames: list[tuple[PoseSequence, float]] = []
+    for shape in shapes:
+        frames += [*moments_of(recording_of(shape)), *((moment, 0.0) for moment in arm)]
+    return [
+        (moved(moment, number / RATE - float(moment.time[0])), salute)
+        for number, (moment, salute) in enumerate(frames)
+    ]
+
+
 def labels_in(listener: TriggerListener, frames: list[tuple[PoseSequence, float]]) -> list[str]:
     events = [event for frame in frames for event in listener.feed(*frame)]
     return [event.label for event in events if isinstance(event, TakeRecognized)]
@@ -251,6 +265,27 @@ def test_a_salute_that_was_not_seen_costs_one_gesture() -> None:
         expected = ["circle", "line", "circle", "line"]
         del expected[min((missed + 1) // 2, 3)]
         assert recognised == expected, missed
+
+
+def test_arms_lowered_after_a_rejected_gesture_are_no_gesture() -> None:
+    # The language has a gesture that is just that movement.
+    language = spoken("dip", "circle")
+    assert labels_in(TriggerListener(language), lower_between(["dip"])) == ["dip"]
+    frames = lower_between(["line", "circle", "line", "line", "circle"])
+    assert labels_in(TriggerListener(language), frames) == ["circle", "circle"]
+
+
+def test_after_a_missed_salute_arms_that_are_lowered_are_no_gesture() -> None:
+    listener = TriggerListener(spoken("valley", "line"))
+    frames = lower_between(["line", "line", "line"])
+    began = next(index for index, (_, salute) in enumerate(frames) if not salute)
+    events = [event for frame in frames[began:] for event in listener.feed(*frame)]
+    rejected, *recognised = [
+        event for event in events if isinstance(event, TakeRecognized | TakeRejected)
+    ]
+    assert isinstance(rejected, TakeRejected)
+    assert rejected.reason == "both arms hang most of the time, so that a salute was missed"
+    assert [event.label for event in recognised] == ["line", "line"]
 
 
 def test_a_rejected_gesture_does_not_turn_the_pairs_around() -> None:
