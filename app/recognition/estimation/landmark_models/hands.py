@@ -337,7 +337,7 @@ class HandTracker:
         ]
 
     def _on_arms(self, image: Image | None, followed: tuple[SeenHand, ...]) -> tuple[SeenHand, ...]:
-        """Assign each arm the hand at its end, searching there if none was followed.
+        """Assign each arm the hand at its end, searching there if none with fingers was followed.
 
         Of two hands at one arm, the one with the lower score is dropped. Hands at no arm (of
         people whose body is not seen, or where the pose is wrong) compete with those at the arms by
@@ -347,8 +347,9 @@ class HandTracker:
         carried = [one.carry() if one.carried else one for one in followed]
         arms, elsewhere = _sort_by_arm(carried, free)
         for place, ((body, side), pace) in enumerate(zip(free, paces, strict=True)):
-            if place in arms:
-                pace.read = pace.read if arms[place].carried else time
+            one = arms.get(place)
+            if one is not None and one.shows_fingers:
+                pace.read = pace.read if one.carried else time
                 pace.misses = 0
             elif image is not None and pace.is_due(time):
                 pace.read = time
@@ -357,9 +358,13 @@ class HandTracker:
                 if with_forearm:
                     pace.forearm_searched = time
                 seen = self._search_arm(image, body, side, with_forearm=with_forearm)
-                if seen is not None and not _known(seen, arms.values()):
+                others = [hand for at, hand in arms.items() if at != place]
+                if seen is not None and not _known(seen, others):
                     arms[place] = seen
-                pace.misses = 0 if place in arms else pace.misses + 1
+                    pace.misses = 0
+                else:
+                    pace.misses += 1
+        elsewhere = [one for one in elsewhere if not _known(one, arms.values())]
         at_arms = [replace(one, arm=paces[place], carried=False) for place, one in arms.items()]
         alone = [replace(one, arm=None, carried=False) for one in elsewhere]
         far = _find_far_arms(elsewhere, free, arms, paces)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -13,13 +14,14 @@ from hypothesis import strategies as st
 
 from app.recognition.estimation import FrameLandmarks, Image, OnnxPoseEstimator
 from app.recognition.estimation.landmark_models.arms import wrist_distance
+from app.recognition.estimation.landmark_models.hand_finder import HandPlace
 from app.recognition.estimation.landmark_models.hand_model import SeenHand, find_duplicates
-from app.recognition.estimation.landmark_models.hand_regions import region_of_hand
+from app.recognition.estimation.landmark_models.hand_regions import KNUCKLES, WRIST, region_of_hand
 from app.recognition.estimation.onnx_estimator import hand_tracker
 from app.recognition.poses.frame import SIDES, Body, Hand, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.recording.salute import ENTER_SCORE, best_salute
+from app.recognition.recording.salute import ENTER_SCORE, best_salute, salute_score
 from app.recognition.recording.video import VideoFrame
 from tests.recognition.estimation.clip_frames import clip_frames
 from tests.recognition.estimation.drawn_hand import flat_hand, turned
@@ -137,6 +139,23 @@ def test_of_two_hands_at_one_arm_the_one_believed_more_is_kept(installed_models:
     tracker = hand_tracker(search="pose", threads=1, provider="cpu")
     kept = tracker.complete(np.zeros((480, 640, 3), np.uint8), followed, (body,))
     assert kept.hands == (surer,)
+
+
+def test_fingers_are_looked_for_at_an_arm_of_whose_hand_only_the_place_is_seen(
+    estimator: OnnxPoseEstimator, saluting: tuple[VideoFrame, ...]
+) -> None:
+    image = saluting[-1].image
+    found = estimator.estimate(image, 0.0)
+    assert found.body is not None
+    saluter = max(found.hands, key=lambda one: salute_score(one.xy))
+    box = replace(region_of_hand(saluter.xy), side=saluter.size)
+    palm = np.full_like(saluter.xy, np.nan)
+    palm[[WRIST, *KNUCKLES]] = saluter.xy[[WRIST, *KNUCKLES]]
+    place = HandPlace(replace(saluter, xy=palm), box)
+    tracker = hand_tracker(search="pose", threads=1, provider="cpu")
+    seen = tracker.complete(image, (SeenHand.at(place),), (found.body,))
+    assert best_salute(seen.hands) > ENTER_SCORE
+    assert seen.places == ()
 
 
 def test_no_arm_has_two_hands(
