@@ -138,7 +138,9 @@ def join_chapters(chapters: Sequence[tuple[Path, Span | None]], target: Path) ->
     try:
         with av.open(str(target), "w", format="mp4") as joined:
             _join(chapters, joined)
-    except ValueError as error:
+    except VideoError:
+        raise
+    except (ArithmeticError, ValueError, av.error.FFmpegError) as error:
         raise VideoError(f"the chapters cannot be joined ({error}); convert them to MP4") from error
 
 

@@ -125,10 +125,10 @@ def test_chapters_are_read_out_of_one_file(tmp_path: Path) -> None:
     [
         (
             lambda path: write_clip(path, size=(96, 48)),
-            "96 x 48 h264. is coded otherwise than the first one .64 x 48",
+            "^a chapter .96 x 48 h264. is coded otherwise than the first one .64 x 48",
         ),
         (lambda path: write_clip(path, codec="mpeg4"), "64 x 48 mpeg4. is coded otherwise"),
-        (lambda path: cut_off(write_clip(path), 0.5), "b.mp4 is not a readable video"),
+        (lambda path: cut_off(write_clip(path), 0.5), "^b.mp4 is not a readable video"),
         (sound_only, "b.mp4 holds no video"),
     ],
 )
