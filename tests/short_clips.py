@@ -24,6 +24,30 @@ def shortened(clip: Path, copy: Path, seconds: float) -> Path:
     return copy
 
 
+def in_chapters(clip: Path, *chapters: Path) -> tuple[Path, ...]:
+    """Write a clip as files that follow each other, each with a clock of its own; return them."""
+    with av.open(str(clip)) as source:
+        stream = source.streams.video[0]
+        assert stream.duration is not None
+        targets = [av.open(str(chapter), "w") for chapter in chapters]
+        written = [target.add_stream_from_template(stream) for target in targets]
+        begun = [0] * len(chapters)
+        now = -1
+        for packet in source.demux(stream):
+            if packet.pts is None or packet.dts is None:
+                continue
+            due = len(chapters) * packet.pts // stream.duration
+            if packet.is_keyframe and due > now:
+                now += 1
+                begun[now] = packet.pts
+            packet.pts, packet.dts = packet.pts - begun[now], packet.dts - begun[now]
+            packet.stream = written[now]
+            targets[now].mux(packet)
+        for target in targets:
+            target.close()
+    return chapters
+
+
 def film_of(clip: Path, rate: float) -> list[bytes]:
     """Return JPEGs of a clip at another frame rate."""
     with av.open(str(clip)) as source:

@@ -6,6 +6,8 @@ import re
 from pathlib import Path
 from typing import Literal
 
+from app.recognition.recording.chapters import in_order
+
 BagKind = Literal["mcap", "sqlite3", "zip", "folder", "ros1"]
 """A single file of either storage, an archive of a recording's folder, the folder itself, and the
 format of ROS 1, which is detected only to refuse it by name."""
@@ -13,7 +15,7 @@ format of ROS 1, which is detected only to refuse it by name."""
 METADATA = "metadata.yaml"
 """The file that makes a folder a rosbag2."""
 
-_PART = re.compile(r"(.+)_(\d{1,6})(\.mcap|\.db3)")
+_PART = re.compile(r"(.+_)(\d{1,6})(\.mcap|\.db3)")
 """Name of a part of a recording that was split, with its number."""
 
 _BEGINNINGS: dict[bytes, BagKind] = {
@@ -39,15 +41,7 @@ def split_parts(folder: Path) -> list[Path]:
     Such a recording has lost its metadata, as when the power fails. Empty if the order is unknown.
     """
     files = [each for each in folder.iterdir() if each.suffix in (".mcap", ".db3")]
-    parts = {
-        int(found[2]): (found[1], found[3], each)
-        for each in files
-        if (found := _PART.fullmatch(each.name))
-    }
-    same = len({(name, ending) for name, ending, _ in parts.values()}) == 1
-    numbers = sorted(parts)
-    whole = len(files) == len(parts) > 1 and numbers[-1] - numbers[0] == len(numbers) - 1
-    return [parts[number][2] for number in numbers] if same and whole else []
+    return in_order(files, [_PART])
 
 
 def kind_of(path: Path) -> BagKind | None:

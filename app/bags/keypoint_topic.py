@@ -96,13 +96,11 @@ def keypoint_frame_size(bag: Bag, topic: Topic) -> tuple[int, int]:
 
     """
     first = next(bag.messages(topic.name))
-    return pad_to_even(
-        _READERS[topic.type](first.content).size or _picture_size(bag) or ASSUMED_SIZE
-    )
+    return even_size(_READERS[topic.type](first.content).size or _picture_size(bag) or ASSUMED_SIZE)
 
 
-def pad_to_even(size: tuple[int, int]) -> tuple[int, int]:
-    """Round a size up to even numbers, as the usual video codecs require."""
+def even_size(size: tuple[int, int]) -> tuple[int, int]:
+    """Round a size down to even numbers, as the usual video codecs require, to at least 2."""
     width, height = (max(2, side // 2 * 2) for side in size)
     return width, height
 
@@ -144,7 +142,7 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
         xy=np.stack([_pixels(posed, size) for posed in gathered.posed]),
         confidence=np.stack([posed.confidence for posed in gathered.posed]),
         time=np.array(gathered.seconds),
-        frame_size=pad_to_even(size),
+        frame_size=even_size(size),
     )
     hands: tuple[tuple[Hand, ...], ...] = salute.hands_at(stamps)
     return Recording(

@@ -8,7 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from app.bags.keypoint_topic import pad_to_even
+from app.bags.keypoint_topic import even_size
 from app.bags.video_writer import VideoFile
 from app.recognition.poses.frame import Body, FrameLandmarks, Image
 from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
@@ -91,7 +91,7 @@ def show_recording(
     poses = recording.poses
     if video is None and observer is None:
         return
-    size = pad_to_even(poses.frame_size)
+    size = even_size(poses.frame_size)
     VideoLimits().require_pixels(*size)
     xy, confidence = _whole_body(poses)
     with ExitStack() as open_files:

@@ -12,7 +12,7 @@ from typing import Any, Final
 from app import __version__
 from app.cli.clip_argument import ClipReading, recognize_clip
 from app.cli.terminal import batch_bar, describe_error, people
-from app.clip_sources import SOURCES, VIDEO, is_copy, is_take, source_of
+from app.clip_sources import CHAPTERS, SOURCES, VIDEO, is_copy, is_take, source_of
 from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError, explain_missing_package
@@ -27,11 +27,11 @@ COPY: Final = "a small or unfinished copy of a clip"
 
 
 def is_folder_of_clips(path: Path) -> bool:
-    """Return whether a path is a folder that is not itself a clip, unlike a bag.
+    """Return whether a path is a folder that is not itself a clip, unlike a bag or chapters.
 
     A folder with JSON files is a clip of OpenPose, unless it also holds videos.
     """
-    if not path.is_dir():
+    if not path.is_dir() or CHAPTERS.accepts(path):
         return False
     return not _is_clip(path) or any(VIDEO.is_take(child) for child in path.iterdir())
 

@@ -16,7 +16,7 @@ from app.cli.administration import settings_of
 from app.cli.batch import tell_left_out
 from app.cli.clip_argument import TurnOption
 from app.cli.terminal import people, progress_bar
-from app.clip_sources import SOURCES, ReadOptions
+from app.clip_sources import CHAPTERS, SOURCES, ReadOptions
 from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
 from app.recognition.errors import OsgError
 
@@ -81,8 +81,11 @@ async def _work(footage: Footage, processes: Workers, count: int) -> list[Extrac
 
 
 def _clips(folder: Path) -> Iterator[Path]:
-    """Yield the files that are clips with pictures, in order."""
+    """Yield the files, and folders of chapters, that are clips with pictures, in order."""
     for place, folders, names in os.walk(folder):
+        if CHAPTERS.accepts(Path(place)):
+            yield Path(place)
+            continue
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
             path = Path(place, name)

@@ -96,6 +96,9 @@ def recognize(
             named = name_recognitions(loaded, expected, results)
             save_bag(mcap, path, reading, recording, named, loaded.trigger)
         show_results(path, recognizer, results, expected, as_json=as_json)
+        if not results or not results[-1][0].closed:
+            for told in tell_chapters(path.name):
+                people.print(told)
         if not results:
             explain_absence(path, recording, recognizer, without_salutes=spots)
         recognised = sum(result.label is not None for _, result in results)
@@ -133,8 +136,6 @@ def explain_absence(
     path: Path, recording: Recording, recognizer: Recognizer, *, without_salutes: bool
 ) -> None:
     """Print why a clip has no take, and what to do."""
-    for told in tell_chapters(path.name):
-        people.print(told)
     seconds = f"{recording.poses.duration:.1f} s"
     if without_salutes:
         people.print(

@@ -1,6 +1,7 @@
 """Clip sources: the kinds of files and folders that clips are made of, one module each."""
 
 from app.clip_sources.registry import (
+    CHAPTERS,
     SOURCES,
     VIDEO,
     is_copy,

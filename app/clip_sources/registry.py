@@ -4,23 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final
 
 from app.clip_sources.bag import BagSource
 from app.clip_sources.keypoint_file import KeypointFileSource
 from app.clip_sources.source import ClipSource
-from app.clip_sources.video import VideoSource
+from app.clip_sources.video import ChaptersSource, VideoSource
 from app.recognition.errors import VideoError
-from app.recognition.recording.file_kinds import FileKind
+from app.recognition.recording.file_kinds import COPIES, FileKind
 
-VIDEO = VideoSource()
+VIDEO, CHAPTERS = VideoSource(), ChaptersSource()
 
-SOURCES: tuple[ClipSource, ...] = (VIDEO, BagSource(), KeypointFileSource())
+SOURCES: tuple[ClipSource, ...] = (VIDEO, CHAPTERS, BagSource(), KeypointFileSource())
 """All kinds of files that become clips, in the order in which they are tried."""
-
-
-COPIES: Final = frozenset({".lrv", ".lrf", ".part", ".crdownload"})
-"""Endings of copies that cameras (small) and browsers (unfinished) write beside a clip."""
 
 
 def source_named(name: str) -> ClipSource:
@@ -82,8 +77,8 @@ def supported_kinds(kind: FileKind | None = None) -> str:
         What the file is; None: unknown.
 
     """
-    nouns = _join([source.noun for source in SOURCES], "nor")
-    formats = _join([source.formats for source in SOURCES], "or")
+    nouns = _join(list(dict.fromkeys(source.noun for source in SOURCES)), "nor")
+    formats = _join(list(dict.fromkeys(source.formats for source in SOURCES)), "or")
     if kind is not None:
         return (
             f"{kind.name}, which holds no clip that is read here; {kind.remedy}, or send {formats}"

@@ -59,6 +59,8 @@ class ReadOptions(BaseModel):
         Whether colour and contrast are corrected before landmarks are found.
     turn
         By how much pictures are turned before; players then show a turned copy.
+    chapters
+        Bytes of each chapter of a recording, which follow each other in the file; empty for others.
 
     """
 
@@ -71,6 +73,7 @@ class ReadOptions(BaseModel):
     landmarks: dict[str, str] = Field(default_factory=dict)
     water: WaterCorrection = "auto"
     turn: Turn = 0
+    chapters: tuple[int, ...] = ()
 
     @classmethod
     def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:

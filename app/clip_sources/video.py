@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from itertools import accumulate
 from pathlib import Path
 
 from typing_extensions import Unpack
@@ -14,12 +19,13 @@ from app.clip_sources.source import (
     RecordedClip,
     Refusal,
 )
-from app.recognition.errors import OsgError
+from app.recognition.errors import OsgError, VideoError
 from app.recognition.estimation import finds_hands
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.recording.chapters import chapters_in, join_chapters
 from app.recognition.recording.extraction import Following
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
-from app.recognition.recording.video import FrameReader, probe, read_frames
+from app.recognition.recording.video import FrameReader, Span, probe, read_frames
 
 
 class VideoSource:
@@ -67,7 +73,8 @@ class VideoSource:
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the container's facts, and decode one frame."""
-        info = probe(path, turn=options.turn)
+        with _one_file(path, options) as file:
+            info = probe(file, turn=options.turn)
         return ClipFacts(info.width, info.height, info.duration, info.frames)
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
@@ -84,7 +91,10 @@ class VideoSource:
         **following: Unpack[Following],
     ) -> RecordedClip:
         """Find body and hands in every frame."""
-        with read_frames(path, turn=options.turn) as frames:
+        with _one_file(path, options) as file, read_frames(file, turn=options.turn) as frames:
+            if video is not None and not options.turn:
+                shutil.copyfile(file, video)
+                video = None
             found = record_and_copy(frames, video, estimator, options.water, **following)
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)
@@ -94,15 +104,48 @@ class VideoSource:
         return Refusal("video_unreadable", str(error).replace(path.name, "the clip"))
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
-        """Return the file itself, or write a copy whose pictures are turned."""
-        if not options.turn:
-            return path
-        with read_frames(path, turn=options.turn) as frames, copying(frames, copy) as add:
-            for frame in frames:
-                add(frame)
+        """Return the file itself, or write a copy whose pictures are joined or turned."""
+        with _one_file(path, options) as file:
+            if not options.turn:
+                return path if file == path else Path(shutil.copyfile(file, copy))
+            with read_frames(file, turn=options.turn) as frames, copying(frames, copy) as add:
+                for frame in frames:
+                    add(frame)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open the file for decoding."""
         reader = FrameReader(path, turn=options.turn)
         return OpenFrames(reader, reader.close)
+
+
+class ChaptersSource(VideoSource):
+    """A folder of one recording's chapters, or a file of `ReadOptions.chapters`; read as one."""
+
+    name = "chapters"
+    endings: tuple[str, ...] = ()
+    probe_seconds = 120.0
+    """Longest time to probe, which joins them: the largest file allowed at 20 MB/s."""
+
+    def accepts(self, path: Path, topic: str | None = None) -> bool:
+        """Return whether a folder holds the chapters of one recording, and nothing else."""
+        return topic is None and path.is_dir() and bool(chapters_in(path))
+
+
+@contextmanager
+def _one_file(path: Path, options: ReadOptions) -> Iterator[Path]:
+    """Yield a video itself, or for a while the one into which its chapters are joined."""
+    if not path.is_dir() and not options.chapters:
+        yield path
+        return
+    ends = [*accumulate(options.chapters)] or [0]
+    spans = zip([0, *ends], ends, strict=False)
+    chapters: list[tuple[Path, Span | None]] = [(path, span) for span in spans]
+    if path.is_dir():
+        chapters = [(each, None) for each in chapters_in(path)]
+    elif ends[-1] != path.stat().st_size:
+        raise VideoError(f"{path.name} is not as long as the chapters that it is said to hold")
+    with tempfile.TemporaryDirectory(prefix="chapters-") as made:
+        joined = Path(made, "joined")
+        join_chapters(chapters, joined)
+        yield joined

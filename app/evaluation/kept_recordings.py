@@ -7,6 +7,7 @@ from pathlib import Path
 from platformdirs import user_data_path
 
 from app import __version__
+from app.recognition.recording.chapters import chapters_in
 from app.recognition.recording.recording import FILE_VERSION
 from app.recognition.recording.video import Turn
 from app.recognition.text.hashing import hash_file
@@ -31,8 +32,10 @@ def kept_recording(clip: Path, folder: Path, turn: Turn = 0) -> Path:
     Raises
     ------
     OSError
-        When the clip cannot be read.
+        When the clip, or a chapter in its folder, cannot be read.
 
     """
     turned = f"-turned-{turn}" if turn else ""
-    return folder / f"{hash_file(clip)}-{__version__}-{FILE_VERSION}{turned}{RECORDING_ENDING}"
+    chapters = chapters_in(clip) if clip.is_dir() else []
+    content = hash_file(*(chapters or [clip]))
+    return folder / f"{content}-{__version__}-{FILE_VERSION}{turned}{RECORDING_ENDING}"

@@ -56,7 +56,7 @@ def test_an_archive_is_read_by_the_names_in_it(tmp_path: Path) -> None:
     other = tmp_path / "other.zip"
     with ZipFile(other, "w") as archived:
         archived.writestr("notes.txt", "no clip")
-    with pytest.raises(VideoError, match="a zip archive and no video that is read here; unpack it"):
+    with pytest.raises(VideoError, match="and no video that is read here; unpack it"):
         source_of(other).probe(other, ReadOptions())
 
 

@@ -20,6 +20,7 @@ LONGEST: Final[Mapping[str, int]] = {
     "topic": LONGEST_TOPIC,
     "frame_rate": _LONGEST_NUMBER,
     "frame_size": _LONGEST_NUMBER,
+    "chapters": 512,
 }
 """Most bytes of each field, by name."""
 
@@ -29,6 +30,9 @@ FASTEST: Final = 1000.0
 Size = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,4}\s*[xX]\s*[1-9]\d{0,4}$")]
 
 """Width and height in pixels, as ``1920x1080``."""
+
+Sizes = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,14}(,[1-9]\d{0,14}){1,63}$")]
+"""Bytes of each of several files, as ``4000000,120000``."""
 
 
 class UploadFields(BaseModel):
@@ -45,6 +49,12 @@ class UploadFields(BaseModel):
     frame_size: Size | None = Field(
         default=None,
         description="Of a keypoint file with fractions of the picture: pixels, as 1920x1080",
+    )
+
+    chapters: Sizes | None = Field(
+        default=None,
+        description="Of a camera's chapters of one recording, sent one after the other as one "
+        "file: the bytes of each, as 4000000,120000. They become one video, without its sound",
     )
 
     @classmethod
@@ -75,4 +85,7 @@ class UploadFields(BaseModel):
         if self.frame_size is not None:
             width, height = self.frame_size.lower().split("x")
             size = int(width), int(height)
-        return ReadOptions(topic=self.topic, frame_rate=self.frame_rate, frame_size=size)
+        chapters = tuple(map(int, self.chapters.split(","))) if self.chapters else ()
+        return ReadOptions(
+            topic=self.topic, frame_rate=self.frame_rate, frame_size=size, chapters=chapters
+        )

@@ -18,7 +18,7 @@ from app.api.ingest.fields import UploadFields
 from app.api.ingest.quotas import quota_of
 from app.api.services.running_studio import Studio
 from app.api.workers.worker_messages import Failed, Probed
-from app.clip_sources import ReadOptions, sources_of_upload, supported_kinds
+from app.clip_sources import CHAPTERS, ReadOptions, sources_of_upload, supported_kinds
 from app.recognition.recording.file_kinds import HEAD_BYTES, find_file_kind
 from app.store import Clip, Upload
 
@@ -106,6 +106,8 @@ async def inspect(
     candidates = sources_of_upload(head, name)
     for source in candidates:
         if given.topic is not None and not source.has_topics:
+            continue
+        if (given.chapters is None) == (source is CHAPTERS):
             continue
         options = source.upload_options(head, name, given.options)
         probed = await studio.workers.probe(source, partial, options)

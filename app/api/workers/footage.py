@@ -56,7 +56,7 @@ class Footage:
     Parameters
     ----------
     clips
-        Their files.
+        Their files, or folders of one recording's chapters.
     keep_in
         Folder of the recordings, named by the clips' content; existing ones are not extracted
         again.
@@ -81,7 +81,10 @@ class Footage:
         self._workers = workers
         self._progress = progress
         self._options = options or ReadOptions()
-        self._sizes = {clip: clip.stat().st_size for clip in clips}
+        self._sizes = {
+            clip: sum(file.stat().st_size for file in (clip.iterdir() if clip.is_dir() else [clip]))
+            for clip in clips
+        }
         self._read = dict.fromkeys(clips, 0)
         self._locks: dict[Path, asyncio.Lock] = {}
         self._ended = 0

@@ -99,7 +99,8 @@ class RecognitionEntry(BaseModel):
     facing: Annotated[
         float | None,
         Field(
-            description="Degrees the diver is turned by, positive to the own left; null: not known."
+            description="Degrees the diver is turned by, positive to the diver's left; "
+            "null: not known."
         ),
     ] = None
     views: Annotated[

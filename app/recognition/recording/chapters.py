@@ -1,29 +1,174 @@
-"""Chapters: the files into which a camera splits one recording, by their names."""
+"""Chapters: the files into which a camera splits one recording, and how they become one clip."""
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from datetime import datetime
+from itertools import pairwise
+from pathlib import Path
 from typing import Final
 
-GOPRO: Final = re.compile(r"(G[HXLP])(\d\d)(\d{4}\.\w+)|GOPR(\d{4}\.\w+)", re.IGNORECASE)
-"""GoPro's names: kind, chapter and number, which the chapters share. Until 2017 the first chapter
-was called ``GOPR``, and the next one ``GP01``."""
+import av
+from av.container import OutputContainer
+
+from app.recognition.errors import VideoError
+from app.recognition.recording.file_kinds import COPIES
+from app.recognition.recording.video import Span, nominal_step, open_video, video_stream
+from app.recognition.recording.video_limits import VideoLimits
+
+_GOPRO: Final = re.compile(r"(G[HXLP])(\d\d)(\d{4}\.\w+)", re.IGNORECASE)
+
+_NAMES: Final = (
+    _GOPRO,
+    re.compile(r"(DJI_)(?:\d{14}_)?(\d{4})((?:_[A-Z])?\.\w+)", re.IGNORECASE),
+    re.compile(r"(.*?)(\d{8}_?\d{6})(\.(?:ts|mp4))", re.IGNORECASE),
+    re.compile(r"(.*?)(\d{4,})(\.(?:ts|mp4))", re.IGNORECASE),
+)
+"""Names of chapters of GoPro, of DJI, and of cameras that begin a file every minute, by its time or
+its number: what comes before the number, the number, and what follows."""
+
+_BESIDE: Final = COPIES | {".srt", ".thm"}
+"""Endings of what cameras write beside a chapter."""
+
+_TIME: Final = 14
+"""Digits of a time, after which no name is known to be next."""
+
+SEAM_SECONDS: Final = 2.0
+"""Most seconds between the end of a chapter and the beginning of the next one, as containers say,
+which count whole seconds."""
+
+
+def _match(name: str, names: Sequence[re.Pattern[str]]) -> re.Match[str] | None:
+    """Match a name; until 2017 GoPro's first chapter was called ``GOPR``, and the next ``GP01``."""
+    plain = re.sub(r"^GOPR(?=\d{4}\.)", "GP00", name, flags=re.IGNORECASE)
+    return next(filter(None, (each.fullmatch(plain) for each in names)), None)
 
 
 def tell_chapters(name: str) -> Iterator[str]:
     """Return a sentence where a clip's name says that a take may begin or end in another file."""
-    match = GOPRO.fullmatch(name)
-    if match is None:
+    found = _match(name, _NAMES)
+    # Other programs name their MP4 files so as well.
+    if (
+        found is None
+        or len(found[2]) >= _TIME
+        or (found.re in _NAMES[2:] and found[3].lower() == ".mp4")
+    ):
         return
-    kind, chapter, rest = match[1] or "GP", int(match[2] or 0), match[3] or match[4]
-    is_old = kind.upper() == "GP"
-    if chapter > (0 if is_old else 1):
-        before = f"GOPR{rest}" if is_old and chapter == 1 else f"{kind}{chapter - 1:02d}{rest}"
-        where = f"begins in {before}"
-    else:
-        where = f"may go on in {kind}{chapter + 1:02d}{rest}"
+    goes_on = found.re is not _GOPRO or int(found[2]) <= (found[1].upper() != "GP")
+    number = f"{int(found[2]) + (1 if goes_on else -1):0{len(found[2])}d}"
+    before = re.sub(r"\d{14}", "…", found.string[: found.start(2)])
+    other = re.sub("^GP00", "GOPR", f"{before}{number}{found[3]}")
+    where = "may go on in" if goes_on else "is a chapter of a recording that begins in"
     yield (
-        f"{name} is a chapter of a recording that {where}; a take across them is read once they "
-        "are joined into one file, as by ffmpeg -f concat"
+        f"{name} {where} {other}; a take across both is read once both are one clip: drop them on "
+        "the page together, or name a folder that holds them alone"
     )
+
+
+def in_order(files: Sequence[Path], names: Sequence[re.Pattern[str]]) -> list[Path]:
+    """Return files by their numbers, if these alone tell their names apart; else nothing.
+
+    Parameters
+    ----------
+    files
+        The files, of which none may be missing in the middle.
+    names
+        Patterns, each with three groups: what comes before the number, the number, what follows.
+
+    """
+    found = [(each, path) for path in files if (each := _match(path.name, names))]
+    numbered = sorted((int(each[2]), path) for each, path in found)
+    same = len({(each.re, each[1], each[3]) for each, _ in found}) == 1
+    steps = pairwise(number for number, _ in numbered)
+    follow = all(number == last + 1 or last >= 10 ** (_TIME - 1) for last, number in steps)
+    whole = same and follow and len(files) == len(found) > 1
+    return [path for _, path in numbered] if whole else []
+
+
+def chapters_in(folder: Path) -> list[Path]:
+    """Return a folder's files in order, if they are all chapters of one recording; else nothing.
+
+    GoPro's are known by their names. Of other cameras, each chapter must begin when the one before
+    it ends, as their containers say; videos of consecutive numbers may be recordings of their own.
+    """
+    visible = [each for each in folder.iterdir() if not each.name.startswith(".")]
+    found = in_order([each for each in visible if each.suffix.lower() not in _BESIDE], _NAMES)
+    sure = all(_match(each.name, [_GOPRO]) for each in found)
+    return found if sure or all(map(_follows, found, found[1:])) else []
+
+
+def _follows(earlier: Path, later: Path) -> bool:
+    """Return whether a video begins when another one ends."""
+    return abs(_span(earlier)[1] - _span(later)[0]) <= SEAM_SECONDS
+
+
+def _span(path: Path) -> tuple[float, float]:
+    """Return begin and end in seconds of the container's own clock; NaN when it states none."""
+    with suppress(KeyError, ValueError, VideoError), open_video(path, VideoLimits()) as container:
+        seconds = (container.duration or 0) / av.time_base
+        if container.format.name == "mpegts":
+            begun = (container.start_time or 0) / av.time_base
+        else:
+            stated = container.metadata["creation_time"].replace("Z", "+00:00")
+            begun = datetime.fromisoformat(stated).timestamp()
+        return begun, begun + seconds
+    return math.nan, math.nan
+
+
+def join_chapters(chapters: Sequence[tuple[Path, Span | None]], target: Path) -> None:
+    """Write the pictures of several videos as one MP4, one after the other, without coding them.
+
+    Parameters
+    ----------
+    chapters
+        The files in order, each with the bytes that are the video; None for all.
+    target
+        The file to write. It has no sound.
+
+    Raises
+    ------
+    VideoError
+        When a chapter cannot be read or is coded otherwise than the first one, or MP4 does not hold
+        its codec.
+
+    """
+    try:
+        with av.open(str(target), "w", format="mp4") as joined:
+            _join(chapters, joined)
+    except VideoError:
+        raise
+    except (ArithmeticError, ValueError, av.error.FFmpegError) as error:
+        raise VideoError(f"the chapters cannot be joined ({error}); convert them to MP4") from error
+
+
+def _join(chapters: Sequence[tuple[Path, Span | None]], joined: OutputContainer) -> None:
+    first = None
+    # In the unit of time of the first chapter, which the others share.
+    end, last = 0, -(2**62)
+    for path, span in chapters:
+        with open_video(path, VideoLimits(), span) as container:
+            stream = video_stream(container, path)
+            coded = stream.codec_context
+            form = (coded.name, coded.width, coded.height, stream.time_base, coded.extradata)
+            if first is None:
+                written, first = joined.add_stream_from_template(stream), form
+            if form != first:
+                raise VideoError(
+                    f"a chapter ({form[1]} x {form[2]} {form[0]}) is coded otherwise than the "
+                    f"first one ({first[1]} x {first[2]} {first[0]}); give each clip by itself"
+                )
+            shift = None
+            step = round(nominal_step(stream) / (stream.time_base or 1))
+            for packet in container.demux(stream):
+                if packet.pts is not None:
+                    shift = end - packet.pts if shift is None else shift
+                    dts = packet.pts if packet.dts is None else packet.dts
+                    # Where the order of decoding differs, chapters overlap in it.
+                    last = packet.dts = max(dts + shift, last + 1)
+                    packet.pts = max(packet.pts + shift, packet.dts)
+                    end = max(end, packet.pts + (packet.duration or step))
+                    packet.stream = written
+                    joined.mux(packet)

@@ -10,6 +10,9 @@ CONVERT: Final = "convert it to MP4 with H.264"
 SEND_VIDEO: Final = "give the video that it belongs to"
 UNPACK: Final = "unpack it, and give the clip that is in it"
 
+COPIES: Final = frozenset({".lrv", ".lrf", ".part", ".crdownload"})
+"""Endings of copies that cameras (small) and browsers (unfinished) write beside a clip."""
+
 
 @dataclass(frozen=True)
 class FileKind:
@@ -152,7 +155,7 @@ def describe_unreadable(path: Path) -> str:
     except OSError as error:
         return f"{path.name} cannot be read ({error.strerror}); check the path"
     if (kind := find_file_kind(head)) is not None:
-        return f"{path.name} is {kind.name} and no video that is read here; {kind.remedy}"
+        return f"{path.name} is {kind.name}, and no video that is read here; {kind.remedy}"
     if video_type(head) is not None:
         return (
             f"{path.name} is not a readable video: its index is cut off, or it is damaged; record "

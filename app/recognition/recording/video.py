@@ -49,6 +49,9 @@ recorders and browsers write. None of them is a playlist."""
 Turn = Literal[0, 90, 180, 270]
 """Degrees, clockwise, by which pictures are turned after what their container states."""
 
+Span = tuple[int, int]
+"""First byte of a video that is a part of a file, and the one after its last."""
+
 ALPHA_BACKGROUND = 128
 """Grey, 0 to 255, behind transparent pixels: halfway, so that dark and bright divers stand out."""
 
@@ -168,12 +171,12 @@ class FrameReader(Iterator[VideoFrame]):
         self._time = 0.0
         self._reformatter = VideoReformatter()
         self._first: DecodedFrame | None = None
-        self._container = _open(self._path, self._limits)
+        self._container = open_video(self._path, self._limits)
         self._decoded = self._decode()
         try:
-            self._stream = _video_stream(self._container, self._path)
+            self._stream = video_stream(self._container, self._path)
             self._check_statement()
-            self._clock = FrameClock(step=_nominal_step(self._stream))
+            self._clock = FrameClock(step=nominal_step(self._stream))
             self._first = next(self._decoded, None)
             if self._first is None:
                 raise VideoError(
@@ -332,17 +335,26 @@ def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
     return np.rint(blended).astype(np.uint8)
 
 
-def _open(path: Path, limits: VideoLimits) -> InputContainer:
+def open_video(path: Path, limits: VideoLimits, span: Span | None = None) -> InputContainer:
+    """Open a video without decoding it; `span` are the bytes of the file that it consists of.
+
+    Raises
+    ------
+    VideoError
+        When the file is no video.
+
+    """
     if not path.is_file():
         raise VideoError(f"{path} is not a file; give the path of a clip")
     if path.stat().st_size == 0:
         raise VideoError(f"{path.name} is empty (0 bytes); copy or record it again")
+    part = f"subfile,,start,{span[0]},end,{span[1]},,:" if span else ""
     try:
         return av.open(
             # The scheme prevents names like "concat:a|b" or "http:x" from opening an address.
-            f"file:{path.resolve()}",
+            f"{part}file:{path.resolve()}",
             container_options={
-                "protocol_whitelist": "file",
+                "protocol_whitelist": "file,subfile" if span else "file",
                 "format_whitelist": ",".join(CONTAINERS),
                 "max_streams": str(MOST_STREAMS + 1),
             },
@@ -359,7 +371,8 @@ def _open(path: Path, limits: VideoLimits) -> InputContainer:
         raise VideoError(describe_unreadable(path)) from error
 
 
-def _video_stream(container: InputContainer, path: Path) -> VideoStream:
+def video_stream(container: InputContainer, path: Path) -> VideoStream:
+    """Return the stream of moving pictures; raise VideoError where there is none."""
     # Some demuxers refuse further streams, Matroska's leaves them out.
     if len(container.streams) > MOST_STREAMS:
         raise VideoError(
@@ -391,7 +404,7 @@ def _require_jpeg_pixels(path: Path, limits: VideoLimits) -> None:
 
     FFmpeg refuses pictures beyond a size of its own as if they were damaged.
     """
-    with suppress(av.error.FFmpegError, OSError, IndexError), _open(path, limits) as container:
+    with suppress(av.error.FFmpegError, OSError, IndexError), open_video(path, limits) as container:
         stream = container.streams.video[0]
         context = stream.codec_context
         if context is not None and context.codec is not None and context.name == "mjpeg":
@@ -400,7 +413,8 @@ def _require_jpeg_pixels(path: Path, limits: VideoLimits) -> None:
                 limits.require_pixels(*size)
 
 
-def _nominal_step(stream: VideoStream) -> float:
+def nominal_step(stream: VideoStream) -> float:
+    """Return the seconds from one frame to the next, as the container says."""
     rate = stream.average_rate or stream.guessed_rate
     return float(1 / rate) if rate else FALLBACK_STEP
 
@@ -432,8 +446,8 @@ def _stated_seconds(
 def _measure_jumps(path: Path, limits: VideoLimits) -> float:
     """Return by how many seconds the clock of a clip is set ahead, without decoding it."""
     clock = FrameClock()
-    with suppress(av.error.FFmpegError, OSError), _open(path, limits) as container:
-        for packet in container.demux(_video_stream(container, path)):
+    with suppress(av.error.FFmpegError, OSError), open_video(path, limits) as container:
+        for packet in container.demux(video_stream(container, path)):
             if packet.dts is None or packet.time_base is None:
                 continue
             if clock.seconds(float(packet.dts * packet.time_base)) > limits.seconds:

@@ -1,4 +1,4 @@
-"""File hashes: the SHA-256 of a file of any size, read in chunks."""
+"""File hashes: the SHA-256 of files of any size, read in chunks."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ CHUNK_BYTES = 2**18
 """Size of a chunk; `hashlib.file_digest`, which reads as much, needs Python 3.11."""
 
 
-def hash_file(path: Path) -> str:
-    """Return the SHA-256 of a file's content, in hexadecimal.
+def hash_file(*paths: Path) -> str:
+    """Return the SHA-256 of a file's content, or of several, one after the other, in hexadecimal.
 
     Raises
     ------
@@ -19,7 +19,8 @@ def hash_file(path: Path) -> str:
 
     """
     digest = hashlib.sha256()
-    with path.open("rb") as file:
-        while chunk := file.read(CHUNK_BYTES):
-            digest.update(chunk)
+    for path in paths:
+        with path.open("rb") as file:
+            while chunk := file.read(CHUNK_BYTES):
+                digest.update(chunk)
     return digest.hexdigest()

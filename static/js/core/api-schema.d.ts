@@ -2496,7 +2496,7 @@ export interface components {
             };
             /**
              * Facing
-             * @description Degrees the diver is turned by, positive to the own left; null: not known.
+             * @description Degrees the diver is turned by, positive to the diver's left; null: not known.
              */
             facing: number | null;
             /**

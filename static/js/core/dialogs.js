@@ -9,12 +9,21 @@ import { limit } from "./text-limit.js";
  * Ask for values in a dialog.
  *
  * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
- * task; its error is shown in the dialog. Resolves to what `submit` returned, or null.
+ * task; its error is shown in the dialog. Resolves to what `submit` returned, or null. `refusal` is
+ * the button's text that does nothing.
  *
- * @param {{ title: string, text?: string, fields: Field[], action: string, submit: (values: Record<string, string>) => any, preview?: HTMLElement | null }} question
+ * @param {{ title: string, text?: string, fields: Field[], action: string, refusal?: string, submit: (values: Record<string, string>) => any, preview?: HTMLElement | null }} question
  * @returns {Promise<any>}
  */
-export function ask({ title, text = "", fields, action, submit, preview = null }) {
+export function ask({
+  title,
+  text = "",
+  fields,
+  action,
+  refusal = "Cancel",
+  submit,
+  preview = null,
+}) {
   const dialog = byId("dialog");
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const confirm = h("button", { type: "submit", className: "primary" }, action);
@@ -33,7 +42,7 @@ export function ask({ title, text = "", fields, action, submit, preview = null }
       h(
         "div",
         { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+        h("button", { type: "button", onclick: () => dialog.close() }, refusal),
         confirm,
       ),
     );

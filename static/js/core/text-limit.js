@@ -1,6 +1,10 @@
 // The longest text of a field, in code points as the server counts; `maxLength` counts UTF-16
 // units, of which many scripts' letters and every emoji take two.
 
+// As in gestures/demonstration.py of the core; a test compares them.
+export const MAX_DEMONSTRATIONS = 8;
+export const MAX_DIVER_LENGTH = 80;
+
 /**
  * The first `most` code points of a text.
  *

@@ -86,9 +86,7 @@ const row = (term, value, note) =>
  * @param {Language} language
  */
 function facts(contents, language) {
-  return h(
-    "dl",
-    { className: "export-facts" },
+  const rows = [
     row("Keypoints", listed(contents.salient), "keypoints that must be seen for recognition"),
     row("Better with", listed(contents.limbs)),
     row("Torso", listed(contents.torso), "takes out distance and drift"),
@@ -105,7 +103,9 @@ function facts(contents, language) {
       contents.without_command.join(", "),
       "the robot receives the label only",
     ),
-  );
+  ];
+  const summary = h("summary", {}, "What the robot needs");
+  return h("details", {}, summary, h("dl", { className: "export-facts" }, ...rows));
 }
 
 /** @param {() => string} text */

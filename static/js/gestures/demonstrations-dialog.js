@@ -6,7 +6,7 @@ import * as api from "../core/api.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
-import { limit } from "../core/text-limit.js";
+import { limit, MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
@@ -17,9 +17,6 @@ import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 /** @import { Clip, Demonstration, DemonstrationFault, Gesture, Source, Take } from "../core/types.d.ts" */
 
 /** @typedef {{ text: string, start: number | null, end: number | null }} Range */
-
-const MOST = 8; // `MAX_DEMONSTRATIONS` in gestures/demonstration.py
-const LONGEST_NAME = 80; // `MAX_DIVER_LENGTH` there
 
 /**
  * The dialog on display.
@@ -226,7 +223,7 @@ function addForm(label) {
   const takes = h("select", { id: "demonstration-take" });
   const diver = limit(
     h("input", { type: "text", id: "demonstration-diver", autocomplete: "off" }),
-    LONGEST_NAME,
+    MAX_DIVER_LENGTH,
   );
   const button = h("button", { type: "submit", className: "primary", ...WRITES }, "Add");
   /** @type {Range[]} */
@@ -303,7 +300,7 @@ function draw() {
     shown.drawn = now;
     shown.content.replaceChildren(...demonstrations.map((each) => figure(gesture, each)));
   }
-  shown.adding.form.hidden = demonstrations.length >= MOST;
+  shown.adding.form.hidden = demonstrations.length >= MAX_DEMONSTRATIONS;
   shown.adding.offer();
   return undefined;
 }
@@ -326,7 +323,7 @@ export function openDemonstrations(label) {
       h(
         "p",
         { className: "dim" },
-        `A take is compared with each of them, and the nearest counts. A gesture has ${MOST} at most.`,
+        `A take is compared with each of them, and the nearest counts. A gesture has ${MAX_DEMONSTRATIONS} at most.`,
       ),
       content,
       adding.form,

@@ -227,12 +227,16 @@ function bestChoice() {
   const button = h("button", { type: "button" }, "Keep the best");
   const element = h("div", { className: "keep-best" }, button, count, of, note);
   let asking = false;
+  let typed = false;
+  count.oninput = () => {
+    typed = true;
+  };
   /** @param {number} size of the rows among which is chosen */
   const draw = (size) => {
     element.hidden = size < 2 || size > MOST_COMPARED;
     of.textContent = `of ${size}`;
     count.max = String(size);
-    if (!count.value) count.value = String(Math.round(0.6 * size));
+    if (!typed) count.value = String(Math.round(0.6 * size));
     button.disabled = asking;
   };
   button.onclick = async () => {
@@ -248,7 +252,7 @@ function bestChoice() {
         label: (row.label.trim() || row.clip.name).slice(0, LONGEST_LABEL),
       })),
     };
-    asking = true;
+    asking = typed = true;
     note.textContent = "Comparing the takes.";
     draw(among.length);
     try {

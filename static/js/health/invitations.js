@@ -5,12 +5,12 @@ import { copy } from "../core/clipboard.js";
 import { byId, h, WRITES } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
+import { MAX_DEMONSTRATIONS } from "../core/text-limit.js";
 import { complain, toast } from "../core/toasts.js";
 
 /** @import { Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook } from "../core/types.d.ts" */
 
 const PEOPLE = 2; // With whoever wrote the language they are three, from which on it is foretold.
-const MOST_PEOPLE = 7; // beside one who has shown it; `MAX_DEMONSTRATIONS` is 8
 const DAYS = [1, 7, 30];
 const MOST_SHOWN = 5;
 
@@ -187,7 +187,7 @@ function openForm(made) {
       { id },
       values.map((each) => h("option", { value: each, selected: each === chosen }, each)),
     );
-  const counts = Array.from({ length: MOST_PEOPLE }, (_, index) => index + 1);
+  const counts = Array.from({ length: MAX_DEMONSTRATIONS - 1 }, (_, index) => index + 1);
   const people = choice("invited-people", counts, PEOPLE);
   const days = choice("invited-days", DAYS, DAYS[1]);
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });

@@ -42,10 +42,13 @@ function pictures({ id, revision, labels }) {
   );
 }
 
-/** @param {LanguageSummary} language */
-async function work(language) {
+/**
+ * @param {LanguageSummary} language
+ * @param {"studio" | "health"} [view]
+ */
+async function work(language, view = "studio") {
   await choose(language.id);
-  go("studio");
+  go(view);
 }
 
 /** @param {LanguageSummary} language */
@@ -54,6 +57,7 @@ function commands(language) {
     { text: "Rename\u2026", run: () => rename(language), writes: true },
     { text: "Duplicate", run: () => duplicate(language), writes: true },
     { text: "History", run: () => openHistory(language) },
+    { text: "Invite people", run: () => work(language, "health"), writes: true },
     { text: "Export", href: api.languages.exportUrl(language.id, "osg-studio") },
     { text: "Delete", run: () => remove(language), writes: true },
   ]);

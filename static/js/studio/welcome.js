@@ -19,7 +19,7 @@ import { choose, knowsSampleClips, MISREAD } from "../languages/language-store.j
 /** @typedef {{ sample: Sample, language: LanguageSummary }} Example */
 
 const STEPS = [
-  ["Show", "Drop a clip of a diver: salute, gesture, salute."],
+  ["Show", "Add a clip of a diver: salute, gesture, salute."],
   ["Save", "Save the take, what lies between the salutes, as a gesture."],
   ["Ask why", "Recognise another clip, and see what differs and what helps."],
   ["Export", "Export the language for the robot as one file."],

@@ -10,6 +10,7 @@ import { state, update } from "../core/state.js";
 import { mayWrite, READS_ONLY } from "../core/session.js";
 import { complain, toast } from "../core/toasts.js";
 import { importLanguage } from "../languages/language-store.js";
+import { offerToJoin } from "./chapters.js";
 import { askForVideo, kindOfJson, needsVideo } from "./keypoint-files.js";
 import { upload as send } from "./tus-upload.js";
 
@@ -46,13 +47,13 @@ export function tellUnsent() {
 }
 
 /** An upload that has not begun. */
-/** @type {(file: File, first: boolean, uploaded: Upload["uploaded"]) => Upload} */
-const waiting = (file, first, uploaded) => ({
+/** @type {(file: File, fields: Upload["fields"], first: boolean, uploaded: Upload["uploaded"]) => Upload} */
+const waiting = (file, fields, first, uploaded) => ({
   key: String(counter++),
   file,
   first,
   uploaded,
-  fields: {},
+  fields,
   status: "waiting",
   loaded: 0,
   total: file.size,
@@ -93,9 +94,9 @@ export async function addFiles(files, uploaded = null) {
   }
   const added = [];
   // A copy: the browser soon empties the list of a drop or of the field.
-  for (const file of [...files]) {
+  for (const { file, fields } of await offerToJoin([...files])) {
     if (!/\.json$/i.test(file.name) || (await isClip(file)))
-      added.push(waiting(file, !added.length, uploaded));
+      added.push(waiting(file, fields, !added.length, uploaded));
   }
   if (added.length) update({ uploads: [...state.uploads, ...added] });
   startNext();

@@ -229,7 +229,7 @@ def test_of_rows_that_are_alike_the_best_are_kept_and_the_others_say_why(
             row.get_by_role("checkbox").uncheck()  # Clips of other tests, which are left out here.
     keep = dialog.get_by_label("Rows to keep")
     expect(dialog).to_contain_text("of 3")
-    keep.fill("2")
+    expect(keep).to_have_value("2")
     dialog.get_by_role("button", name="Keep the best").click()
     expect(dialog.get_by_text("By the distances of one person")).to_be_visible()
     expect(dialog.get_by_role("button", name="Save 2 gestures")).to_be_visible()

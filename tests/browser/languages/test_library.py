@@ -64,6 +64,16 @@ def test_a_language_is_renamed_duplicated_and_deleted_and_all_is_taken_back(
     expect(card(page, name)).to_have_count(1)
 
 
+def test_people_are_invited_from_the_language_in_the_list(
+    open_page: OpenPage, library: Library, name: str
+) -> None:
+    page = open_page({"view": "languages"}, scene=False)
+    command(page, name, "Invite people")
+    expect(page.get_by_role("heading", name=f"Health of {name}")).to_be_visible()
+    page.get_by_role("button", name="Invite people").click()
+    expect(page.get_by_role("dialog", name=f"Invite people to {name}")).to_be_visible()
+
+
 def test_a_language_that_is_exported_and_dropped_again_is_the_same_and_undo_takes_it_away(
     open_page: OpenPage, library: Library, tmp_path: Path
 ) -> None:
@@ -74,9 +84,12 @@ def test_a_language_that_is_exported_and_dropped_again_is_the_same_and_undo_take
     page = open_page({"view": "languages", "language": original}, scene=False)
     page.get_by_role("button", name="Export").click()
     dialog = page.get_by_role("dialog", name="Export")
+    written = dialog.locator("#export-command").inner_text()
     with page.expect_download() as download:
         dialog.get_by_role("link", name="Download").click()
     file = tmp_path / download.value.suggested_filename
+    assert file.name == "Zeichen-fur-Hohlen-2.-Fassung.json"
+    assert f"--language {file.name} " in written
     download.value.save_as(file)
     library.client.delete(f"/api/v1/languages/{original}").raise_for_status()
     expect(card(page, name)).to_have_count(0)
@@ -120,7 +133,7 @@ def test_the_keyboard_reaches_every_command_of_a_card(
     page = open_page({"view": "languages"}, scene=False)
     page.get_by_label(f"What to do with {name}", exact=True).focus()
     page.keyboard.press("Enter")
-    for text in ("Rename\u2026", "Duplicate", "History", "Export", "Delete"):
+    for text in ("Rename\u2026", "Duplicate", "History", "Invite people", "Export", "Delete"):
         page.keyboard.press("ArrowDown")
         expect(page.locator(":focus")).to_have_text(text)
     page.keyboard.press("Escape")

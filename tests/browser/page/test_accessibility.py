@@ -138,12 +138,15 @@ def test_what_the_views_lead_to(
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
 
 
-def test_the_dialogues(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, scene=False)
+@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+def test_the_dialogues(open_page: OpenPage, library: Library, size: tuple[int, int]) -> None:
+    page = open_page(library.address, scene=False, size=size)
     page.keyboard.press("?")
     expect(page.get_by_role("dialog")).to_be_visible()
     assert faults(page) == []
     page.keyboard.press("Escape")
     page.get_by_role("button", name="Export").click()
-    expect(page.get_by_role("dialog", name="Export")).to_be_visible()
+    export = page.get_by_role("dialog", name="Export")
+    export.get_by_text("What the robot needs").click()
+    expect(export.get_by_role("term").first).to_have_text("Keypoints")
     assert faults(page) == []

@@ -151,7 +151,7 @@ def test_the_picture_of_a_chosen_clip_is_in_sight_on_a_phone(
     page = open_page(library.address, size=(390, 844), scene=False)
     if look:
         page.keyboard.press("Shift+L")
-    expect(page.get_by_role("button", name="All takes in one table")).to_be_visible()
+    expect(page.get_by_role("button", name="Read all takes")).to_be_visible()
     expect(page.get_by_label("Find clips")).to_be_visible()
     page.get_by_role("button", name=f"Show {look} dive 2.mp4").click()
     expect(page.get_by_role("heading", name=f"{look} dive 2.mp4")).to_be_in_viewport()

@@ -167,6 +167,7 @@ def test_a_clip_becomes_a_gesture_a_recognition_and_a_file(
     page.get_by_role("button", name="Export").click()
     dialog = page.get_by_role("dialog", name="Export")
     expect(dialog.get_by_role("radio", name="OSG Studio language")).to_be_checked()
+    dialog.get_by_text("What the robot needs").click()
     expect(dialog.get_by_text("left wrist, right wrist")).to_be_visible()
     expect(dialog.locator("#export-command")).to_have_text(
         "osg-studio robot --language Table-2-eight-signs.json --source 0"

@@ -26,7 +26,7 @@ def test_all_takes_are_in_one_table(
 ) -> None:
     both = add_clip(server, "line", "circle", name="both.mp4")
     page = open_page(library.address, scene=False, size=(390, 844))
-    page.get_by_role("button", name="All takes in one table").click()
+    page.get_by_role("button", name="Read all takes").click()
     dialog = page.get_by_role("dialog", name="All takes, recognised by dives")
     assert faults(page) == []
     dialog.get_by_label("dives line.mp4").uncheck()
@@ -67,7 +67,7 @@ def test_takes_between_two_gestures_and_rejected_ones_are_filtered(
 ) -> None:
     library.add_gesture("ring")
     page = open_page(library.address, scene=False)
-    page.get_by_role("button", name="All takes in one table").click()
+    page.get_by_role("button", name="Read all takes").click()
     dialog = page.get_by_role("dialog", name="All takes, recognised by dives")
     dialog.get_by_role("button", name="Recognise all takes").click()
     rows = dialog.locator("tbody tr")
@@ -85,7 +85,7 @@ def test_a_table_shows_how_far_it_is_and_is_cancelled(
 ) -> None:
     add_clip(server, *["circle", "line"] * 30, name="long.mp4")
     page = open_page(library.address, scene=False)
-    page.get_by_role("button", name="All takes in one table").click()
+    page.get_by_role("button", name="Read all takes").click()
     dialog = page.get_by_role("dialog", name="All takes")
     with page.expect_event("requestfailed", lambda each: "take-table" in each.url):
         dialog.get_by_role("button", name="Recognise all takes").click()

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
-from urllib.parse import quote
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
+from app.api.http.downloads import attachment
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
@@ -82,10 +82,8 @@ def export_language(
 ) -> Response:
     """Send the language as the file that robots load."""
     state = studio.languages.get(language_id, revision)
-    name = quote(f"{state.revision.name}{format.suffix}", safe="")
-    disposition = f"attachment; filename=\"language{format.suffix}\"; filename*=utf-8''{name}"
     headers = {
-        "Content-Disposition": disposition,
+        "Content-Disposition": attachment(state.revision.name, format.suffix),
         "ETag": revision_tag(state.revision.revision),
     }
     return Response(_content(studio, state, format), media_type=format.media_type, headers=headers)

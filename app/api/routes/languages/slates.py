@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from urllib.parse import quote
-
 from fastapi import APIRouter, Response
 
+from app.api.http.downloads import attachment
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
 from app.api.services.running_studio import CurrentStudio, computed_briefly
@@ -31,7 +30,7 @@ def get_slate_as_svg(
     """Send a language as one printable page, in the fonts of whoever opens it."""
     state = studio.languages.get(language_id, revision)
     content = to_svg(lay_out(studio.language(state)))
-    return _file(content.encode("utf-8"), "image/svg+xml", f"{state.revision.name}.svg")
+    return _file(content.encode("utf-8"), "image/svg+xml", attachment(state.revision.name, ".svg"))
 
 
 @router.get(
@@ -49,10 +48,9 @@ def get_slate_as_pdf(
     """Send a language as one printable page, with its fonts inside."""
     state = studio.languages.get(language_id, revision)
     content = to_pdf(lay_out(studio.language(state)))
-    return _file(content, "application/pdf", f"{state.revision.name}.pdf")
+    return _file(content, "application/pdf", attachment(state.revision.name, ".pdf"))
 
 
-def _file(content: bytes, media_type: str, name: str) -> Response:
+def _file(content: bytes, media_type: str, disposition: str) -> Response:
     # Sent as a download and not shown in our origin, because labels may be a stranger's text.
-    disposition = f"attachment; filename*=utf-8''{quote(name, safe='')}"
     return Response(content, media_type=media_type, headers={"Content-Disposition": disposition})
