@@ -221,7 +221,7 @@ def dive(*shapes: str, rest: float = 3.0) -> list[tuple[PoseSequence, float]]:
 
 
 def lower_between(shapes: list[str]) -> list[tuple[PoseSequence, float]]:
-    """Return gestures between their salutes; after each, the arm is lowered, hangs and is raised."""
+    """Return gestures between salutes; after each the arm is lowered, hangs and is raised."""
     lowered = [moment for moment, salute in moments_of(recording_of("dip")) if not salute]
     lowest = len(lowered) * 2 // 5
     arm = [*lowered[:lowest], *[lowered[lowest]] * (2 * RATE), *lowered[lowest:]]
