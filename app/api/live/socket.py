@@ -14,10 +14,11 @@ from contextlib import asynccontextmanager
 from typing import Annotated, Final, Literal
 
 from fastapi import APIRouter, WebSocket
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
+from app.api.http.schemas.values import Body
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
 from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized
 from app.api.services.running_studio import CurrentStudio, Studio
@@ -56,14 +57,13 @@ SILENCE_SECONDS: Final = 60.0
 """Seconds without frames after which a view is closed, to make place for another one."""
 
 
-class Listen(BaseModel):
+class Listen(Body):
     """Which language to ask from now on; none: only landmarks and takes are wanted."""
-
-    model_config = ConfigDict(extra="forbid")
 
     do: Literal["listen"]
     language_id: Annotated[str, Field(max_length=64)] | None = None
-    profile: ProfileName | None = Field(default=None, description="Null: the language's own")
+    profile: ProfileName | None = None
+    """Null: the language's own."""
 
 
 class Listening(BaseModel):

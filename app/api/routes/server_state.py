@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
 
 from app import __version__
 from app.api.http.problems import problem_responses
+from app.api.http.schemas.values import View
 from app.recognition.models import installed_models
 
 
-class Health(BaseModel):
+class Health(View):
     """Whether the server works."""
 
-    status: str = Field(description="ok, or models_missing: then clips cannot be extracted")
+    status: str
+    """ok, or models_missing: then clips cannot be extracted."""
     version: str
-    models: dict[str, str] = Field(description="ok, missing or damaged, per model file")
+    models: dict[str, str]
+    """ok, missing or damaged, per model file."""
 
 
 router = APIRouter(tags=["health"])

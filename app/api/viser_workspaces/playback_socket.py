@@ -8,40 +8,37 @@ from dataclasses import asdict
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, WebSocket
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 from starlette.websockets import WebSocketDisconnect
 
+from app.api.http.schemas.values import Body
 from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
 from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner
 from app.ui.playback import Playback, Position
 
 
-class _Command(BaseModel):
-    model_config = ConfigDict(extra="forbid")
-
-
-class Seek(_Command):
+class Seek(Body):
     """Show a frame of the clip, counted from 0."""
 
     do: Literal["seek"]
     frame: Annotated[int, Field(ge=0)]
 
 
-class Step(_Command):
+class Step(Body):
     """Pause, and go some frames on or back."""
 
     do: Literal["step"]
     frames: Annotated[int, Field(ge=-1000, le=1000)]
 
 
-class Play(_Command):
+class Play(Body):
     """Play at a speed; negative is backwards, 0 pauses."""
 
     do: Literal["play"]
     speed: Annotated[float, Field(ge=-16, le=16, allow_inf_nan=False)]
 
 
-class Loop(_Command):
+class Loop(Body):
     """Repeat the range on display, or play on."""
 
     do: Literal["loop"]

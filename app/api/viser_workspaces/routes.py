@@ -6,9 +6,9 @@ from http import HTTPStatus
 from typing import Final
 
 from fastapi import APIRouter, Response
-from pydantic import BaseModel, ConfigDict
 
 from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.values import Body, View
 from app.api.services.running_studio import CurrentStudio
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
 from app.api.viser_workspaces.workspace_lookup import CurrentWorkspace, CurrentWorkspaces, Owner
@@ -19,10 +19,8 @@ UNSHOWABLE: Final = HTTPStatus(422).name.lower()
 """Code of the problem for a range without anything to show."""
 
 
-class WorkspaceOptions(BaseModel):
+class WorkspaceOptions(Body):
     """How a workspace looks."""
-
-    model_config = ConfigDict(extra="forbid")
 
     dark: bool = True
     """Dark colours rather than light ones."""
@@ -32,7 +30,7 @@ class WorkspaceOptions(BaseModel):
     """Move between the two, for people who do not mind moving pictures."""
 
 
-class OpenedWorkspace(BaseModel):
+class OpenedWorkspace(View):
     """A workspace and where its viser page lies."""
 
     id: str

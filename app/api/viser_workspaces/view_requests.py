@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from app.api.http.schemas.values import Body
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import load_language, load_recognition
 from app.recognition import Language
@@ -13,19 +14,16 @@ from app.store import RecognitionRecord
 from app.ui.workspace import WorkspaceView
 
 
-class ViewRequest(BaseModel):
+class ViewRequest(Body):
     """What a workspace is to show."""
-
-    model_config = ConfigDict(extra="forbid")
 
     clip_id: Annotated[str, Field(max_length=64)]
     recognition_id: Annotated[str | None, Field(max_length=64)] = None
     language_id: Annotated[str | None, Field(max_length=64)] = None
     start: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
     end: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
-    keep_frame: Annotated[
-        bool, Field(description="Whether the clock goes on where it is, in the same clip")
-    ] = False
+    keep_frame: bool = False
+    """Whether the clock goes on where it is, in the same clip."""
 
 
 def view_of(studio: Studio, request: ViewRequest) -> WorkspaceView:

@@ -120,7 +120,7 @@ export interface components {
             phrases: string[];
             /**
              * Gestures
-             * @description The message that shows it
+             * @description The message that shows it.
              */
             gestures: string[];
             /** Message */
@@ -166,34 +166,34 @@ export interface components {
             time: string;
             /**
              * Name
-             * @description Of the token; empty where the server needs none; `command line` of a command
+             * @description Of the token; empty where the server needs none; `command line` of a command.
              */
             name: string;
             /** Role */
             role: string;
             /**
              * Address
-             * @description Of the client, or as a trusted proxy says
+             * @description Of the client, or as a trusted proxy says.
              */
             address: string;
             /**
              * Method
-             * @description Of the request; or the command, such as `tokens add`
+             * @description Of the request; or the command, such as `tokens add`.
              */
             method: string;
             /**
              * Path
-             * @description What was changed, or what the command was given
+             * @description What was changed, or what the command was given.
              */
             path: string;
             /**
              * Status
-             * @description What was answered; 0 of a command
+             * @description What was answered; 0 of a command.
              */
             status: number;
             /**
              * Request Id
-             * @description The same as in the log
+             * @description The same as in the log.
              */
             request_id: string;
         };
@@ -300,12 +300,12 @@ export interface components {
             gestures: components["schemas"]["GestureDraft"][];
             /**
              * Keep
-             * @description How many of them
+             * @description How many of them.
              */
             keep: number;
             /**
              * Language Id
-             * @description Language that has gestures beside them; null: a new one
+             * @description Language that has gestures beside them; null: a new one.
              */
             language_id?: string | null;
         };
@@ -316,7 +316,7 @@ export interface components {
         ChoiceView: {
             /**
              * Keep
-             * @description Their places in the request
+             * @description Their places in the request.
              */
             keep: number[];
             /** Left Out */
@@ -346,69 +346,69 @@ export interface components {
             id: string;
             /**
              * Name
-             * @description As the sender called the file, without what could do harm
+             * @description As the sender called the file, without what could do harm.
              */
             name: string;
             status: components["schemas"]["JobStatus"];
             /**
              * Error
-             * @description Why there are no poses, when the job failed
+             * @description Why there are no poses, when the job failed.
              */
             error: string | null;
             /** Error Code */
             error_code: string | null;
             /**
              * Warnings
-             * @description What was found wanting in the clip
+             * @description What was found wanting in the clip.
              */
             warnings: string[];
             /**
              * Salute Warnings
-             * @description The same of its salutes, for languages with the salute as trigger
+             * @description The same of its salutes, for languages with the salute as trigger.
              */
             salute_warnings: string[];
             /**
              * Width
-             * @description Pixels of the upright picture
+             * @description Pixels of the upright picture.
              */
             width: number;
             /** Height */
             height: number;
             /**
              * Duration
-             * @description Seconds, where the container says; once its poses are found, as measured
+             * @description Seconds, where the container says; once its poses are found, as measured.
              */
             duration: number | null;
             /**
              * Frames
-             * @description Frames decoded; before that, as the container says
+             * @description Frames decoded; before that, as the container says.
              */
             frames: number | null;
             /**
              * Size
-             * @description Bytes
+             * @description Bytes.
              */
             size: number;
             /** Media Type */
             media_type: string;
             /**
              * Topics
-             * @description Of a dive recording: what a clip can be made of; empty for a video
+             * @description Of a dive recording: what a clip can be made of; empty for a video.
              */
             topics: components["schemas"]["TopicSeen"][];
             /**
              * Topic
-             * @description Of a dive recording: what the clip is made of; null while nobody chose
+             * @description Of a dive recording: what the clip is made of; null while nobody chose.
              */
             topic: string | null;
             /**
              * Shows Pictures
-             * @description Whether its video shows the diver; else it shows the keypoints that came
+             * @description Whether its video shows the diver; else it shows the keypoints that came.
              */
             shows_pictures: boolean;
             /**
              * Turn
-             * @description Degrees, clockwise, by which its pictures were turned
+             * @description Degrees, clockwise, by which its pictures were turned.
              */
             turn: number;
             /** Job Id */
@@ -428,7 +428,7 @@ export interface components {
             caption: string;
             /**
              * Image
-             * @description A data URI of a PNG
+             * @description A data URI of a PNG.
              */
             image: string;
         };
@@ -444,13 +444,13 @@ export interface components {
             ];
             /**
              * Differs
-             * @description In what the first differs from the second, and the second from the first; null where they cannot be compared
+             * @description In what the first differs from the second, and the second from the first; null where they cannot be compared.
              */
             differs: [
                 string | null,
                 string | null
             ];
-            /** @description Which moment of the first corresponds to which of the second */
+            /** @description Which moment of the first corresponds to which of the second. */
             alignment: components["schemas"]["Alignment"] | null;
         };
         /**
@@ -494,24 +494,24 @@ export interface components {
             end?: number | null;
             /**
              * Keep Transit
-             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @description Keep the hand's way from and to the salute, where the range is a take's own.
              * @default false
              */
             keep_transit: boolean;
             /**
              * Diver
-             * @description Name of the diver who shows it; empty: unknown
+             * @description Name of the diver who shows it; empty: unknown.
              * @default
              */
             diver: string;
             /**
              * Label
-             * @description The gesture's
+             * @description The gesture's.
              */
             label: string;
             /**
              * Salient
-             * @description Null: those of the first demonstration, if one of them moves
+             * @description Null: those of the first demonstration, if one of them moves.
              */
             salient?: string[] | null;
         };
@@ -523,12 +523,12 @@ export interface components {
             kind: components["schemas"]["FaultKind"];
             /**
              * Sentence
-             * @description The fault and the remedy, at most fifteen words
+             * @description The fault and the remedy, at most fifteen words.
              */
             sentence: string;
             /**
              * Words
-             * @description The fault as a clause, with the numbers seen
+             * @description The fault as a clause, with the numbers seen.
              */
             words: string;
             /**
@@ -538,7 +538,7 @@ export interface components {
             remedy: "set_range" | "show_again" | "arm_trigger";
             /**
              * Start
-             * @description Seconds in the clip of a better range; null: none
+             * @description Seconds in the clip of a better range; null: none.
              */
             start: number | null;
             /** End */
@@ -551,12 +551,12 @@ export interface components {
         DemonstrationView: {
             /**
              * Index
-             * @description Its place among the gesture's demonstrations, from 0
+             * @description Its place among the gesture's demonstrations, from 0.
              */
             index: number;
             /**
              * Diver
-             * @description Name of the diver who shows it; empty: unknown
+             * @description Name of the diver who shows it; empty: unknown.
              */
             diver: string;
             /** Salient */
@@ -568,7 +568,7 @@ export interface components {
             held_shapes: number;
             /**
              * Seconds
-             * @description How long it lasts; null: only its image is known
+             * @description How long it lasts; null: only its image is known.
              */
             seconds: number | null;
             /**
@@ -578,10 +578,10 @@ export interface components {
             strokes: string;
             /**
              * Thumbnail
-             * @description Path of its trajectory image, a PNG
+             * @description Path of its trajectory image, a PNG.
              */
             thumbnail: string;
-            /** @description Its clip; null: not known, or deleted */
+            /** @description Its clip; null: not known, or deleted. */
             source?: components["schemas"]["SourceView"] | null;
         };
         /**
@@ -593,7 +593,7 @@ export interface components {
             voter: string;
             /**
              * Unit
-             * @description What a distance of 1 between two descriptors means
+             * @description What a distance of 1 between two descriptors means.
              */
             unit: string;
             /** Values */
@@ -733,24 +733,24 @@ export interface components {
             files: components["schemas"]["ExportedFile"][];
             /**
              * Salient
-             * @description Landmarks without which gestures are not recognised
+             * @description Landmarks without which gestures are not recognised.
              */
             salient: string[];
             /**
              * Limbs
-             * @description Landmarks that make recognition surer
+             * @description Landmarks that make recognition surer.
              */
             limbs: string[];
             /**
              * Torso
-             * @description Landmarks that distance and drift are taken out by
+             * @description Landmarks that distance and drift are taken out by.
              */
             torso: string[];
             /** Models */
             models: string[];
             /**
              * Without Command
-             * @description Gestures without a command for the robot
+             * @description Gestures without a command for the robot.
              */
             without_command: string[];
         };
@@ -764,7 +764,7 @@ export interface components {
             bytes: number;
             /**
              * Complete
-             * @description Whether importing it again gives the same language
+             * @description Whether importing it again gives the same language.
              */
             complete: boolean;
         };
@@ -787,17 +787,17 @@ export interface components {
         GestureChange: {
             /** Label */
             label?: string | null;
-            /** @description Takes the place of the first demonstration, unless `further` */
+            /** @description Takes the place of the first demonstration, unless `further`. */
             demonstration?: components["schemas"]["NewDemonstration"] | null;
             /**
              * Further
-             * @description Add the demonstration to those that the gesture has
+             * @description Add the demonstration to those that the gesture has.
              * @default false
              */
             further: boolean;
             /**
              * Diver
-             * @description Name of the first demonstration's diver
+             * @description Name of the first demonstration's diver.
              */
             diver?: string | null;
             /** Direction */
@@ -827,13 +827,13 @@ export interface components {
              * @enum {string}
              */
             kind: "added" | "removed" | "changed" | "same";
-            /** @description Null: the older revision does not have it */
+            /** @description Null: the older revision does not have it. */
             before: components["schemas"]["GestureView"] | null;
-            /** @description Null: the newer revision does not have it */
+            /** @description Null: the newer revision does not have it. */
             after: components["schemas"]["GestureView"] | null;
             /**
              * Words
-             * @description What changed about it, a sentence each
+             * @description What changed about it, a sentence each.
              */
             words: string[];
         };
@@ -850,13 +850,13 @@ export interface components {
             end?: number | null;
             /**
              * Keep Transit
-             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @description Keep the hand's way from and to the salute, where the range is a take's own.
              * @default false
              */
             keep_transit: boolean;
             /**
              * Diver
-             * @description Name of the diver who shows it; empty: unknown
+             * @description Name of the diver who shows it; empty: unknown.
              * @default
              */
             diver: string;
@@ -907,17 +907,17 @@ export interface components {
             right: number;
             /**
              * Asked
-             * @description Takes, those of pairs included
+             * @description Takes, those of pairs included.
              */
             asked: number;
             /**
              * Pairs
-             * @description Takes that lie between two gestures: neither right nor a wrong label
+             * @description Takes that lie between two gestures: neither right nor a wrong label.
              */
             pairs: number;
             /**
              * Pairs Right
-             * @description Of these, those with the right gesture in the pair
+             * @description Of these, those with the right gesture in the pair.
              */
             pairs_right: number;
             /** Rate */
@@ -980,19 +980,19 @@ export interface components {
             hand_shape: "auto" | "on" | "off";
             /**
              * Thumbnail
-             * @description Path of its trajectory image, a PNG
+             * @description Path of its trajectory image, a PNG.
              */
             thumbnail: string;
             /**
              * Has Trajectory
-             * @description False when imported from a file that has none
+             * @description False when imported from a file that has none.
              */
             has_trajectory: boolean;
-            /** @description The clip of its demonstration; null: not known, or deleted */
+            /** @description The clip of its demonstration; null: not known, or deleted. */
             source?: components["schemas"]["SourceView"] | null;
             /**
              * Demonstrations
-             * @description All of them; what is said of the gesture itself is the first one's
+             * @description All of them; what is said of the gesture itself is the first one's.
              */
             demonstrations: components["schemas"]["DemonstrationView"][];
         };
@@ -1093,14 +1093,14 @@ export interface components {
         Health: {
             /**
              * Status
-             * @description ok, or models_missing: then clips cannot be extracted
+             * @description ok, or models_missing: then clips cannot be extracted.
              */
             status: string;
             /** Version */
             version: string;
             /**
              * Models
-             * @description ok, missing or damaged, per model file
+             * @description ok, missing or damaged, per model file.
              */
             models: {
                 [key: string]: string;
@@ -1115,12 +1115,12 @@ export interface components {
             clip_id: string;
             /**
              * Start
-             * @description Null: of the clip
+             * @description Null: of the clip.
              */
             start?: number | null;
             /**
              * End
-             * @description Null: of the clip
+             * @description Null: of the clip.
              */
             end?: number | null;
         };
@@ -1131,13 +1131,13 @@ export interface components {
         InvitationDraft: {
             /**
              * People
-             * @description How many; they share the link
+             * @description How many; they share the link.
              * @default 2
              */
             people: number;
             /**
              * Days
-             * @description Until it is over
+             * @description Until it is over.
              * @default 7
              */
             days: number;
@@ -1171,7 +1171,7 @@ export interface components {
             expires: string;
             /**
              * Closed
-             * @description Null while it is valid
+             * @description Null while it is valid.
              */
             closed: ("withdrawn" | "expired") | null;
             /** Most Takes */
@@ -1180,17 +1180,17 @@ export interface components {
             most_bytes: number;
             /**
              * Takes
-             * @description Takes sent so far, also returned ones
+             * @description Takes sent so far, also returned ones.
              */
             takes: number;
             /**
              * Bytes
-             * @description Bytes of these takes together
+             * @description Bytes of these takes together.
              */
             bytes: number;
             /**
              * Shown
-             * @description These takes, the oldest first
+             * @description These takes, the oldest first.
              */
             shown: components["schemas"]["ReceivedTakeView"][];
         };
@@ -1201,7 +1201,7 @@ export interface components {
         InvitedAnswer: {
             /**
              * Confirmed
-             * @description It is the gesture; false: another take will be shown
+             * @description It is the gesture; false: another take will be shown.
              */
             confirmed: boolean;
         };
@@ -1216,17 +1216,17 @@ export interface components {
             description: string;
             /**
              * Image
-             * @description Its drawing with start dot and arrow: a data URI of a PNG
+             * @description Its drawing with start dot and arrow: a data URI of a PNG.
              */
             image: string;
             /**
              * Seconds
-             * @description How long it lasts; null: not known
+             * @description How long it lasts; null: not known.
              */
             seconds: number | null;
             /**
              * Held Shapes
-             * @description Hand shapes that are held: 0 in a movement
+             * @description Hand shapes that are held: 0 in a movement.
              */
             held_shapes: number;
         };
@@ -1239,23 +1239,23 @@ export interface components {
             id: string;
             /**
              * Label
-             * @description The gesture that it shows
+             * @description The gesture that it shows.
              */
             label: string;
             /**
              * Diver
-             * @description Who shows it
+             * @description Who shows it.
              */
             diver: string;
             /**
              * Status
-             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows
+             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows.
              * @enum {string}
              */
             status: "waiting" | "asked" | "added" | "removed" | "returned";
             /**
              * Reason
-             * @description Why it was returned, and what to do; or why it is doubted; else null
+             * @description Why it was returned, and what to do; or why it is doubted; else null.
              */
             reason: string | null;
         };
@@ -1266,17 +1266,17 @@ export interface components {
         InvitedView: {
             /**
              * Id
-             * @description The invitation's
+             * @description The invitation's.
              */
             id: string;
             /**
              * Language
-             * @description Name of the language
+             * @description Name of the language.
              */
             language: string;
             /**
              * Trigger
-             * @description What begins and ends a take
+             * @description What begins and ends a take.
              * @enum {string}
              */
             trigger: "salute" | "pose" | "gesture" | "none";
@@ -1289,7 +1289,7 @@ export interface components {
             takes_left: number;
             /**
              * Most Bytes
-             * @description Largest clip of one take
+             * @description Largest clip of one take.
              */
             most_bytes: number;
             /** Gestures */
@@ -1313,32 +1313,32 @@ export interface components {
             status: components["schemas"]["JobStatus"];
             /**
              * Stage
-             * @description queued, starting, poses, saving, or the final status
+             * @description queued, starting, poses, saving, or the final status.
              */
             stage: string;
             /**
              * Done
-             * @description Frames
+             * @description Frames.
              */
             done: number;
             /**
              * Total
-             * @description Frames; an estimate where the container does not count them
+             * @description Frames; an estimate where the container does not count them.
              */
             total: number;
             /**
              * Eta S
-             * @description Seconds left at the present rate
+             * @description Seconds left at the present rate.
              */
             eta_s: number | null;
             /**
              * Time
-             * @description Seconds after the clip's first frame, of the frame that `pose` was found in; null in every stage but poses
+             * @description Seconds after the clip's first frame, of the frame that `pose` was found in; null in every stage but poses.
              */
             time: number | null;
             /**
              * Pose
-             * @description The newest pose: of each of the 33 landmarks of the body (in the order of `landmarks` in a clip's poses) x and y as fractions of the picture's width and height, x right, y down; null: not seen. Null as a whole where nobody is in the frame
+             * @description The newest pose: of each of the 33 landmarks of the body (in the order of `landmarks` in a clip's poses) x and y as fractions of the picture's width and height, x right, y down; null: not seen. Null as a whole where nobody is in the frame.
              */
             pose: ([
                 number,
@@ -1346,7 +1346,7 @@ export interface components {
             ] | null)[] | null;
             /**
              * Kept
-             * @description How often the poses so far were kept, to be shown before the end of the job
+             * @description How often the poses so far were kept, to be shown before the end of the job.
              */
             kept: number;
             /** Error */
@@ -1372,22 +1372,22 @@ export interface components {
             landmark: string;
             /**
              * Displacement
-             * @description Peak to peak, in the preview's unit
+             * @description Peak to peak, in the preview's unit.
              */
             displacement: number;
             /**
              * Seen
-             * @description Share of the moments in which it was seen, 0 to 1
+             * @description Share of the moments in which it was seen, 0 to 1.
              */
             seen: number;
             /**
              * Usual
-             * @description Whether it may be proposed: the one that stands for its hand
+             * @description Whether it may be proposed: the one that stands for its hand.
              */
             usual: boolean;
             /**
              * Proposed
-             * @description Whether it moves enough to be proposed
+             * @description Whether it moves enough to be proposed.
              */
             proposed: boolean;
         };
@@ -1400,12 +1400,12 @@ export interface components {
             revision: number;
             /**
              * Recognition Id
-             * @description Null: it could not be recognised, see `fault`
+             * @description Null: it could not be recognised, see `fault`.
              */
             recognition_id: string | null;
             /**
              * Label
-             * @description Null: a pair, or rejected
+             * @description Null: a pair, or rejected.
              */
             label: string | null;
             /**
@@ -1424,7 +1424,7 @@ export interface components {
             right: boolean;
             /**
              * Fault
-             * @description Why it could not be recognised, in words
+             * @description Why it could not be recognised, in words.
              */
             fault: string | null;
         };
@@ -1447,7 +1447,7 @@ export interface components {
             expected: string;
             /**
              * Start
-             * @description Null, with `end`: every take of the clip, or all of it
+             * @description Null, with `end`: every take of the clip, or all of it.
              */
             start?: number | null;
             /** End */
@@ -1464,7 +1464,7 @@ export interface components {
             clip_id: string;
             /**
              * Clip
-             * @description Name of the clip
+             * @description Name of the clip.
              */
             clip: string;
             /** Start */
@@ -1475,17 +1475,17 @@ export interface components {
             expected: string;
             /**
              * Added By
-             * @description Name of who added it; empty: not known
+             * @description Name of who added it; empty: not known.
              */
             added_by: string;
             /**
              * Demonstration
-             * @description It is a demonstration of the language, which does not count
+             * @description It is a demonstration of the language, which does not count.
              */
             demonstration: boolean;
-            /** @description The newest; null: none yet */
+            /** @description The newest; null: none yet. */
             result: components["schemas"]["LabelledResultView"] | null;
-            /** @description By an older revision than `result` */
+            /** @description By an older revision than `result`. */
             before: components["schemas"]["LabelledResultView"] | null;
         };
         /**
@@ -1505,18 +1505,18 @@ export interface components {
             name?: string | null;
             /** Author */
             author?: string | null;
-            /** @description The phrases; null: none */
+            /** @description The phrases; null: none. */
             grammar?: components["schemas"]["GrammarEntry"] | null;
             /**
              * Profile
-             * @description The voters that recognise it
+             * @description The voters that recognise it.
              */
             profile?: ("paper" | "full") | null;
-            /** @description What differs from the profile; null: nothing */
+            /** @description What differs from the profile; null: nothing. */
             tuning?: components["schemas"]["TuningEntry"] | null;
             /**
              * Most Refused
-             * @description Share of right takes that may be refused, where several people have shown the gestures
+             * @description Share of right takes that may be refused, where several people have shown the gestures.
              */
             most_refused?: number | null;
         };
@@ -1579,14 +1579,14 @@ export interface components {
             revision: number;
             /**
              * Change
-             * @description What the newest revision did
+             * @description What the newest revision did.
              */
             change: string;
             /** Labels */
             labels: string[];
             /**
              * Sample
-             * @description Whether it came with the program
+             * @description Whether it came with the program.
              */
             sample: boolean;
             /**
@@ -1615,14 +1615,14 @@ export interface components {
             revision: number;
             /**
              * Change
-             * @description What the newest revision did
+             * @description What the newest revision did.
              */
             change: string;
             /** Labels */
             labels: string[];
             /**
              * Sample
-             * @description Whether it came with the program
+             * @description Whether it came with the program.
              */
             sample: boolean;
             /**
@@ -1639,23 +1639,23 @@ export interface components {
             gestures: components["schemas"]["GestureView"][];
             /**
              * Sha256
-             * @description Checksum of the language file, which the robot reports
+             * @description Checksum of the language file, which the robot reports.
              */
             sha256: string;
             /**
              * Code
-             * @description Short code of `sha256`, to compare with the robot's
+             * @description Short code of `sha256`, to compare with the robot's.
              */
             code: string;
-            /** @description Null: every gesture is a message of its own */
+            /** @description Null: every gesture is a message of its own. */
             grammar: components["schemas"]["GrammarEntry"] | null;
             /**
              * Profile
-             * @description The voters that recognise it
+             * @description The voters that recognise it.
              * @enum {string}
              */
             profile: "paper" | "full";
-            /** @description What differs from the profile; null: nothing */
+            /** @description What differs from the profile; null: nothing. */
             tuning: components["schemas"]["TuningEntry"] | null;
             /**
              * Tuning Words
@@ -1664,10 +1664,10 @@ export interface components {
             tuning_words: string;
             /**
              * Most Refused
-             * @description Share of right takes that may be refused; the limit follows from it where several people have shown the gestures
+             * @description Share of right takes that may be refused; the limit follows from it where several people have shown the gestures.
              */
             most_refused: number;
-            /** @description What begins and ends a take; null: a salute */
+            /** @description What begins and ends a take; null: a salute. */
             trigger: components["schemas"]["TriggerEntry"] | null;
             /**
              * Trigger Words
@@ -1682,17 +1682,17 @@ export interface components {
         LeftOutView: {
             /**
              * Index
-             * @description Its place in the request
+             * @description Its place in the request.
              */
             index: number;
             /**
              * Other
-             * @description The gesture that stays and is most like it
+             * @description The gesture that stays and is most like it.
              */
             other: string;
             /**
              * Words
-             * @description How alike the two are, and how that is known
+             * @description How alike the two are, and how that is known.
              */
             words: string;
         };
@@ -1723,12 +1723,12 @@ export interface components {
             label: string;
             /**
              * Distance
-             * @description As in the health report; 1: two typical gestures
+             * @description As in the health report; 1: two typical gestures.
              */
             distance: number;
             /**
              * Same
-             * @description Whether the robot cannot distinguish the two
+             * @description Whether the robot cannot distinguish the two.
              */
             same: boolean;
         };
@@ -1745,13 +1745,13 @@ export interface components {
             end?: number | null;
             /**
              * Keep Transit
-             * @description Keep the hand's way from and to the salute, where the range is a take's own
+             * @description Keep the hand's way from and to the salute, where the range is a take's own.
              * @default false
              */
             keep_transit: boolean;
             /**
              * Diver
-             * @description Name of the diver who shows it; empty: unknown
+             * @description Name of the diver who shows it; empty: unknown.
              * @default
              */
             diver: string;
@@ -1775,7 +1775,7 @@ export interface components {
             expires: string;
             /**
              * Closed
-             * @description Null while it is valid
+             * @description Null while it is valid.
              */
             closed: ("withdrawn" | "expired") | null;
             /** Most Takes */
@@ -1784,24 +1784,24 @@ export interface components {
             most_bytes: number;
             /**
              * Takes
-             * @description Takes sent so far, also returned ones
+             * @description Takes sent so far, also returned ones.
              */
             takes: number;
             /**
              * Bytes
-             * @description Bytes of these takes together
+             * @description Bytes of these takes together.
              */
             bytes: number;
             /**
              * Shown
-             * @description These takes, the oldest first
+             * @description These takes, the oldest first.
              */
             shown: components["schemas"]["ReceivedTakeView"][];
             /** Link */
             link: string;
             /**
              * Qr
-             * @description The link as a QR code: an SVG document
+             * @description The link as a QR code: an SVG document.
              */
             qr: string;
         };
@@ -1826,7 +1826,7 @@ export interface components {
             };
             /**
              * Nearest
-             * @description The nearest first; null: it has no demonstration to compare
+             * @description The nearest first; null: it has no demonstration to compare.
              */
             nearest: components["schemas"]["NearGestureView"][] | null;
         };
@@ -1841,12 +1841,12 @@ export interface components {
             salient: string[];
             /**
              * Time
-             * @description Seconds of each moment
+             * @description Seconds of each moment.
              */
             time: number[];
             /**
              * Paths
-             * @description Per landmark its place at each moment, torso lengths from the torso's centre
+             * @description Per landmark its place at each moment, torso lengths from the torso's centre.
              */
             paths: {
                 [key: string]: ([
@@ -1890,12 +1890,12 @@ export interface components {
             kind: "continues" | "complete" | "ambiguous" | "cancelled" | "timed_out" | "unexpected" | "repeat" | "outside";
             /**
              * Gestures
-             * @description Of the message so far
+             * @description Of the message so far.
              */
             gestures: string[];
             /**
              * Label
-             * @description Null for a pair, when it was not recognised, and for a pause
+             * @description Null for a pair, when it was not recognised, and for a pause.
              */
             label: string | null;
             /**
@@ -1908,17 +1908,17 @@ export interface components {
             ] | null;
             /**
              * Expected
-             * @description What may come next
+             * @description What may come next.
              */
             expected: string[];
             /**
              * Mission
-             * @description What to do; only when complete
+             * @description What to do; only when complete.
              */
             mission: components["schemas"]["MeaningView"][] | null;
             /**
              * Text
-             * @description In words, for the diver
+             * @description In words, for the diver.
              */
             text: string;
             /** Start */
@@ -1937,24 +1937,24 @@ export interface components {
             ambiguities: components["schemas"]["AmbiguityView"][];
             /**
              * Examples
-             * @description Per phrase a message with all its parts
+             * @description Per phrase a message with all its parts.
              */
             examples: {
                 [key: string]: string[];
             };
             /**
              * Events
-             * @description What came of the gestures shown
+             * @description What came of the gestures shown.
              */
             events: components["schemas"]["PhraseEventView"][];
             /**
              * Expected
-             * @description What may come after them
+             * @description What may come after them.
              */
             expected: string[];
             /**
              * May End
-             * @description Whether a pause now would end the message, not drop it
+             * @description Whether a pause now would end the message, not drop it.
              */
             may_end: boolean;
         };
@@ -2006,22 +2006,22 @@ export interface components {
             landmarks: string[];
             /**
              * Time
-             * @description Seconds since the first frame, one per frame
+             * @description Seconds since the first frame, one per frame.
              */
             time: number[];
             /**
              * Xy
-             * @description Frames x landmarks x 2: pixels, x right, y down; null: not seen
+             * @description Frames x landmarks x 2: pixels, x right, y down; null: not seen.
              */
             xy: (number | null)[][][];
             /**
              * Confidence
-             * @description Frames x landmarks, 0 to 1
+             * @description Frames x landmarks, 0 to 1.
              */
             confidence: number[][] | null;
             /**
              * Frame Size
-             * @description Width and height in pixels
+             * @description Width and height in pixels.
              */
             frame_size: number[];
         };
@@ -2035,12 +2035,12 @@ export interface components {
             sentence: string;
             /**
              * Details
-             * @description The numbers behind the sentence
+             * @description The numbers behind the sentence.
              */
             details: string[];
             /**
              * Causes
-             * @description Why, the cause first; empty: none is known
+             * @description Why, the cause first; empty: none is known.
              */
             causes: components["schemas"]["Cause"][];
             /** Notes */
@@ -2072,49 +2072,49 @@ export interface components {
             diver: string;
             /**
              * Takes
-             * @description Takes recognised by the newest revision, without pairs
+             * @description Takes recognised by the newest revision, without pairs.
              */
             takes: number;
             /** Errors */
             errors: number;
             /**
              * Pairs
-             * @description Takes of the newest revision that were asked back, with the gesture meant in the pair: neither right nor an error
+             * @description Takes of the newest revision that were asked back, with the gesture meant in the pair: neither right nor an error.
              */
             pairs: number;
             /**
              * Bound
-             * @description Upper bound of the error rate (Clopper and Pearson)
+             * @description Upper bound of the error rate (Clopper and Pearson).
              */
             bound: number;
             /**
              * Limit
-             * @description Error rate to be below
+             * @description Error rate to be below.
              */
             limit: number;
             /**
              * Confidence
-             * @description Confidence of the bound
+             * @description Confidence of the bound.
              */
             confidence: number;
             /**
              * Reached
-             * @description Whether the bound is below the limit
+             * @description Whether the bound is below the limit.
              */
             reached: boolean;
             /**
              * More
-             * @description Further takes without an error until it is; 0 when reached
+             * @description Further takes without an error until it is; 0 when reached.
              */
             more: number;
             /**
              * Older
-             * @description Takes with older revisions, which do not count
+             * @description Takes with older revisions, which do not count.
              */
             older: number;
             /**
              * Shown
-             * @description All takes, the newest first
+             * @description All takes, the newest first.
              */
             shown: components["schemas"]["PracticeTakeView"][];
         };
@@ -2129,7 +2129,7 @@ export interface components {
             expected: string;
             /**
              * Label
-             * @description Null: a pair, or rejected
+             * @description Null: a pair, or rejected.
              */
             label: string | null;
             /**
@@ -2150,7 +2150,7 @@ export interface components {
             revision: number;
             /**
              * Added By
-             * @description Name of who added it; empty: not known
+             * @description Name of who added it; empty: not known.
              */
             added_by: string;
         };
@@ -2161,10 +2161,10 @@ export interface components {
         PreviewRequest: {
             /**
              * Label
-             * @description Which gesture is changed; null: a new
+             * @description Which gesture is changed; null: a new.
              */
             label?: string | null;
-            /** @description A new gesture needs its demonstration */
+            /** @description A new gesture needs its demonstration. */
             change: components["schemas"]["GestureChange"];
         };
         /**
@@ -2174,17 +2174,17 @@ export interface components {
         PreviewView: {
             /**
              * Problem
-             * @description Why it cannot be saved like this; null: it can
+             * @description Why it cannot be saved like this; null: it can.
              */
             problem: string | null;
             /**
              * Image
-             * @description The trajectory image, a data URI of a PNG
+             * @description The trajectory image, a data URI of a PNG.
              */
             image: string | null;
             /**
              * Salient
-             * @description The keypoints that are drawn
+             * @description The keypoints that are drawn.
              */
             salient: string[];
             /**
@@ -2194,31 +2194,31 @@ export interface components {
             held_shapes: number;
             /**
              * Keypoints
-             * @description Empty without a demonstration
+             * @description Empty without a demonstration.
              */
             keypoints: components["schemas"]["KeypointView"][];
             /**
              * Threshold
-             * @description Displacement from which a keypoint is proposed
+             * @description Displacement from which a keypoint is proposed.
              */
             threshold: number | null;
             /**
              * Unit
-             * @description Of displacements: torso_length, or extent without a torso
+             * @description Of displacements: torso_length, or extent without a torso.
              */
             unit: string;
             /** Descriptors */
             descriptors: components["schemas"]["DescriptorView"][];
             /**
              * Start
-             * @description Seconds of the clip; null without one
+             * @description Seconds of the clip; null without one.
              */
             start: number | null;
             /** End */
             end: number | null;
             /**
              * Seconds
-             * @description How long the demonstration lasts
+             * @description How long the demonstration lasts.
              */
             seconds: number | null;
             /**
@@ -2228,7 +2228,7 @@ export interface components {
             strokes: string;
             /**
              * Faults
-             * @description Why its range of the clip is a bad demonstration, the gravest fault first
+             * @description Why its range of the clip is a bad demonstration, the gravest fault first.
              */
             faults: components["schemas"]["DemonstrationFaultView"][];
         };
@@ -2244,12 +2244,12 @@ export interface components {
             name: "paper" | "full";
             /**
              * Rejects
-             * @description Whether it rejects movements that are no gesture
+             * @description Whether it rejects movements that are no gesture.
              */
             rejects: boolean;
             /**
              * Repairs Keypoints
-             * @description Whether bad keypoints are repaired first
+             * @description Whether bad keypoints are repaired first.
              */
             repairs_keypoints: boolean;
             /** Voters */
@@ -2264,14 +2264,14 @@ export interface components {
             clips: number;
             /**
              * Most Clips
-             * @description 0 is any number
+             * @description 0 is any number.
              */
             most_clips: number;
             /** Bytes */
             bytes: number;
             /**
              * Most Bytes
-             * @description 0 is any number
+             * @description 0 is any number.
              */
             most_bytes: number;
         };
@@ -2284,17 +2284,17 @@ export interface components {
             right: number;
             /**
              * Asked
-             * @description Takes, those of pairs included
+             * @description Takes, those of pairs included.
              */
             asked: number;
             /**
              * Pairs
-             * @description Takes that lie between two gestures: neither right nor a wrong label
+             * @description Takes that lie between two gestures: neither right nor a wrong label.
              */
             pairs: number;
             /**
              * Pairs Right
-             * @description Of these, those with the right gesture in the pair
+             * @description Of these, those with the right gesture in the pair.
              */
             pairs_right: number;
             /** Rate */
@@ -2322,29 +2322,29 @@ export interface components {
         ReceivedTakeOutlook: {
             /**
              * Start
-             * @description Seconds in its clip
+             * @description Seconds in its clip.
              */
             start: number;
             /** End */
             end: number;
             /**
              * Image
-             * @description Its drawing with start dot and arrow: a data URI of a PNG
+             * @description Its drawing with start dot and arrow: a data URI of a PNG.
              */
             image: string;
             /**
              * Known
-             * @description Known takes of the test set and of practice
+             * @description Known takes of the test set and of practice.
              */
             known: number;
             /**
              * Repaired
-             * @description Of these, those that are read right only with it
+             * @description Of these, those that are read right only with it.
              */
             repaired: number;
             /**
              * Broken
-             * @description Those that are read right only without it
+             * @description Those that are read right only without it.
              */
             broken: number;
         };
@@ -2357,23 +2357,23 @@ export interface components {
             id: string;
             /**
              * Label
-             * @description The gesture that it shows
+             * @description The gesture that it shows.
              */
             label: string;
             /**
              * Diver
-             * @description Who shows it
+             * @description Who shows it.
              */
             diver: string;
             /**
              * Status
-             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows
+             * @description `waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person who shows.
              * @enum {string}
              */
             status: "waiting" | "asked" | "added" | "removed" | "returned";
             /**
              * Reason
-             * @description Why it was returned, and what to do; or why it is doubted; else null
+             * @description Why it was returned, and what to do; or why it is doubted; else null.
              */
             reason: string | null;
             /** Clip Id */
@@ -2538,14 +2538,14 @@ export interface components {
         ReplacementDraft: {
             /**
              * Label
-             * @description Of the gesture; it stays, with command and description
+             * @description Of the gesture; it stays, with command and description.
              */
             label: string;
             /** Sample */
             sample?: string | null;
             /**
              * Gesture
-             * @description Label in the sample language
+             * @description Label in the sample language.
              */
             gesture?: string | null;
             demonstration?: components["schemas"]["NewDemonstration"] | null;
@@ -2557,42 +2557,42 @@ export interface components {
         ReplacementView: {
             /**
              * Sample
-             * @description Sample language that has it, or `strokes`; null: a take of a clip
+             * @description Sample language that has it, or `strokes`; null: a take of a clip.
              */
             sample: string | null;
             /**
              * Gesture
-             * @description Its label in the sample language or in the request
+             * @description Its label in the sample language or in the request.
              */
             gesture: string;
             /**
              * Index
-             * @description Its place among the request's takes; null: a sample's
+             * @description Its place among the request's takes; null: a sample's.
              */
             index: number | null;
             /**
              * Sign
-             * @description What divers mean by it, where that is not the gesture's label; null: nothing
+             * @description What divers mean by it, where that is not the gesture's label; null: nothing.
              */
             sign: string | null;
             /**
              * Image
-             * @description Trajectory image with its direction, a data URI of a PNG
+             * @description Trajectory image with its direction, a data URI of a PNG.
              */
             image: string;
             /**
              * Before
-             * @description Estimated share of takes that is not read right now, 0 to 1
+             * @description Estimated share of takes that is not read right now, 0 to 1.
              */
             before: number;
             /**
              * After
-             * @description The same with this movement
+             * @description The same with this movement.
              */
             after: number;
             /**
              * Alike
-             * @description Pairs that would be nearly alike, the worst first
+             * @description Pairs that would be nearly alike, the worst first.
              */
             alike: components["schemas"]["AlikeView"][];
         };
@@ -2605,7 +2605,7 @@ export interface components {
             label: string;
             /**
              * Gestures
-             * @description Takes of clips that may take its place; those that cannot are left out
+             * @description Takes of clips that may take its place; those that cannot are left out.
              * @default []
              */
             gestures: components["schemas"]["GestureDraft"][];
@@ -2630,17 +2630,17 @@ export interface components {
          * @description Two revisions of a language, side by side.
          */
         RevisionComparison: {
-            /** @description Null: compared with nothing */
+            /** @description Null: compared with nothing. */
             older: components["schemas"]["RevisionView"] | null;
             newer: components["schemas"]["RevisionView"];
             /**
              * Words
-             * @description What changed about the language itself
+             * @description What changed about the language itself.
              */
             words: string[];
             /**
              * Gestures
-             * @description In the newer revision's order, then those it does not have any more
+             * @description In the newer revision's order, then those it does not have any more.
              */
             gestures: components["schemas"]["GestureComparison"][];
         };
@@ -2686,12 +2686,12 @@ export interface components {
         SampleLanguageView: {
             /**
              * Name
-             * @description By which it is asked for
+             * @description By which it is asked for.
              */
             name: string;
             /**
              * Title
-             * @description The language's own name
+             * @description The language's own name.
              */
             title: string;
             /** Labels */
@@ -2706,7 +2706,7 @@ export interface components {
             name: string;
             /**
              * Size
-             * @description Bytes
+             * @description Bytes.
              */
             size: number;
         };
@@ -2717,7 +2717,7 @@ export interface components {
         SessionExportRequest: {
             /**
              * Id
-             * @description Chosen by the client: names the export and its events
+             * @description Chosen by the client: names the export and its events.
              */
             id: string;
         };
@@ -2728,17 +2728,17 @@ export interface components {
         SessionView: {
             /**
              * Name
-             * @description Of the token; empty where the server needs none
+             * @description Of the token; empty where the server needs none.
              */
             name: string;
-            /** @description read, edit or admin; each includes the ones before it */
+            /** @description read, edit or admin; each includes the ones before it. */
             role: components["schemas"]["Role"];
             /**
              * Signed In
-             * @description Whether a cookie keeps the token, so that one can log out
+             * @description Whether a cookie keeps the token, so that one can log out.
              */
             signed_in: boolean;
-            /** @description null where nothing limits what the name keeps */
+            /** @description null where nothing limits what the name keeps. */
             quota: components["schemas"]["QuotaView"] | null;
         };
         /**
@@ -2758,18 +2758,18 @@ export interface components {
             default_profile: "paper" | "full";
             /** Profiles */
             profiles: components["schemas"]["ProfileView"][];
-            /** @description What differs from the profile; null: nothing */
+            /** @description What differs from the profile; null: nothing. */
             tuning: components["schemas"]["TuningEntry"] | null;
             /**
              * Simplification
-             * @description Default tolerance of drawings, pixels of 224
+             * @description Default tolerance of drawings, pixels of 224.
              */
             simplification: number;
             /** Most Simplification */
             most_simplification: number;
             /**
              * Weights
-             * @description Each voter's normalised weight in this language, with its weight factor; empty without gestures
+             * @description Each voter's normalised weight in this language, with its weight factor; empty without gestures.
              */
             weights: {
                 [key: string]: number;
@@ -2846,7 +2846,7 @@ export interface components {
             clip_id: string;
             /**
              * Start
-             * @description Seconds in the clip
+             * @description Seconds in the clip.
              */
             start: number;
             /** End */
@@ -2855,18 +2855,18 @@ export interface components {
             keep_transit: boolean;
             /**
              * Salutes
-             * @description Vulcan salutes in the demonstration, which should have none
+             * @description Vulcan salutes in the demonstration, which should have none.
              * @default 0
              */
             salutes: number;
             /**
              * Fault
-             * @description The gravest of `faults` as a clause with the numbers seen; null: none
+             * @description The gravest of `faults` as a clause with the numbers seen; null: none.
              */
             fault?: string | null;
             /**
              * Faults
-             * @description Why it is a bad demonstration, the gravest fault first
+             * @description Why it is a bad demonstration, the gravest fault first.
              */
             faults: components["schemas"]["DemonstrationFaultView"][];
         };
@@ -2882,7 +2882,7 @@ export interface components {
             position: "auto" | "on" | "off";
             /**
              * Counts
-             * @description Null: only the drawing is compared
+             * @description Null: only the drawing is compared.
              */
             counts: boolean | null;
             /** Words */
@@ -2899,7 +2899,7 @@ export interface components {
             clip: string;
             /**
              * Take
-             * @description From 1; null: no take was found, see `faults`
+             * @description From 1; null: no take was found, see `faults`.
              */
             take: number | null;
             /** Start */
@@ -2910,14 +2910,14 @@ export interface components {
             closed: boolean | null;
             /**
              * Label
-             * @description Null: a pair, or rejected
+             * @description Null: a pair, or rejected.
              */
             label: string | null;
             /** Nearest */
             nearest: string | null;
             /**
              * Runner Up
-             * @description The nearest gesture but `nearest`
+             * @description The nearest gesture but `nearest`.
              */
             runner_up: string | null;
             /** Confidence */
@@ -2926,7 +2926,7 @@ export interface components {
             margin: number | null;
             /**
              * Expected
-             * @description By the language's test set; null: not in it
+             * @description By the language's test set; null: not in it.
              */
             expected: string | null;
             /** Faults */
@@ -2939,7 +2939,7 @@ export interface components {
             profile: string;
             /**
              * Pair
-             * @description "circle or square"; null: it lies between no two
+             * @description "circle or square"; null: it lies between no two.
              */
             pair: string | null;
         };
@@ -2950,7 +2950,7 @@ export interface components {
         TakeTableRequest: {
             /**
              * Id
-             * @description Chosen by the client: names its `tables` events
+             * @description Chosen by the client: names its `tables` events.
              */
             id: string;
             /** Clip Ids */
@@ -2965,7 +2965,7 @@ export interface components {
             rows: components["schemas"]["TakeRowView"][];
             /**
              * Csv
-             * @description The same rows as the command line writes them
+             * @description The same rows as the command line writes them.
              */
             csv: string;
         };
@@ -2980,12 +2980,12 @@ export interface components {
             end: number;
             /**
              * Closed
-             * @description Whether a second salute ended it
+             * @description Whether a second salute ended it.
              */
             closed: boolean;
             /**
              * Stroke Start
-             * @description Where the gesture begins: after the hand's way to it
+             * @description Where the gesture begins: after the hand's way to it.
              */
             stroke_start: number;
             /** Stroke End */
@@ -3000,7 +3000,7 @@ export interface components {
             language_id: string;
             /**
              * Revision
-             * @description The language's newest
+             * @description The language's newest.
              */
             revision: number;
             /** Takes */
@@ -3008,27 +3008,27 @@ export interface components {
             overall: components["schemas"]["RateView"];
             /**
              * Gestures
-             * @description The lowest rate first
+             * @description The lowest rate first.
              */
             gestures: components["schemas"]["GestureRateView"][];
             /**
              * Better
-             * @description Ids of takes that are answered better than before
+             * @description Ids of takes that are answered better than before.
              */
             better: string[];
             /**
              * Worse
-             * @description Ids of takes that are answered worse than before: right is better than a pair with the right gesture, which is better than anything else
+             * @description Ids of takes that are answered worse than before: right is better than a pair with the right gesture, which is better than anything else.
              */
             worse: string[];
             /**
              * Upgraded
-             * @description Whether the results before are of another version of the program, which may answer otherwise too
+             * @description Whether the results before are of another version of the program, which may answer otherwise too.
              */
             upgraded: boolean;
             /**
              * Waiting
-             * @description Takes without a result of the newest revision
+             * @description Takes without a result of the newest revision.
              */
             waiting: number;
         };
@@ -3039,34 +3039,34 @@ export interface components {
         TimelineView: {
             /**
              * Time
-             * @description Seconds, by the container
+             * @description Seconds, by the container.
              */
             time: number[];
             /**
              * Salute
-             * @description Score of the salute, or of the language's other trigger, 0 to 1
+             * @description Score of the salute, or of the language's other trigger, 0 to 1.
              */
             salute: number[];
             /**
              * Speed
-             * @description Per wrist, torso lengths a second; null where it was not seen
+             * @description Per wrist, torso lengths a second; null where it was not seen.
              */
             speed: {
                 [key: string]: (number | null)[];
             };
             /**
              * Unit
-             * @description Of the speed's lengths: torso_length, or extent without a torso
+             * @description Of the speed's lengths: torso_length, or extent without a torso.
              */
             unit: string;
             /**
              * Thumbnails
-             * @description How many the filmstrip has
+             * @description How many the filmstrip has.
              */
             thumbnails: number;
             /**
              * Turn
-             * @description Degrees, clockwise, by which the picture must be turned for the diver to be upright
+             * @description Degrees, clockwise, by which the picture must be turned for the diver to be upright.
              * @enum {integer}
              */
             turn: 0 | 90 | 180 | 270;
@@ -3149,19 +3149,19 @@ export interface components {
              * @enum {string}
              */
             kind: "salute" | "pose" | "gesture" | "none";
-            /** @description Of kind pose, the one that begins a take; null: the one that does already */
+            /** @description Of kind pose, the one that begins a take; null: the one that does already. */
             start?: components["schemas"]["HeldPose"] | null;
-            /** @description The pose that ends a take; null: the one that begins it */
+            /** @description The pose that ends a take; null: the one that begins it. */
             stop?: components["schemas"]["HeldPose"] | null;
             /**
              * Start Label
-             * @description Of kind gesture, which one begins
+             * @description Of kind gesture, which one begins.
              * @default
              */
             start_label: string;
             /**
              * Stop Label
-             * @description Which one ends; empty: the same
+             * @description Which one ends; empty: the same.
              * @default
              */
             stop_label: string;
@@ -3225,7 +3225,7 @@ export interface components {
         TurnChoice: {
             /**
              * Degrees
-             * @description Clockwise, from how they are shown now
+             * @description Clockwise, from how they are shown now.
              * @enum {integer}
              */
             degrees: 90 | 180 | 270;
@@ -3247,7 +3247,7 @@ export interface components {
             end?: number | null;
             /**
              * Keep Frame
-             * @description Whether the clock goes on where it is, in the same clip
+             * @description Whether the clock goes on where it is, in the same clip.
              * @default false
              */
             keep_frame: boolean;
@@ -3302,16 +3302,19 @@ export interface components {
         WorkspaceOptions: {
             /**
              * Dark
+             * @description Dark colours rather than light ones.
              * @default true
              */
             dark: boolean;
             /**
              * Flat
+             * @description The picture square to the camera rather than the space-time cube.
              * @default true
              */
             flat: boolean;
             /**
              * Animate
+             * @description Move between the two, for people who do not mind moving pictures.
              * @default true
              */
             animate: boolean;
@@ -3325,12 +3328,12 @@ export interface components {
             id: string;
             /**
              * Name
-             * @description Name of the file when it is saved
+             * @description Name of the file when it is saved.
              */
             name: string;
             /**
              * Size
-             * @description Bytes
+             * @description Bytes.
              */
             size: number;
         };

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from app.api.http.schemas.values import (
     Body,
@@ -15,6 +15,7 @@ from app.api.http.schemas.values import (
     Landmarks,
     NewLabel,
     Seconds,
+    View,
 )
 from app.recognition.explanation.demonstration_faults import FaultKind, Remedy
 from app.recognition.gestures.gesture import MAX_TEXT_LENGTH
@@ -31,11 +32,10 @@ class NewDemonstration(Body):
     clip_id: Identifier
     start: Seconds | None = None
     end: Seconds | None = None
-    keep_transit: bool = Field(
-        default=False,
-        description="Keep the hand's way from and to the salute, where the range is a take's own",
-    )
-    diver: Diver = Field(default="", description="Name of the diver who shows it; empty: unknown")
+    keep_transit: bool = False
+    """Keep the hand's way from and to the salute, where the range is a take's own."""
+    diver: Diver = ""
+    """Name of the diver who shows it; empty: unknown."""
 
 
 class GestureDraft(NewDemonstration):
@@ -64,23 +64,22 @@ class GesturesDraft(Body):
 class DemonstrationDraft(NewDemonstration):
     """A further demonstration of a gesture."""
 
-    label: Label = Field(description="The gesture's")
-    salient: Landmarks | None = Field(
-        default=None, description="Null: those of the first demonstration, if one of them moves"
-    )
+    label: Label
+    """The gesture's."""
+    salient: Landmarks | None = None
+    """Null: those of the first demonstration, if one of them moves."""
 
 
 class GestureChange(Body):
     """What to change about a gesture; what is left out stays."""
 
     label: NewLabel | None = None
-    demonstration: NewDemonstration | None = Field(
-        default=None, description="Takes the place of the first demonstration, unless `further`"
-    )
-    further: bool = Field(
-        default=False, description="Add the demonstration to those that the gesture has"
-    )
-    diver: Diver | None = Field(default=None, description="Name of the first demonstration's diver")
+    demonstration: NewDemonstration | None = None
+    """Takes the place of the first demonstration, unless `further`."""
+    further: bool = False
+    """Add the demonstration to those that the gesture has."""
+    diver: Diver | None = None
+    """Name of the first demonstration's diver."""
     direction: SwitchPosition | None = None
     tempo: SwitchPosition | None = None
     mirror: SwitchPosition | None = None
@@ -90,52 +89,55 @@ class GestureChange(Body):
     command: Command = None
 
 
-class DemonstrationFaultView(BaseModel):
+class DemonstrationFaultView(View):
     """One fault of a demonstration, with what mends it."""
 
     kind: FaultKind
-    sentence: str = Field(description="The fault and the remedy, at most fifteen words")
-    words: str = Field(description="The fault as a clause, with the numbers seen")
+    sentence: str
+    """The fault and the remedy, at most fifteen words."""
+    words: str
+    """The fault as a clause, with the numbers seen."""
     remedy: Remedy
-    start: float | None = Field(description="Seconds in the clip of a better range; null: none")
+    start: float | None
+    """Seconds in the clip of a better range; null: none."""
     end: float | None
 
 
-class SourceView(BaseModel):
+class SourceView(View):
     """Where a demonstration comes from."""
 
     clip_id: str
-    start: float = Field(description="Seconds in the clip")
+    start: float
+    """Seconds in the clip."""
     end: float
     keep_transit: bool
-    salutes: int = Field(
-        default=0, description="Vulcan salutes in the demonstration, which should have none"
-    )
-    fault: str | None = Field(
-        default=None,
-        description="The gravest of `faults` as a clause with the numbers seen; null: none",
-    )
-    faults: list[DemonstrationFaultView] = Field(
-        description="Why it is a bad demonstration, the gravest fault first"
-    )
+    salutes: int = 0
+    """Vulcan salutes in the demonstration, which should have none."""
+    fault: str | None = None
+    """The gravest of `faults` as a clause with the numbers seen; null: none."""
+    faults: list[DemonstrationFaultView]
+    """Why it is a bad demonstration, the gravest fault first."""
 
 
-class DemonstrationView(BaseModel):
+class DemonstrationView(View):
     """A demonstration of a gesture."""
 
-    index: int = Field(description="Its place among the gesture's demonstrations, from 0")
-    diver: str = Field(description="Name of the diver who shows it; empty: unknown")
+    index: int
+    """Its place among the gesture's demonstrations, from 0."""
+    diver: str
+    """Name of the diver who shows it; empty: unknown."""
     salient: list[str]
     held_shapes: int = Field(description=HELD_SHAPES)
-    seconds: float | None = Field(description="How long it lasts; null: only its image is known")
+    seconds: float | None
+    """How long it lasts; null: only its image is known."""
     strokes: str = Field(description=STROKES)
-    thumbnail: str = Field(description="Path of its trajectory image, a PNG")
-    source: SourceView | None = Field(
-        default=None, description="Its clip; null: not known, or deleted"
-    )
+    thumbnail: str
+    """Path of its trajectory image, a PNG."""
+    source: SourceView | None = None
+    """Its clip; null: not known, or deleted."""
 
 
-class GestureView(BaseModel):
+class GestureView(View):
     """A gesture of a language."""
 
     label: str
@@ -147,11 +149,11 @@ class GestureView(BaseModel):
     tempo: SwitchPosition
     mirror: SwitchPosition
     hand_shape: SwitchPosition
-    thumbnail: str = Field(description="Path of its trajectory image, a PNG")
-    has_trajectory: bool = Field(description="False when imported from a file that has none")
-    source: SourceView | None = Field(
-        default=None, description="The clip of its demonstration; null: not known, or deleted"
-    )
-    demonstrations: list[DemonstrationView] = Field(
-        description="All of them; what is said of the gesture itself is the first one's"
-    )
+    thumbnail: str
+    """Path of its trajectory image, a PNG."""
+    has_trajectory: bool
+    """False when imported from a file that has none."""
+    source: SourceView | None = None
+    """The clip of its demonstration; null: not known, or deleted."""
+    demonstrations: list[DemonstrationView]
+    """All of them; what is said of the gesture itself is the first one's."""

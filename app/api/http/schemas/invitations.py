@@ -5,9 +5,9 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
-from app.api.http.schemas.values import Body
+from app.api.http.schemas.values import Body, View
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.triggers.trigger import TriggerKind
 from app.store import InvitedTake
@@ -28,10 +28,10 @@ TakeStatus = Literal["waiting", "asked", "added", "removed", "returned"]
 class InvitationDraft(Body):
     """Whom to invite, for how long."""
 
-    people: Annotated[
-        int, Field(ge=1, lt=MAX_DEMONSTRATIONS, description="How many; they share the link")
-    ] = 2
-    days: Annotated[int, Field(ge=1, le=LONGEST_DAYS, description="Until it is over")] = 7
+    people: Annotated[int, Field(ge=1, lt=MAX_DEMONSTRATIONS)] = 2
+    """How many; they share the link."""
+    days: Annotated[int, Field(ge=1, le=LONGEST_DAYS)] = 7
+    """Until it is over."""
     takes: Annotated[int, Field(ge=1, le=2000)] | None = Field(
         default=None,
         description=f"Most takes, also returned ones; null: {TAKES_OF_A_GESTURE} of each gesture "
@@ -42,19 +42,19 @@ class InvitationDraft(Body):
     )
 
 
-class InvitedTakeView(BaseModel):
+class InvitedTakeView(View):
     """A take that somebody sent by an invitation."""
 
     id: str
-    label: str = Field(description="The gesture that it shows")
-    diver: str = Field(description="Who shows it")
-    status: TakeStatus = Field(
-        description="`waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: "
-        "of the person who shows"
-    )
-    reason: str | None = Field(
-        description="Why it was returned, and what to do; or why it is doubted; else null"
-    )
+    label: str
+    """The gesture that it shows."""
+    diver: str
+    """Who shows it."""
+    status: TakeStatus
+    """`waiting`: it is looked at, or with a `reason` waits for the owner; `asked`: of the person
+    who shows."""
+    reason: str | None
+    """Why it was returned, and what to do; or why it is doubted; else null."""
 
     @classmethod
     def of(cls, take: InvitedTake) -> Self:
@@ -65,7 +65,8 @@ class InvitedTakeView(BaseModel):
 class InvitedAnswer(Body):
     """What the person who shows says about a take that is asked about."""
 
-    confirmed: bool = Field(description="It is the gesture; false: another take will be shown")
+    confirmed: bool
+    """It is the gesture; false: another take will be shown."""
 
 
 class ReceivedTakeView(InvitedTakeView):
@@ -80,55 +81,72 @@ class ReceivedTakeChange(Body):
     status: Literal["added", "removed"]
 
 
-class ReceivedTakeOutlook(BaseModel):
+class ReceivedTakeOutlook(View):
     """A take that is held, and what the language would read with it."""
 
-    start: float = Field(description="Seconds in its clip")
+    start: float
+    """Seconds in its clip."""
     end: float
-    image: str = Field(description="Its drawing with start dot and arrow: a data URI of a PNG")
-    known: int = Field(description="Known takes of the test set and of practice")
-    repaired: int = Field(description="Of these, those that are read right only with it")
-    broken: int = Field(description="Those that are read right only without it")
+    image: str
+    """Its drawing with start dot and arrow: a data URI of a PNG."""
+    known: int
+    """Known takes of the test set and of practice."""
+    repaired: int
+    """Of these, those that are read right only with it."""
+    broken: int
+    """Those that are read right only without it."""
 
 
-class InvitationView(BaseModel):
+class InvitationView(View):
     """An invitation and what came in by it; its link is told only once, when it is made."""
 
     id: str
     created: datetime
     expires: datetime
-    closed: Literal["withdrawn", "expired"] | None = Field(description="Null while it is valid")
+    closed: Literal["withdrawn", "expired"] | None
+    """Null while it is valid."""
     most_takes: int
     most_bytes: int
-    takes: int = Field(description="Takes sent so far, also returned ones")
-    bytes: int = Field(description="Bytes of these takes together")
-    shown: list[ReceivedTakeView] = Field(description="These takes, the oldest first")
+    takes: int
+    """Takes sent so far, also returned ones."""
+    bytes: int
+    """Bytes of these takes together."""
+    shown: list[ReceivedTakeView]
+    """These takes, the oldest first."""
 
 
 class NewInvitationView(InvitationView):
     """An invitation that was just made, with the link that is stored nowhere."""
 
     link: str
-    qr: str = Field(description="The link as a QR code: an SVG document")
+    qr: str
+    """The link as a QR code: an SVG document."""
 
 
-class InvitedGestureView(BaseModel):
+class InvitedGestureView(View):
     """A gesture to show."""
 
     label: str
     description: str
-    image: str = Field(description="Its drawing with start dot and arrow: a data URI of a PNG")
-    seconds: float | None = Field(description="How long it lasts; null: not known")
-    held_shapes: int = Field(description="Hand shapes that are held: 0 in a movement")
+    image: str
+    """Its drawing with start dot and arrow: a data URI of a PNG."""
+    seconds: float | None
+    """How long it lasts; null: not known."""
+    held_shapes: int
+    """Hand shapes that are held: 0 in a movement."""
 
 
-class InvitedView(BaseModel):
+class InvitedView(View):
     """What somebody sees who was invited: the gestures of one language, and nothing else."""
 
-    id: str = Field(description="The invitation's")
-    language: str = Field(description="Name of the language")
-    trigger: TriggerKind = Field(description="What begins and ends a take")
+    id: str
+    """The invitation's."""
+    language: str
+    """Name of the language."""
+    trigger: TriggerKind
+    """What begins and ends a take."""
     expires: datetime
     takes_left: int
-    most_bytes: int = Field(description="Largest clip of one take")
+    most_bytes: int
+    """Largest clip of one take."""
     gestures: list[InvitedGestureView]

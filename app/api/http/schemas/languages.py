@@ -5,10 +5,10 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from app.api.http.schemas.gestures import GestureView
-from app.api.http.schemas.values import Author, Body, NewName
+from app.api.http.schemas.values import Author, Body, NewName, View
 from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.file_schema import TuningEntry
@@ -28,18 +28,14 @@ class LanguageChange(Body):
 
     name: NewName | None = None
     author: Author | None = None
-    grammar: GrammarEntry | None = Field(default=None, description="The phrases; null: none")
-    profile: ProfileName | None = Field(default=None, description="The voters that recognise it")
-    tuning: TuningEntry | None = Field(
-        default=None, description="What differs from the profile; null: nothing"
-    )
-    most_refused: float | None = Field(
-        default=None,
-        gt=0,
-        le=MOST_REFUSED_AT_ALL,
-        description="Share of right takes that may be refused, where several people have shown "
-        "the gestures",
-    )
+    grammar: GrammarEntry | None = None
+    """The phrases; null: none."""
+    profile: ProfileName | None = None
+    """The voters that recognise it."""
+    tuning: TuningEntry | None = None
+    """What differs from the profile; null: nothing."""
+    most_refused: float | None = Field(default=None, gt=0, le=MOST_REFUSED_AT_ALL)
+    """Share of right takes that may be refused, where several people have shown the gestures."""
 
 
 class LanguageRevert(Body):
@@ -48,16 +44,18 @@ class LanguageRevert(Body):
     revision: Annotated[int, Field(ge=0, le=2**31 - 1)]
 
 
-class LanguageSummary(BaseModel):
+class LanguageSummary(View):
     """A language in a list."""
 
     id: str
     name: str
     author: str
     revision: int
-    change: str = Field(description="What the newest revision did")
+    change: str
+    """What the newest revision did."""
     labels: list[str]
-    sample: bool = Field(description="Whether it came with the program")
+    sample: bool
+    """Whether it came with the program."""
     created: datetime
     updated: datetime
 
@@ -66,21 +64,28 @@ class LanguageView(LanguageSummary):
     """A language with its gestures."""
 
     gestures: list[GestureView]
-    sha256: str = Field(description="Checksum of the language file, which the robot reports")
-    code: str = Field(description="Short code of `sha256`, to compare with the robot's")
-    grammar: GrammarEntry | None = Field(description="Null: every gesture is a message of its own")
-    profile: ProfileName = Field(description="The voters that recognise it")
-    tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
-    tuning_words: str = Field(description="The same for people: recognised ...")
-    most_refused: float = Field(
-        description="Share of right takes that may be refused; the limit follows from it where "
-        "several people have shown the gestures"
-    )
-    trigger: TriggerEntry | None = Field(description="What begins and ends a take; null: a salute")
-    trigger_words: str = Field(description="The same for people: takes lie ...")
+    sha256: str
+    """Checksum of the language file, which the robot reports."""
+    code: str
+    """Short code of `sha256`, to compare with the robot's."""
+    grammar: GrammarEntry | None
+    """Null: every gesture is a message of its own."""
+    profile: ProfileName
+    """The voters that recognise it."""
+    tuning: TuningEntry | None
+    """What differs from the profile; null: nothing."""
+    tuning_words: str
+    """The same for people: recognised ..."""
+    most_refused: float
+    """Share of right takes that may be refused; the limit follows from it where several people have
+    shown the gestures."""
+    trigger: TriggerEntry | None
+    """What begins and ends a take; null: a salute."""
+    trigger_words: str
+    """The same for people: takes lie ..."""
 
 
-class RevisionView(BaseModel):
+class RevisionView(View):
     """One revision in a language's history."""
 
     revision: int
@@ -91,21 +96,25 @@ class RevisionView(BaseModel):
     created: datetime
 
 
-class GestureComparison(BaseModel):
+class GestureComparison(View):
     """A gesture in two revisions of its language."""
 
     kind: Literal["added", "removed", "changed", "same"]
-    before: GestureView | None = Field(description="Null: the older revision does not have it")
-    after: GestureView | None = Field(description="Null: the newer revision does not have it")
-    words: list[str] = Field(description="What changed about it, a sentence each")
+    before: GestureView | None
+    """Null: the older revision does not have it."""
+    after: GestureView | None
+    """Null: the newer revision does not have it."""
+    words: list[str]
+    """What changed about it, a sentence each."""
 
 
-class RevisionComparison(BaseModel):
+class RevisionComparison(View):
     """Two revisions of a language, side by side."""
 
-    older: RevisionView | None = Field(description="Null: compared with nothing")
+    older: RevisionView | None
+    """Null: compared with nothing."""
     newer: RevisionView
-    words: list[str] = Field(description="What changed about the language itself")
-    gestures: list[GestureComparison] = Field(
-        description="In the newer revision's order, then those it does not have any more"
-    )
+    words: list[str]
+    """What changed about the language itself."""
+    gestures: list[GestureComparison]
+    """In the newer revision's order, then those it does not have any more."""

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
-from app.api.http.schemas.values import Body
+from app.api.http.schemas.values import Body, View
 
 
-class SampleView(BaseModel):
+class SampleView(View):
     """A clip that comes with the program."""
 
     name: str
-    size: int = Field(description="Bytes")
+    size: int
+    """Bytes."""
 
 
-class SampleLanguageView(BaseModel):
+class SampleLanguageView(View):
     """A language that comes with the program."""
 
-    name: str = Field(description="By which it is asked for")
-    title: str = Field(description="The language's own name")
+    name: str
+    """By which it is asked for."""
+    title: str
+    """The language's own name."""
     labels: list[str]
 
 

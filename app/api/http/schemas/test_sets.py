@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, Field
+from pydantic import Field
 
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Identifier, Label, Seconds, View
 from app.recognition.decision.result import Pair
 from app.store.test_sets import MOST_TAKES
 
@@ -16,9 +16,8 @@ class LabelledTakeDraft(Body):
 
     clip_id: Identifier
     expected: Label
-    start: Seconds | None = Field(
-        default=None, description="Null, with `end`: every take of the clip, or all of it"
-    )
+    start: Seconds | None = None
+    """Null, with `end`: every take of the clip, or all of it."""
     end: Seconds | None = None
 
 
@@ -34,45 +33,52 @@ class LabelledTakeChange(Body):
     expected: Label
 
 
-class LabelledResultView(BaseModel):
+class LabelledResultView(View):
     """How a revision recognises a labelled take."""
 
     revision: int
-    recognition_id: str | None = Field(description="Null: it could not be recognised, see `fault`")
-    label: str | None = Field(description="Null: a pair, or rejected")
+    recognition_id: str | None
+    """Null: it could not be recognised, see `fault`."""
+    label: str | None
+    """Null: a pair, or rejected."""
     pair: Pair
     nearest: str | None
     confidence: float
     right: bool
-    fault: str | None = Field(description="Why it could not be recognised, in words")
+    fault: str | None
+    """Why it could not be recognised, in words."""
 
 
-class LabelledTakeView(BaseModel):
+class LabelledTakeView(View):
     """A take of a test set."""
 
     id: str
     clip_id: str
-    clip: str = Field(description="Name of the clip")
+    clip: str
+    """Name of the clip."""
     start: float
     end: float
     expected: str
-    added_by: str = Field(description="Name of who added it; empty: not known")
-    demonstration: bool = Field(
-        description="It is a demonstration of the language, which does not count"
-    )
-    result: LabelledResultView | None = Field(description="The newest; null: none yet")
-    before: LabelledResultView | None = Field(description="By an older revision than `result`")
+    added_by: str
+    """Name of who added it; empty: not known."""
+    demonstration: bool
+    """It is a demonstration of the language, which does not count."""
+    result: LabelledResultView | None
+    """The newest; null: none yet."""
+    before: LabelledResultView | None
+    """By an older revision than `result`."""
 
 
-class RateView(BaseModel):
+class RateView(View):
     """Rate of right answers, with Wilson's 95 % interval; null without any answer."""
 
     right: int
-    asked: int = Field(description="Takes, those of pairs included")
-    pairs: int = Field(
-        description="Takes that lie between two gestures: neither right nor a wrong label"
-    )
-    pairs_right: int = Field(description="Of these, those with the right gesture in the pair")
+    asked: int
+    """Takes, those of pairs included."""
+    pairs: int
+    """Takes that lie between two gestures: neither right nor a wrong label."""
+    pairs_right: int
+    """Of these, those with the right gesture in the pair."""
     rate: float | None
     low: float | None
     high: float | None
@@ -84,23 +90,25 @@ class GestureRateView(RateView):
     label: str
 
 
-class TestSetView(BaseModel):
+class TestSetView(View):
     """The test set of a language, with the newest result of each take."""
 
     __test__ = False
 
     language_id: str
-    revision: int = Field(description="The language's newest")
+    revision: int
+    """The language's newest."""
     takes: list[LabelledTakeView]
     overall: RateView
-    gestures: list[GestureRateView] = Field(description="The lowest rate first")
-    better: list[str] = Field(description="Ids of takes that are answered better than before")
-    worse: list[str] = Field(
-        description="Ids of takes that are answered worse than before: right is better than a pair "
-        "with the right gesture, which is better than anything else"
-    )
-    upgraded: bool = Field(
-        description="Whether the results before are of another version of the program, which may "
-        "answer otherwise too"
-    )
-    waiting: int = Field(description="Takes without a result of the newest revision")
+    gestures: list[GestureRateView]
+    """The lowest rate first."""
+    better: list[str]
+    """Ids of takes that are answered better than before."""
+    worse: list[str]
+    """Ids of takes that are answered worse than before: right is better than a pair with the right
+    gesture, which is better than anything else."""
+    upgraded: bool
+    """Whether the results before are of another version of the program, which may answer otherwise
+    too."""
+    waiting: int
+    """Takes without a result of the newest revision."""

@@ -10,6 +10,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 from app.recognition.gestures.demonstration import MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.language.language import MAX_AUTHOR_LENGTH, MAX_NAME_LENGTH
+from app.recognition.text.described import DESCRIBED
 from app.recognition.text.joiners import is_printable
 from app.recognition.text.look_alikes import compose
 
@@ -63,4 +64,10 @@ SoFar = Annotated[
 class Body(BaseModel):
     """Base of request bodies: unknown members are mistakes, and are said to be."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(**DESCRIBED, extra="forbid")
+
+
+class View(BaseModel):
+    """Base of answers: they can be validated from objects with the same attributes."""
+
+    model_config = ConfigDict(**DESCRIBED, from_attributes=True)

@@ -6,9 +6,10 @@ from datetime import UTC, datetime
 from typing import Annotated
 
 from fastapi import APIRouter, Query
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, Field
 
 from app.api.http.problems import problem_responses
+from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio
 from app.store.audit import MOST_LISTED
 
@@ -20,22 +21,24 @@ Moment = Annotated[
 router = APIRouter(prefix="/audit", tags=["administration"])
 
 
-class AuditView(BaseModel):
+class AuditView(View):
     """One change."""
-
-    model_config = ConfigDict(from_attributes=True)
 
     id: int
     time: datetime
-    name: str = Field(
-        description="Of the token; empty where the server needs none; `command line` of a command"
-    )
+    name: str
+    """Of the token; empty where the server needs none; `command line` of a command."""
     role: str
-    address: str = Field(description="Of the client, or as a trusted proxy says")
-    method: str = Field(description="Of the request; or the command, such as `tokens add`")
-    path: str = Field(description="What was changed, or what the command was given")
-    status: int = Field(description="What was answered; 0 of a command")
-    request_id: str = Field(description="The same as in the log")
+    address: str
+    """Of the client, or as a trusted proxy says."""
+    method: str
+    """Of the request; or the command, such as `tokens add`."""
+    path: str
+    """What was changed, or what the command was given."""
+    status: int
+    """What was answered; 0 of a command."""
+    request_id: str
+    """The same as in the log."""
 
 
 @router.get("", responses=problem_responses())

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, Field
 
 from app.api.http.page_files import prefix_of
 from app.api.http.problems import problem_responses
+from app.api.http.schemas.values import View
 from app.api.middleware.access import COOKIE, cookie_of
 from app.api.services.identities import identity_of
 from app.api.services.running_studio import CurrentStudio
@@ -15,22 +15,28 @@ from app.store import Role
 router = APIRouter(prefix="/session", tags=["administration"])
 
 
-class QuotaView(BaseModel):
+class QuotaView(View):
     """What somebody keeps, uploads under way included, and may keep."""
 
     clips: int
-    most_clips: int = Field(description="0 is any number")
+    most_clips: int
+    """0 is any number."""
     bytes: int
-    most_bytes: int = Field(description="0 is any number")
+    most_bytes: int
+    """0 is any number."""
 
 
-class SessionView(BaseModel):
+class SessionView(View):
     """Who sends this request."""
 
-    name: str = Field(description="Of the token; empty where the server needs none")
-    role: Role = Field(description="read, edit or admin; each includes the ones before it")
-    signed_in: bool = Field(description="Whether a cookie keeps the token, so that one can log out")
-    quota: QuotaView | None = Field(description="null where nothing limits what the name keeps")
+    name: str
+    """Of the token; empty where the server needs none."""
+    role: Role
+    """read, edit or admin; each includes the ones before it."""
+    signed_in: bool
+    """Whether a cookie keeps the token, so that one can log out."""
+    quota: QuotaView | None
+    """null where nothing limits what the name keeps."""
 
 
 @router.get("", responses=problem_responses())

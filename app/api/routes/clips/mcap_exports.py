@@ -10,12 +10,11 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import FileResponse
-from pydantic import BaseModel, Field
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.values import Body, Identifier
+from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import events_about, task_job
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
@@ -42,15 +41,18 @@ router = APIRouter(prefix="/clips", tags=["clips"])
 class SessionExportRequest(Body):
     """An export to write."""
 
-    id: Identifier = Field(description="Chosen by the client: names the export and its events")
+    id: Identifier
+    """Chosen by the client: names the export and its events."""
 
 
-class WrittenSessionView(BaseModel):
+class WrittenSessionView(View):
     """An export that was written."""
 
     id: str
-    name: str = Field(description="Name of the file when it is saved")
-    size: int = Field(description="Bytes")
+    name: str
+    """Name of the file when it is saved."""
+    size: int
+    """Bytes."""
 
 
 @router.post("/{clip_id}/session.mcap", status_code=201, responses=problem_responses(404, 409))

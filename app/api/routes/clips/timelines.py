@@ -6,11 +6,10 @@ import json
 
 import numpy as np
 from fastapi import APIRouter, Response
-from pydantic import BaseModel, Field
 
 from app.api.http.images import picture_responses, send_picture
 from app.api.http.problems import problem_responses
-from app.api.http.schemas.values import SoFar, TriggerLanguage
+from app.api.http.schemas.values import SoFar, TriggerLanguage, View
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import trigger_of
 from app.api.services.running_studio import CurrentStudio, computed_briefly
@@ -32,22 +31,21 @@ CURVE_DIGITS = 3
 """Decimals of a curve's value: more than a curve forty pixels high can show."""
 
 
-class TimelineView(BaseModel):
+class TimelineView(View):
     """What lies along a clip's time, one value a frame."""
 
-    time: list[float] = Field(description="Seconds, by the container")
-    salute: list[float] = Field(
-        description="Score of the salute, or of the language's other trigger, 0 to 1"
-    )
-    speed: dict[str, list[float | None]] = Field(
-        description="Per wrist, torso lengths a second; null where it was not seen"
-    )
-    unit: str = Field(description="Of the speed's lengths: torso_length, or extent without a torso")
-    thumbnails: int = Field(description="How many the filmstrip has")
-    turn: Turn = Field(
-        description="Degrees, clockwise, by which the picture must be turned for the diver to be "
-        "upright"
-    )
+    time: list[float]
+    """Seconds, by the container."""
+    salute: list[float]
+    """Score of the salute, or of the language's other trigger, 0 to 1."""
+    speed: dict[str, list[float | None]]
+    """Per wrist, torso lengths a second; null where it was not seen."""
+    unit: str
+    """Of the speed's lengths: torso_length, or extent without a torso."""
+    thumbnails: int
+    """How many the filmstrip has."""
+    turn: Turn
+    """Degrees, clockwise, by which the picture must be turned for the diver to be upright."""
 
 
 @router.get(

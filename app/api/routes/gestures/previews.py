@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
@@ -18,7 +18,7 @@ from app.api.http.schemas.gestures import (
     GestureChange,
     SwitchPosition,
 )
-from app.api.http.schemas.values import Body, Label
+from app.api.http.schemas.values import Body, Label, View
 from app.api.services.demonstration_sources import view_faults
 from app.api.services.gesture_edits import (
     EditedGesture,
@@ -59,73 +59,87 @@ router = APIRouter(prefix="/languages/{language_id}", tags=["gestures"])
 class PreviewRequest(Body):
     """A gesture as it would be saved."""
 
-    label: Label | None = Field(default=None, description="Which gesture is changed; null: a new")
-    change: GestureChange = Field(description="A new gesture needs its demonstration")
+    label: Label | None = None
+    """Which gesture is changed; null: a new."""
+    change: GestureChange
+    """A new gesture needs its demonstration."""
 
 
-class KeypointView(BaseModel):
+class KeypointView(View):
     """How much of a gesture one keypoint shows."""
 
     landmark: str
-    displacement: float = Field(description="Peak to peak, in the preview's unit")
-    seen: float = Field(description="Share of the moments in which it was seen, 0 to 1")
-    usual: bool = Field(description="Whether it may be proposed: the one that stands for its hand")
-    proposed: bool = Field(description="Whether it moves enough to be proposed")
+    displacement: float
+    """Peak to peak, in the preview's unit."""
+    seen: float
+    """Share of the moments in which it was seen, 0 to 1."""
+    usual: bool
+    """Whether it may be proposed: the one that stands for its hand."""
+    proposed: bool
+    """Whether it moves enough to be proposed."""
 
 
-class DescriptorView(BaseModel):
+class DescriptorView(View):
     """How one voter describes the trajectory image."""
 
     voter: str
-    unit: str = Field(description="What a distance of 1 between two descriptors means")
+    unit: str
+    """What a distance of 1 between two descriptors means."""
     values: list[float]
 
 
-class PreviewView(BaseModel):
+class PreviewView(View):
     """What a gesture would be."""
 
-    problem: str | None = Field(description="Why it cannot be saved like this; null: it can")
-    image: str | None = Field(description="The trajectory image, a data URI of a PNG")
-    salient: list[str] = Field(description="The keypoints that are drawn")
+    problem: str | None
+    """Why it cannot be saved like this; null: it can."""
+    image: str | None
+    """The trajectory image, a data URI of a PNG."""
+    salient: list[str]
+    """The keypoints that are drawn."""
     held_shapes: int = Field(description=HELD_SHAPES)
-    keypoints: list[KeypointView] = Field(description="Empty without a demonstration")
-    threshold: Annotated[float, Field(ge=0)] | None = Field(
-        description="Displacement from which a keypoint is proposed"
-    )
-    unit: str = Field(description="Of displacements: torso_length, or extent without a torso")
+    keypoints: list[KeypointView]
+    """Empty without a demonstration."""
+    threshold: Annotated[float, Field(ge=0)] | None
+    """Displacement from which a keypoint is proposed."""
+    unit: str
+    """Of displacements: torso_length, or extent without a torso."""
     descriptors: list[DescriptorView]
-    start: float | None = Field(description="Seconds of the clip; null without one")
+    start: float | None
+    """Seconds of the clip; null without one."""
     end: float | None
-    seconds: float | None = Field(description="How long the demonstration lasts")
+    seconds: float | None
+    """How long the demonstration lasts."""
     strokes: str = Field(description=STROKES)
-    faults: list[DemonstrationFaultView] = Field(
-        description="Why its range of the clip is a bad demonstration, the gravest fault first"
-    )
+    faults: list[DemonstrationFaultView]
+    """Why its range of the clip is a bad demonstration, the gravest fault first."""
 
 
-class SwitchView(BaseModel):
+class SwitchView(View):
     """A switch, and what comes of it in this language."""
 
     position: SwitchPosition
-    counts: bool | None = Field(description="Null: only the drawing is compared")
+    counts: bool | None
+    """Null: only the drawing is compared."""
     words: str
 
 
-class NearGestureView(BaseModel):
+class NearGestureView(View):
     """Another gesture of the language, and how far it is."""
 
     label: str
-    distance: float = Field(description="As in the health report; 1: two typical gestures")
-    same: bool = Field(description="Whether the robot cannot distinguish the two")
+    distance: float
+    """As in the health report; 1: two typical gestures."""
+    same: bool
+    """Whether the robot cannot distinguish the two."""
 
 
-class OutlookView(BaseModel):
+class OutlookView(View):
     """What is to be expected of a gesture in its language."""
 
     switches: dict[str, SwitchView]
-    nearest: list[NearGestureView] | None = Field(
-        description="The nearest first; null: it has no demonstration to compare"
-    )
+    nearest: list[NearGestureView] | None
+    """The nearest first; null: it has no demonstration to compare."""
 
 
 @router.post("/preview", responses=problem_responses(404, 409))

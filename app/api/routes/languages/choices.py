@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, Field, model_validator
+from pydantic import Field, model_validator
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
@@ -21,7 +21,7 @@ from app.api.http.schemas.gestures import (
     NewDemonstration,
 )
 from app.api.http.schemas.languages import LanguageView
-from app.api.http.schemas.values import Body, Identifier, Label
+from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.clip_takes import trigger_of
 from app.api.services.demonstration_sources import keep_source
@@ -64,24 +64,28 @@ PEOPLE = "By whose demonstrations this is known, in a sentence"
 class ChoiceRequest(GesturesDraft):
     """Takes of clips, of which some are to become gestures."""
 
-    keep: Annotated[int, Field(ge=1, le=MOST_GESTURES_AT_ONCE, description="How many of them")]
-    language_id: Identifier | None = Field(
-        default=None, description="Language that has gestures beside them; null: a new one"
-    )
+    keep: Annotated[int, Field(ge=1, le=MOST_GESTURES_AT_ONCE)]
+    """How many of them."""
+    language_id: Identifier | None = None
+    """Language that has gestures beside them; null: a new one."""
 
 
-class LeftOutView(BaseModel):
+class LeftOutView(View):
     """A take that is left out."""
 
-    index: int = Field(description="Its place in the request")
-    other: str = Field(description="The gesture that stays and is most like it")
-    words: str = Field(description="How alike the two are, and how that is known")
+    index: int
+    """Its place in the request."""
+    other: str
+    """The gesture that stays and is most like it."""
+    words: str
+    """How alike the two are, and how that is known."""
 
 
-class ChoiceView(BaseModel):
+class ChoiceView(View):
     """The takes of a request that are told apart best, beside the gestures of the language."""
 
-    keep: list[int] = Field(description="Their places in the request")
+    keep: list[int]
+    """Their places in the request."""
     left_out: list[LeftOutView]
     people: str = Field(description=PEOPLE)
 
@@ -91,36 +95,40 @@ class ReplacementsRequest(Body):
 
     label: Label
     gestures: Annotated[list[GestureDraft], Field(max_length=MOST_GESTURES_AT_ONCE)] = Field(
-        default=[],
-        description="Takes of clips that may take its place; those that cannot are left out",
+        default=[]
     )
+    """Takes of clips that may take its place; those that cannot are left out."""
 
 
-class AlikeView(BaseModel):
+class AlikeView(View):
     """Two gestures that would be nearly alike."""
 
     gestures: tuple[str, str]
     words: str
 
 
-class ReplacementView(BaseModel):
+class ReplacementView(View):
     """Another movement for a gesture, and what it would do to the language."""
 
-    sample: str | None = Field(
-        description="Sample language that has it, or `strokes`; null: a take of a clip"
-    )
-    gesture: str = Field(description="Its label in the sample language or in the request")
-    index: int | None = Field(description="Its place among the request's takes; null: a sample's")
-    sign: str | None = Field(
-        description="What divers mean by it, where that is not the gesture's label; null: nothing"
-    )
-    image: str = Field(description="Trajectory image with its direction, a data URI of a PNG")
-    before: float = Field(description="Estimated share of takes that is not read right now, 0 to 1")
-    after: float = Field(description="The same with this movement")
-    alike: list[AlikeView] = Field(description="Pairs that would be nearly alike, the worst first")
+    sample: str | None
+    """Sample language that has it, or `strokes`; null: a take of a clip."""
+    gesture: str
+    """Its label in the sample language or in the request."""
+    index: int | None
+    """Its place among the request's takes; null: a sample's."""
+    sign: str | None
+    """What divers mean by it, where that is not the gesture's label; null: nothing."""
+    image: str
+    """Trajectory image with its direction, a data URI of a PNG."""
+    before: float
+    """Estimated share of takes that is not read right now, 0 to 1."""
+    after: float
+    """The same with this movement."""
+    alike: list[AlikeView]
+    """Pairs that would be nearly alike, the worst first."""
 
 
-class ReplacementsView(BaseModel):
+class ReplacementsView(View):
     """The movements that would be told apart better than a gesture's own, the best first."""
 
     label: str
@@ -131,9 +139,11 @@ class ReplacementsView(BaseModel):
 class ReplacementDraft(Body):
     """Another movement for a gesture: one of a sample language, or a take of a clip."""
 
-    label: Label = Field(description="Of the gesture; it stays, with command and description")
+    label: Label
+    """Of the gesture; it stays, with command and description."""
     sample: Identifier | None = None
-    gesture: Label | None = Field(default=None, description="Label in the sample language")
+    gesture: Label | None = None
+    """Label in the sample language."""
     demonstration: NewDemonstration | None = None
 
     @model_validator(mode="after")

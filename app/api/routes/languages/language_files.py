@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
@@ -14,7 +13,7 @@ from app.api.http.downloads import attachment
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
-from app.api.http.schemas.values import Name
+from app.api.http.schemas.values import Name, View
 from app.api.ingest.multipart import receive_body
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.language_documents import LONGEST_NAME
@@ -89,15 +88,16 @@ def export_language(
     return Response(_content(studio, state, format), media_type=format.media_type, headers=headers)
 
 
-class ExportedFile(BaseModel):
+class ExportedFile(View):
     """One of the files a language can leave as."""
 
     format: FileFormat
     bytes: int
-    complete: bool = Field(description="Whether importing it again gives the same language")
+    complete: bool
+    """Whether importing it again gives the same language."""
 
 
-class ExportView(BaseModel):
+class ExportView(View):
     """What leaves with a language, and what it takes to use it."""
 
     name: str
@@ -105,11 +105,15 @@ class ExportView(BaseModel):
     schema_format: str
     schema_version: int
     files: list[ExportedFile]
-    salient: list[str] = Field(description="Landmarks without which gestures are not recognised")
-    limbs: list[str] = Field(description="Landmarks that make recognition surer")
-    torso: list[str] = Field(description="Landmarks that distance and drift are taken out by")
+    salient: list[str]
+    """Landmarks without which gestures are not recognised."""
+    limbs: list[str]
+    """Landmarks that make recognition surer."""
+    torso: list[str]
+    """Landmarks that distance and drift are taken out by."""
     models: list[str]
-    without_command: list[str] = Field(description="Gestures without a command for the robot")
+    without_command: list[str]
+    """Gestures without a command for the robot."""
 
 
 @router.get("/{language_id}/export/contents", responses=problem_responses(404))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
+from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
@@ -17,28 +17,31 @@ from app.recognition.language.tuning_entry import tuning_to_entry
 router = APIRouter(prefix="/languages", tags=["languages"])
 
 
-class ProfileView(BaseModel):
+class ProfileView(View):
     """A profile that a language can choose."""
 
     name: ProfileName
-    rejects: bool = Field(description="Whether it rejects movements that are no gesture")
-    repairs_keypoints: bool = Field(description="Whether bad keypoints are repaired first")
+    rejects: bool
+    """Whether it rejects movements that are no gesture."""
+    repairs_keypoints: bool
+    """Whether bad keypoints are repaired first."""
     voters: list[str]
 
 
-class SettingsView(BaseModel):
+class SettingsView(View):
     """How a language is recognised, and what it would be by default."""
 
     profile: ProfileName
     default_profile: ProfileName
     profiles: list[ProfileView]
-    tuning: TuningEntry | None = Field(description="What differs from the profile; null: nothing")
-    simplification: float = Field(description="Default tolerance of drawings, pixels of 224")
+    tuning: TuningEntry | None
+    """What differs from the profile; null: nothing."""
+    simplification: float
+    """Default tolerance of drawings, pixels of 224."""
     most_simplification: float
-    weights: dict[str, float] = Field(
-        description="Each voter's normalised weight in this language, with its weight factor; "
-        "empty without gestures"
-    )
+    weights: dict[str, float]
+    """Each voter's normalised weight in this language, with its weight factor; empty without
+    gestures."""
 
 
 @router.get("/{language_id}/settings", responses=problem_responses(404))

@@ -7,12 +7,11 @@ from typing import Annotated
 
 import numpy as np
 from fastapi import APIRouter, Query, Request
-from pydantic import BaseModel, Field
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
-from app.api.http.schemas.values import Label
+from app.api.http.schemas.values import Label, View
 from app.api.services.running_studio import CurrentStudio
 from app.recognition import Recognizer
 from app.recognition.explanation.alignment import Alignment
@@ -26,28 +25,26 @@ Place = tuple[float, float] | None
 """Torso lengths from the torso's centre, x right and y down; null where not seen."""
 
 
-class PathsView(BaseModel):
+class PathsView(View):
     """A gesture's demonstration, as it is drawn."""
 
     label: str
     salient: list[str]
-    time: list[float] = Field(description="Seconds of each moment")
-    paths: dict[str, list[Place]] = Field(
-        description="Per landmark its place at each moment, torso lengths from the torso's centre"
-    )
+    time: list[float]
+    """Seconds of each moment."""
+    paths: dict[str, list[Place]]
+    """Per landmark its place at each moment, torso lengths from the torso's centre."""
 
 
-class ContrastView(BaseModel):
+class ContrastView(View):
     """Two gestures of a language, and in what they differ."""
 
     gestures: tuple[PathsView, PathsView]
-    differs: tuple[str | None, str | None] = Field(
-        description="In what the first differs from the second, and the second from the first; "
-        "null where they cannot be compared"
-    )
-    alignment: Alignment | None = Field(
-        description="Which moment of the first corresponds to which of the second"
-    )
+    differs: tuple[str | None, str | None]
+    """In what the first differs from the second, and the second from the first; null where they
+    cannot be compared."""
+    alignment: Alignment | None
+    """Which moment of the first corresponds to which of the second."""
 
 
 router = APIRouter(prefix="/languages", tags=["languages"])

@@ -6,10 +6,11 @@ from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
+from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
 from app.recognition import Language
 from app.recognition.decision.result import Pair
@@ -36,16 +37,17 @@ Shown = Annotated[
 router = APIRouter(prefix="/languages", tags=["languages"])
 
 
-class AmbiguityView(BaseModel):
+class AmbiguityView(View):
     """Something that the robot could understand in two ways."""
 
     kind: AmbiguityKind
     phrases: list[str]
-    gestures: list[str] = Field(description="The message that shows it")
+    gestures: list[str]
+    """The message that shows it."""
     message: str
 
 
-class MeaningView(BaseModel):
+class MeaningView(View):
     """One phrase of a message."""
 
     phrase: str
@@ -54,31 +56,38 @@ class MeaningView(BaseModel):
     spoken: str
 
 
-class PhraseEventView(BaseModel):
+class PhraseEventView(View):
     """What came of one gesture."""
 
     kind: PhraseEventKind
-    gestures: list[str] = Field(description="Of the message so far")
-    label: str | None = Field(
-        description="Null for a pair, when it was not recognised, and for a pause"
-    )
+    gestures: list[str]
+    """Of the message so far."""
+    label: str | None
+    """Null for a pair, when it was not recognised, and for a pause."""
     pair: Pair
-    expected: list[str] = Field(description="What may come next")
-    mission: list[MeaningView] | None = Field(description="What to do; only when complete")
-    text: str = Field(description="In words, for the diver")
+    expected: list[str]
+    """What may come next."""
+    mission: list[MeaningView] | None
+    """What to do; only when complete."""
+    text: str
+    """In words, for the diver."""
     start: float
     end: float
 
 
-class PhrasesView(BaseModel):
+class PhrasesView(View):
     """A language's phrases, checked and tried."""
 
     revision: int
     ambiguities: list[AmbiguityView]
-    examples: dict[str, list[str]] = Field(description="Per phrase a message with all its parts")
-    events: list[PhraseEventView] = Field(description="What came of the gestures shown")
-    expected: list[str] = Field(description="What may come after them")
-    may_end: bool = Field(description="Whether a pause now would end the message, not drop it")
+    examples: dict[str, list[str]]
+    """Per phrase a message with all its parts."""
+    events: list[PhraseEventView]
+    """What came of the gestures shown."""
+    expected: list[str]
+    """What may come after them."""
+    may_end: bool
+    """Whether a pause now would end the message, not drop it."""
 
 
 @router.get("/{language_id}/phrases", responses=problem_responses(404))

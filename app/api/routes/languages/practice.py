@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter
-from pydantic import BaseModel, Field
+from pydantic import Field
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds
+from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.explanation_notes import write_notes
@@ -38,46 +38,57 @@ class PracticeDraft(Body):
     end: Seconds | None = None
 
 
-class PracticeTakeView(BaseModel):
+class PracticeTakeView(View):
     """One take of practice."""
 
     id: str
     expected: str
-    label: str | None = Field(description="Null: a pair, or rejected")
+    label: str | None
+    """Null: a pair, or rejected."""
     pair: Pair
     right: bool
     clip_id: str
     recognition_id: str
     revision: int
-    added_by: str = Field(description="Name of who added it; empty: not known")
+    added_by: str
+    """Name of who added it; empty: not known."""
 
 
-class PracticeRecordView(BaseModel):
+class PracticeRecordView(View):
     """A diver's record with the newest revision: evidence of acceptance."""
 
     diver: str
-    takes: int = Field(description="Takes recognised by the newest revision, without pairs")
+    takes: int
+    """Takes recognised by the newest revision, without pairs."""
     errors: int
-    pairs: int = Field(
-        description="Takes of the newest revision that were asked back, with the gesture meant in "
-        "the pair: neither right nor an error"
-    )
-    bound: float = Field(description="Upper bound of the error rate (Clopper and Pearson)")
-    limit: float = Field(description="Error rate to be below")
-    confidence: float = Field(description="Confidence of the bound")
-    reached: bool = Field(description="Whether the bound is below the limit")
-    more: int = Field(description="Further takes without an error until it is; 0 when reached")
-    older: int = Field(description="Takes with older revisions, which do not count")
-    shown: list[PracticeTakeView] = Field(description="All takes, the newest first")
+    pairs: int
+    """Takes of the newest revision that were asked back, with the gesture meant in the pair:
+    neither right nor an error."""
+    bound: float
+    """Upper bound of the error rate (Clopper and Pearson)."""
+    limit: float
+    """Error rate to be below."""
+    confidence: float
+    """Confidence of the bound."""
+    reached: bool
+    """Whether the bound is below the limit."""
+    more: int
+    """Further takes without an error until it is; 0 when reached."""
+    older: int
+    """Takes with older revisions, which do not count."""
+    shown: list[PracticeTakeView]
+    """All takes, the newest first."""
 
 
-class PracticeAnswerView(BaseModel):
+class PracticeAnswerView(View):
     """What is said about a take at once."""
 
     take: PracticeTakeView
     sentence: str
-    details: list[str] = Field(description="The numbers behind the sentence")
-    causes: list[Cause] = Field(description="Why, the cause first; empty: none is known")
+    details: list[str]
+    """The numbers behind the sentence."""
+    causes: list[Cause]
+    """Why, the cause first; empty: none is known."""
     notes: list[str]
     record: PracticeRecordView
 

@@ -27,27 +27,24 @@ class HeldPose(Body):
     """Where a pose of the arms is held."""
 
     clip_id: Identifier
-    start: Seconds | None = Field(default=None, description="Null: of the clip")
-    end: Seconds | None = Field(default=None, description="Null: of the clip")
+    start: Seconds | None = None
+    """Null: of the clip."""
+    end: Seconds | None = None
+    """Null: of the clip."""
 
 
 class TriggerDraft(Body):
     """What shall begin and end the takes of a language."""
 
     kind: TriggerKind
-    start: HeldPose | None = Field(
-        default=None,
-        description="Of kind pose, the one that begins a take; null: the one that does already",
-    )
-    stop: HeldPose | None = Field(
-        default=None, description="The pose that ends a take; null: the one that begins it"
-    )
-    start_label: Annotated[
-        str, Field(max_length=MAX_LABEL_LENGTH, description="Of kind gesture, which one begins")
-    ] = ""
-    stop_label: Annotated[
-        str, Field(max_length=MAX_LABEL_LENGTH, description="Which one ends; empty: the same")
-    ] = ""
+    start: HeldPose | None = None
+    """Of kind pose, the one that begins a take; null: the one that does already."""
+    stop: HeldPose | None = None
+    """The pose that ends a take; null: the one that begins it."""
+    start_label: Annotated[str, Field(max_length=MAX_LABEL_LENGTH)] = ""
+    """Of kind gesture, which one begins."""
+    stop_label: Annotated[str, Field(max_length=MAX_LABEL_LENGTH)] = ""
+    """Which one ends; empty: the same."""
 
 
 router = APIRouter(prefix="/languages", tags=["languages"])

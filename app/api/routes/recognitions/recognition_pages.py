@@ -5,9 +5,9 @@ from __future__ import annotations
 from urllib.parse import quote
 
 from fastapi import APIRouter, Response
-from pydantic import BaseModel, Field
 
 from app.api.http.problems import problem_responses
+from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, computed
 from app.api.services.stored_recognitions import load_context, load_recognition
 from app.api.viser_workspaces.view_requests import ViewRequest, view_of
@@ -19,11 +19,12 @@ from app.ui.workspace import Range, compared_images
 router = APIRouter(prefix="/recognitions", tags=["recognitions"])
 
 
-class ComparedImage(BaseModel):
+class ComparedImage(View):
     """A trajectory image that a recognition compared."""
 
     caption: str
-    image: str = Field(description="A data URI of a PNG")
+    image: str
+    """A data URI of a PNG."""
 
 
 @router.get("/{recognition_id}/images", responses=problem_responses(404, 409))
