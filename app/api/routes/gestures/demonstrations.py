@@ -11,11 +11,10 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.revisions import Revision
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
-from app.api.ingest.quotas import SenderQuota
-from app.api.services.clip_takes import trigger_of
+from app.api.routes.language_edits import CurrentEdit
 from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.gesture_edits import (
     add_demonstration_to,
@@ -24,8 +23,7 @@ from app.api.services.gesture_edits import (
     remove_demonstration_from,
     require_demonstration,
 )
-from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, save_revision, view_demonstrations
+from app.api.services.language_responses import view_demonstrations
 from app.api.services.running_studio import CurrentStudio, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -51,37 +49,24 @@ def list_demonstrations(
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
 def add_demonstration(
-    language_id: str,
-    draft: DemonstrationDraft,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
+    draft: DemonstrationDraft, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Add a take to a gesture as one more demonstration, by the same diver or another."""
-    demonstration = demonstration_at(studio, draft, trigger_of(studio, language_id))
+    demonstration = demonstration_at(studio, draft, edit.trigger)
     changed = partial(add_demonstration_to, draft=draft, demonstration=demonstration)
-    edit = edit_document(f"Add a demonstration of {draft.label}", changed)
-    state = save_revision(studio, quota, language_id, edit, expected)
+    state = edit.save(f"Add a demonstration of {draft.label}", changed)
     keep_source(studio, state, draft.label, draft, demonstration, index=-1)
-    return announce(studio, state, response)
+    return edit.answer(state)
 
 
 @router.delete("/{index}", responses=problem_responses(404, 409, 412))
 @edited
 def remove_demonstration(
-    language_id: str,
-    index: Index,
-    label: str,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
+    index: Index, label: str, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Remove a demonstration of a gesture that has others; without the first, the next is first."""
     changed = partial(remove_demonstration_from, label=label, index=index)
-    edit = edit_document(f"Remove a demonstration of {label}", changed)
-    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
+    return edit.answer(edit.save(f"Remove a demonstration of {label}", changed))
 
 
 @router.get("/{index}/image", response_class=Response, responses=IMAGE_RESPONSES)

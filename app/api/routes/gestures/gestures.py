@@ -12,24 +12,13 @@ import numpy as np
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
-from app.api.ingest.quotas import SenderQuota
-from app.api.services.clip_takes import trigger_of
+from app.api.routes.language_edits import CurrentEdit
+from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source
-from app.api.services.gesture_edits import (
-    add_gestures_to,
-    change_gesture_of,
-    demonstration_at,
-    gesture_from,
-    gesture_in,
-    gestures_from,
-    require_free,
-)
-from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
@@ -47,99 +36,68 @@ BORDER = 40
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
-def add_gesture(
-    language_id: str,
-    draft: GestureDraft,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
+def add_gesture(draft: GestureDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
-    demonstration = demonstration_at(studio, draft, trigger_of(studio, language_id))
-    gesture = gesture_from(draft, demonstration)
+    demonstration = gesture_edits.demonstration_at(studio, draft, edit.trigger)
+    gesture = gesture_edits.gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
-        require_free(language.labels, gesture.label)
+        gesture_edits.require_free(language.labels, gesture.label)
         return language.with_gesture(gesture)
 
-    edit = edit_document(f"Add {gesture.label}", edit_language)
-    state = save_revision(studio, quota, language_id, edit, expected)
+    state = edit.save(f"Add {gesture.label}", edit_language)
     keep_source(studio, state, gesture.label, draft, demonstration)
-    return announce(studio, state, response)
+    return edit.answer(state)
 
 
 @router.post("/batch", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
-def add_gestures(
-    language_id: str,
-    draft: GesturesDraft,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
+def add_gestures(draft: GesturesDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
     """Save several demonstrations as new gestures in one revision: all of them, or none."""
-    made = gestures_from(studio, draft.gestures, trigger_of(studio, language_id))
+    made = gesture_edits.gestures_from(studio, draft.gestures, edit.trigger)
     gestures = [gesture for gesture, _ in made]
     title = f"Add {', '.join(gesture.label for gesture in gestures)}"
-    edit = edit_document(title, partial(add_gestures_to, gestures=gestures))
-    state = save_revision(studio, quota, language_id, edit, expected)
+    state = edit.save(title, partial(gesture_edits.add_gestures_to, gestures=gestures))
     for where, (gesture, demonstration) in zip(draft.gestures, made, strict=True):
         keep_source(studio, state, gesture.label, where, demonstration)
-    return announce(studio, state, response)
+    return edit.answer(state)
 
 
 @router.patch("", responses=problem_responses(404, 409, 412))
 @router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
 def change_gesture(
-    language_id: str,
-    label: str,
-    change: GestureChange,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
+    label: str, change: GestureChange, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Change what a gesture says, what of it counts, or the demonstration that shows it."""
     demonstration = None
     if change.demonstration is not None:
-        demonstration = demonstration_at(
-            studio, change.demonstration, trigger_of(studio, language_id)
-        )
-    changed = partial(change_gesture_of, label=label, change=change, demonstration=demonstration)
-    edit = edit_document(f"Change {label}", changed)
-    state = save_revision(studio, quota, language_id, edit, expected)
+        demonstration = gesture_edits.demonstration_at(studio, change.demonstration, edit.trigger)
+    changed = partial(
+        gesture_edits.change_gesture_of, label=label, change=change, demonstration=demonstration
+    )
+    state = edit.save(f"Change {label}", changed)
     if change.demonstration is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
         index = -1 if change.further else 0
         keep_source(studio, state, now, change.demonstration, demonstration, index=index)
-    return announce(studio, state, response)
+    return edit.answer(state)
 
 
 @router.delete("", responses=problem_responses(404, 409, 412))
 @router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
-def remove_gesture(
-    language_id: str,
-    label: str,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
+def remove_gesture(label: str, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
     """Take a gesture out that no phrase needs; the revisions before still have it."""
 
     def edit_language(language: Language) -> Language:
-        gesture_in(language, label)
+        gesture_edits.gesture_in(language, label)
         try:
             return language.without(label)
         except LanguageError as error:
             raise ProblemError(409, "gesture_needed", str(error)) from error
 
-    edit = edit_document(f"Remove {label}", edit_language)
-    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
+    return edit.answer(edit.save(f"Remove {label}", edit_language))
 
 
 @router.get("/image", response_class=Response, responses=IMAGE_RESPONSES)
@@ -153,7 +111,7 @@ def get_gesture_image(
 ) -> Response:
     """Send a gesture's trajectory image."""
     language = studio.language(studio.languages.get(language_id, revision))
-    gesture = gesture_in(language, label)
+    gesture = gesture_edits.gesture_in(language, label)
     return send_trajectory_image(gesture, revision, marks)
 
 
@@ -165,7 +123,7 @@ def get_demonstration(
 ) -> PosesView:
     """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
     language = studio.language(studio.languages.get(language_id, revision))
-    trajectory = gesture_in(language, label).trajectory
+    trajectory = gesture_edits.gesture_in(language, label).trajectory
     if trajectory is None:
         detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
         raise ProblemError(404, "no_demonstration", detail)

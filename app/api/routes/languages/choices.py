@@ -8,12 +8,12 @@ from functools import partial
 from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Request
 from pydantic import Field, model_validator
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.revisions import Revision
 from app.api.http.schemas.gestures import (
     MOST_GESTURES_AT_ONCE,
     GestureDraft,
@@ -22,12 +22,9 @@ from app.api.http.schemas.gestures import (
 )
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
-from app.api.ingest.quotas import SenderQuota
-from app.api.services.clip_takes import trigger_of
+from app.api.routes.language_edits import CurrentEdit
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
-from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.sample_library import STROKES
 from app.api.services.stored_recognitions import load_known
@@ -193,12 +190,7 @@ async def propose_replacements(
 @router.put("/{language_id}/replacements", responses=problem_responses(404, 409, 412))
 @edited
 def replace_gesture(
-    language_id: str,
-    draft: ReplacementDraft,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
+    draft: ReplacementDraft, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Give a gesture another movement in one revision; label, command and description stay."""
     where, shown = draft.demonstration, None
@@ -208,7 +200,7 @@ def replace_gesture(
             raise ProblemError(404, "not_found", f"there are no samples {draft.sample!r}")
         other = gesture_in(sample, draft.gesture or "")
     else:
-        shown = demonstration_at(studio, where, trigger_of(studio, language_id))
+        shown = demonstration_at(studio, where, edit.trigger)
         other = Gesture.from_demonstration(draft.label, shown.poses, diver=where.diver)
 
     def edit_language(language: Language) -> Language:
@@ -217,11 +209,10 @@ def replace_gesture(
             replace(other, label=own.label, command=own.command, description=own.description)
         )
 
-    edit = edit_document(f"Change the movement of {draft.label}", edit_language)
-    state = save_revision(studio, quota, language_id, edit, expected)
+    state = edit.save(f"Change the movement of {draft.label}", edit_language)
     if where is not None and shown is not None:
         keep_source(studio, state, draft.label, where, shown)
-    return announce(studio, state, response)
+    return edit.answer(state)
 
 
 def _choose(choice: ChoiceRequest, studio: Studio, advance: Callable[[], None]) -> ChoiceView:

@@ -19,12 +19,12 @@ from app.api.http.schemas.languages import (
     LanguageView,
 )
 from app.api.ingest.quotas import SenderQuota
-from app.api.services.language_documents import draft_of, edit_document, name_of_copy
+from app.api.routes.language_edits import CurrentEdit
+from app.api.services.language_documents import draft_of, name_of_copy
 from app.api.services.language_responses import (
     announce,
     answer,
     save_language,
-    save_revision,
     view_summary,
 )
 from app.api.services.running_studio import CurrentStudio, Studio, edited
@@ -68,12 +68,7 @@ def get_language(
 @router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
 @edited
 def change_language(
-    language_id: str,
-    change: LanguageChange,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
+    change: LanguageChange, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Rename a language or its author, change its phrases, or how it is recognised."""
     fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
@@ -82,11 +77,10 @@ def change_language(
     if "tuning" in change.model_fields_set:
         fields["tuning"] = entry_to_tuning(change.tuning)
     if change.name is not None:
-        _require_readable(change.name, studio, language_id)
+        _require_readable(change.name, studio, edit.language_id)
     if not fields:
-        return answer(studio, studio.languages.get(language_id), response)
-    edit = edit_document(_describe(fields), lambda language: replace(language, **fields))
-    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
+        return answer(studio, studio.languages.get(edit.language_id), edit.response)
+    return edit.answer(edit.save(_describe(fields), lambda language: replace(language, **fields)))
 
 
 def _describe(fields: Mapping[str, Any]) -> str:

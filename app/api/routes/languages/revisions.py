@@ -4,22 +4,15 @@ from __future__ import annotations
 
 import json
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.revisions import Revision
+from app.api.http.schemas import languages as schemas
 from app.api.http.schemas.gestures import GestureView
-from app.api.http.schemas.languages import (
-    GestureComparison,
-    LanguageRevert,
-    LanguageView,
-    RevisionComparison,
-    RevisionView,
-)
-from app.api.ingest.quotas import SenderQuota
+from app.api.routes.language_edits import CurrentEdit
 from app.api.services.language_diff import compare_gestures, describe_changes
-from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, save_revision, view_gesture
+from app.api.services.language_responses import view_gesture
 from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
 from app.recognition.gestures.gesture import Gesture
 from app.store import LanguageRevision, LanguageState
@@ -28,7 +21,7 @@ router = APIRouter(prefix="/languages/{language_id}", tags=["revisions"])
 
 
 @router.get("/revisions", responses=problem_responses(404))
-def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView]:
+def list_revisions(language_id: str, studio: CurrentStudio) -> list[schemas.RevisionView]:
     """List what was done to a language, newest first."""
     return [_revision_view(row) for row in studio.languages.revisions(language_id)]
 
@@ -36,35 +29,29 @@ def list_revisions(language_id: str, studio: CurrentStudio) -> list[RevisionView
 @router.post("/revert", responses=problem_responses(404, 412))
 @edited
 def revert_language(
-    language_id: str,
-    to: LanguageRevert,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
+    to: schemas.LanguageRevert, studio: CurrentStudio, edit: CurrentEdit
+) -> schemas.LanguageView:
     """Make a new revision with the content of an older one."""
-    older = studio.language(studio.languages.get(language_id, to.revision))
-    edit = edit_document(f"Go back to revision {to.revision}", lambda _newest: older)
-    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
+    older = studio.language(studio.languages.get(edit.language_id, to.revision))
+    return edit.answer(edit.save(f"Go back to revision {to.revision}", lambda _newest: older))
 
 
 @router.get("/comparison", responses=problem_responses(404))
 @computed_briefly
 def compare_revisions(
     language_id: str, studio: CurrentStudio, older: Revision = None, newer: Revision = None
-) -> RevisionComparison:
+) -> schemas.RevisionComparison:
     """Diff two revisions; without `older`, against an empty language."""
     after = studio.languages.get(language_id, newer)
     before = None if older is None else studio.languages.get(language_id, older)
     new = studio.language(after)
     old = None if before is None else studio.language(before)
-    return RevisionComparison(
+    return schemas.RevisionComparison(
         older=None if before is None else _revision_view(before.revision),
         newer=_revision_view(after.revision),
         words=[] if old is None else describe_changes(old, new),
         gestures=[
-            GestureComparison(
+            schemas.GestureComparison(
                 kind=change.kind,
                 before=_view(before, change.before),
                 after=_view(after, change.after),
@@ -79,8 +66,8 @@ def _view(state: LanguageState | None, gesture: Gesture | None) -> GestureView |
     return None if state is None or gesture is None else view_gesture(state, gesture)
 
 
-def _revision_view(row: LanguageRevision) -> RevisionView:
-    return RevisionView(
+def _revision_view(row: LanguageRevision) -> schemas.RevisionView:
+    return schemas.RevisionView(
         **row.model_dump(include={"revision", "name", "author", "change", "created"}),
         labels=json.loads(row.labels),
     )

@@ -5,16 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter
 from pydantic import Field
 
 from app.api.http.problems import Fault, ProblemError, problem_responses
-from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Seconds
-from app.api.ingest.quotas import SenderQuota
-from app.api.services.language_documents import edit_document
-from app.api.services.language_responses import announce, save_revision
+from app.api.routes.language_edits import CurrentEdit
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError
@@ -52,14 +49,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 @router.put("/{language_id}/trigger", responses=problem_responses(404, 409, 412))
 @edited
-def change_trigger(
-    language_id: str,
-    draft: TriggerDraft,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    expected: ExpectedRevision,
-) -> LanguageView:
+def change_trigger(draft: TriggerDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
     """Choose what begins and ends a take; the takes of all clips are then found by it."""
     start = None if draft.start is None else _pose(studio, draft.start, "/start")
     stop = None if draft.stop is None else _pose(studio, draft.stop, "/stop")
@@ -71,11 +61,10 @@ def change_trigger(
         except TriggerError as error:
             raise _refusal(str(error), "/stop" if stop else "/start") from error
 
-    words = change(studio.language(studio.languages.get(language_id))).words
-    edit = edit_document(
-        f"Find takes {words}", lambda language: replace(language, trigger=change(language))
+    words = change(studio.language(studio.languages.get(edit.language_id))).words
+    return edit.answer(
+        edit.save(f"Find takes {words}", lambda each: replace(each, trigger=change(each)))
     )
-    return announce(studio, save_revision(studio, quota, language_id, edit, expected), response)
 
 
 def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
