@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from app import store
 from app.api.http.problems import ProblemError
-from app.api.http.schemas.recognitions import GestureTrial, RecognitionView
+from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_faults import faults_of_language
@@ -22,40 +23,18 @@ from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_demonstration, find_surroundings
-from app.store import (
-    NO_QUOTA,
-    Clip,
-    LabelledTake,
-    LanguageState,
-    NotFound,
-    PracticeTake,
-    Quota,
-    RecognitionRecord,
-)
 
 
 @dataclass(frozen=True)
 class Recognised:
     """A recognition that was just made, and its answer in plain JSON types."""
 
-    record: RecognitionRecord
+    record: store.RecognitionRecord
     answer: dict[str, Any]
 
 
-def recognize_range(
-    studio: Studio,
-    state: LanguageState,
-    clip_id: str,
-    start: float | None = None,
-    end: float | None = None,
-    *,
-    expected: str | None = None,
-    profile: str | None = None,
-    tuning: TuningEntry | None = None,
-    trial: GestureTrial | None = None,
-    quota: Quota = NO_QUOTA,
-) -> Recognised:
-    """Recognise a range of a clip by a revision, and store the answer.
+def recognize_range(studio: Studio, wanted: RecognitionRequest, quota: store.Quota) -> Recognised:
+    """Recognise a range of a clip by the newest revision of a language, and store the answer.
 
     Raises
     ------
@@ -65,34 +44,35 @@ def recognize_range(
         When the sender may not keep another recognition.
 
     """
-    recording = studio.recording(clip_id, so_far=end is not None)
-    if end is not None and end > recording.poses.time[-1]:
-        recording = studio.recording(clip_id)  # refused while these frames are being read
+    state = studio.languages.get(wanted.language_id)
     language = studio.language(state)
-    profile = profile or language.profile
-    require_landmarks_of(studio.clips.get(clip_id).clip, recording.poses, language)
-    demonstration = demonstration_in(recording, start, end, trigger=language.trigger)
-    recognizer = make_recognizer(studio, state, profile, tuning, trial)
+    recording = studio.recording(wanted.clip_id, so_far=wanted.end is not None)
+    if wanted.end is not None and wanted.end > recording.poses.time[-1]:
+        recording = studio.recording(wanted.clip_id)  # refused while these frames are being read
+    profile = wanted.profile or language.profile
+    require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
+    demonstration = demonstration_in(recording, wanted.start, wanted.end, trigger=language.trigger)
+    recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial)
     answer = recognizer.recognize(demonstration.poses).to_dict()
-    if tuning is not None:
-        answer["tuning"] = tuning.model_dump()
-    if trial is not None:
-        answer["trial"] = trial.model_dump(exclude_unset=True)
-    record = RecognitionRecord(
-        clip_id=clip_id,
+    if wanted.tuning is not None:
+        answer["tuning"] = wanted.tuning.model_dump()
+    if wanted.trial is not None:
+        answer["trial"] = wanted.trial.model_dump(exclude_unset=True)
+    record = store.RecognitionRecord(
+        clip_id=wanted.clip_id,
         language_id=state.record.id,
         revision=state.revision.revision,
         start=demonstration.start,
         end=demonstration.end,
         profile=profile,
-        expected=expected,
+        expected=wanted.expected,
         result=json.dumps(answer, allow_nan=False),
     )
     kept = studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))
     return Recognised(kept, answer)
 
 
-def require_landmarks_of(clip: Clip, poses: PoseSequence, language: Language) -> None:
+def require_landmarks_of(clip: store.Clip, poses: PoseSequence, language: Language) -> None:
     """Refuse a clip of keypoints that lacks some that the language needs.
 
     Pictures may show any landmark, so their clips are only judged when they are recognised.
@@ -112,7 +92,7 @@ MOST_KNOWN = 60
 every remedy."""
 
 
-def load_context(record: RecognitionRecord, studio: Studio) -> RecognitionContext:
+def load_context(record: store.RecognitionRecord, studio: Studio) -> RecognitionContext:
     """Return the context in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id, so_far=True)
@@ -129,10 +109,13 @@ def load_context(record: RecognitionRecord, studio: Studio) -> RecognitionContex
     )
 
 
-def list_known(studio: Studio, language_id: str) -> list[LabelledTake | PracticeTake]:
+def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | store.PracticeTake]:
     """Return the takes of the test set and of practice, the oldest first, each range once."""
     tested = [each.take for each in studio.labelled.of(language_id)]
-    takes: list[LabelledTake | PracticeTake] = [*tested, *studio.practice.of(language_id)]
+    takes: list[store.LabelledTake | store.PracticeTake] = [
+        *tested,
+        *studio.practice.of(language_id),
+    ]
     return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
 
 
@@ -166,12 +149,12 @@ def load_known(
             continue
         if count == MOST_KNOWN:
             return
-        end = take.end if isinstance(take, LabelledTake) else None
+        end = take.end if isinstance(take, store.LabelledTake) else None
         try:
             recording = studio.recording(take.clip_id)
             found = find_demonstration(recording, take.start, end, trigger=language.trigger)
             yield KnownTake(take.expected, recognizer.query(found.poses))
-        except (OsgError, ProblemError, NotFound):
+        except (OsgError, ProblemError, store.NotFound):
             continue
         count += 1
 
@@ -211,7 +194,7 @@ def locate_cuts(
 
 def make_recognizer(
     studio: Studio,
-    state: LanguageState,
+    state: store.LanguageState,
     profile: str,
     tuning: TuningEntry | None,
     trial: GestureTrial | None,
@@ -234,7 +217,7 @@ def make_recognizer(
     return Recognizer(language, profile, tuning=tuned)
 
 
-def try_gesture(studio: Studio, state: LanguageState, trial: GestureTrial) -> Language:
+def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial) -> Language:
     """Return a copy of a revision in which one gesture is changed; errors as `make_recognizer`."""
     change = trial.change.model_copy(update={"label": None})
     shown = change.demonstration
@@ -243,7 +226,7 @@ def try_gesture(studio: Studio, state: LanguageState, trial: GestureTrial) -> La
     return change_gesture_of(language, trial.label, change, demonstration)
 
 
-def load_language(record: RecognitionRecord, studio: Studio) -> Language:
+def load_language(record: store.RecognitionRecord, studio: Studio) -> Language:
     """Return the language that a recognition used, with the changed gesture of a trial."""
     state = studio.languages.get(record.language_id, record.revision)
     trial = view_recognition(record).trial
@@ -263,12 +246,12 @@ def read_pair(stored: str | None) -> tuple[str, str] | None:
     return nearest, other
 
 
-def load_recognition(record: RecognitionRecord) -> Recognition:
+def load_recognition(record: store.RecognitionRecord) -> Recognition:
     """Return the recogniser's answer as it was when `record` was made."""
     result: dict[str, Any] = json.loads(record.result)
     return Recognition.from_dict(result)
 
 
-def view_recognition(record: RecognitionRecord) -> RecognitionView:
+def view_recognition(record: store.RecognitionRecord) -> RecognitionView:
     """Return a stored recognition as the API shows it."""
     return RecognitionView(**(json.loads(record.result) | record.model_dump(exclude={"result"})))

@@ -8,6 +8,7 @@ from fastapi import APIRouter
 from pydantic import Field
 
 from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.recognitions import RecognitionRequest
 from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import find_sources
@@ -116,15 +117,8 @@ def show_gesture(
     ):
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
-    made = recognize_range(
-        studio,
-        state,
-        draft.clip_id,
-        draft.start,
-        draft.end,
-        expected=draft.expected,
-        quota=quota,
-    )
+    shown = draft.model_dump(exclude={"diver"})
+    made = recognize_range(studio, RecognitionRequest(language_id=language_id, **shown), quota)
     record = made.record
     take = studio.practice.keep(
         PracticeTake(

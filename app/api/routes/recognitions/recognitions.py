@@ -32,19 +32,7 @@ def recognize(
     request: RecognitionRequest, studio: CurrentStudio, quota: SenderQuota
 ) -> RecognitionView:
     """Recognise a take, a range or all of a clip, and keep the answer."""
-    state = studio.languages.get(request.language_id)
-    record = recognize_range(
-        studio,
-        state,
-        request.clip_id,
-        request.start,
-        request.end,
-        expected=request.expected,
-        profile=request.profile,
-        tuning=request.tuning,
-        trial=request.trial,
-        quota=quota,
-    ).record
+    record = recognize_range(studio, request, quota).record
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
     return view_recognition(record)
 
