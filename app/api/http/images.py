@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Final
 
 from fastapi import Response
 
-from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.problems import ProblemError
 
-
-def picture_responses(description: str) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI ``responses`` of a route that answers with `send_picture`."""
-    return {
-        **problem_responses(404),
-        200: {"description": description, "content": {"image/jpeg": {}}},
-    }
+JPEG: Final = "image/jpeg"
+"""Media type of `send_picture`."""
 
 
 def send_picture(path: Path, code: str, missing: str) -> Response:
@@ -34,4 +29,4 @@ def send_picture(path: Path, code: str, missing: str) -> Response:
     except FileNotFoundError as error:
         raise ProblemError(404, code, missing) from error
     headers = {"Cache-Control": "private, max-age=3600"}
-    return Response(content, media_type="image/jpeg", headers=headers)
+    return Response(content, media_type=JPEG, headers=headers)

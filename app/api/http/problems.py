@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from app import store
 from app.recognition.errors import (
     BagError,
     GestureError,
@@ -28,14 +29,6 @@ from app.recognition.errors import (
 )
 from app.recognition.language.file import list_document_steps
 from app.recognition.text.strict_json import build_pointer
-from app.store import (
-    Conflict,
-    InvitationClosed,
-    NotFound,
-    QuotaExceeded,
-    StoreError,
-    TooManyInvitations,
-)
 
 MEDIA_TYPE = "application/problem+json"
 
@@ -134,6 +127,17 @@ def problem_responses(*statuses: int) -> dict[int | str, dict[str, Any]]:
     }
 
 
+def file_responses(
+    description: str, *media_types: str, refusals: Sequence[int] = (404,)
+) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI ``responses`` of an operation that sends a file, or a refusal."""
+    content: dict[str, dict[str, Any]] = {media_type: {} for media_type in media_types}
+    return {
+        **problem_responses(*refusals),
+        200: {"description": description, "content": content},
+    }
+
+
 def schemas() -> dict[str, Any]:
     """Return the JSON Schemas that `problem_responses` refers to."""
     schema = Problem.model_json_schema(ref_template="#/components/schemas/{model}")
@@ -145,7 +149,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, _on_invalid_request)
     app.add_exception_handler(HTTPException, _on_http_error)
     app.add_exception_handler(ClientDisconnect, _on_disconnect)
-    for kind in (OsgError, StoreError, OSError, Exception):
+    for kind in (OsgError, store.StoreError, OSError, Exception):
         app.add_exception_handler(kind, _on_error)
 
 
@@ -154,9 +158,9 @@ def problem_of(error: Exception) -> ProblemError:
     match error:
         case ProblemError():
             return error
-        case NotFound():
+        case store.NotFound():
             return ProblemError(404, "not_found", str(error))
-        case Conflict():
+        case store.Conflict():
             return ProblemError(
                 412,
                 "revision_conflict",
@@ -164,17 +168,17 @@ def problem_of(error: Exception) -> ProblemError:
                 headers={"ETag": f'"{error.current}"'},
                 current_revision=error.current,
             )
-        case QuotaExceeded():
+        case store.QuotaExceeded():
             return _convert_quota(error)
-        case TooManyInvitations():
+        case store.TooManyInvitations():
             return ProblemError(409, "too_many_invitations", str(error))
-        case InvitationClosed():
+        case store.InvitationClosed():
             # The rest of a body stays unread, so the connection cannot be used again.
             headers = {"Connection": "close"}
             return ProblemError(
                 403, "invitation_closed", str(error), headers=headers, reason=error.code
             )
-        case StoreError():
+        case store.StoreError():
             headers = {"Retry-After": RETRY_SECONDS}
             return ProblemError(503, "store_unavailable", str(error), headers=headers)
         case OsgError():
@@ -189,7 +193,7 @@ def problem_of(error: Exception) -> ProblemError:
     )
 
 
-def _convert_quota(error: QuotaExceeded) -> ProblemError:
+def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
     problem = ProblemError(
         507,
         "quota_exceeded",

@@ -14,6 +14,7 @@ from typing import ParamSpec, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
+from app import store
 from app.api.events.broadcast import Broadcast, Event
 from app.api.jobs.job import Job as RunningJob
 from app.api.jobs.job import JobCancelled, JobRunner, Progress, Report, run_task
@@ -22,16 +23,6 @@ from app.api.workers.worker_messages import Failed, Finished
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions
 from app.settings import Settings
-from app.store import (
-    Clip,
-    ClipStore,
-    Job,
-    JobStatus,
-    JobStore,
-    NotFound,
-    StoreError,
-    StoreUnavailable,
-)
 from app.store.clips import FILMSTRIP, POSTER, RECORDING, SO_FAR
 
 RENEW_SECONDS = 10.0
@@ -47,12 +38,12 @@ Result = TypeVar("Result")
 logger = logging.getLogger(__name__)
 
 
-def job_event(job: Job) -> Event:
+def job_event(job: store.Job) -> Event:
     """Return the event about a stored job."""
     return Event("jobs", {"id": job.id, "clip_id": job.clip_id})
 
 
-def options_of(clip: Clip) -> ReadOptions:
+def options_of(clip: store.Clip) -> ReadOptions:
     """Return how the file of a stored clip is read."""
     options = ReadOptions()
     if clip.options is not None:
@@ -83,8 +74,8 @@ class ExtractionQueue:
     def __init__(
         self,
         runner: JobRunner,
-        clips: ClipStore,
-        jobs: JobStore,
+        clips: store.ClipStore,
+        jobs: store.JobStore,
         workers: Workers,
         broadcast: Broadcast,
         settings: Settings,
@@ -122,17 +113,17 @@ class ExtractionQueue:
         for job_id in running:
             await self._runner.cancel(job_id)
             # If this cannot be stored either, the next start finds the job running.
-            with suppress(StoreError):
+            with suppress(store.StoreError):
                 await run_in_threadpool(self._jobs.requeue, job_id)
 
-    async def submit(self, job: Job) -> None:
+    async def submit(self, job: store.Job) -> None:
         """Let a job wait for its turn."""
         await self._waiting.put(job.client, job.id)
         self._broadcast.send(job_event(job))
 
-    async def cancel(self, job: Job) -> bool:
+    async def cancel(self, job: store.Job) -> bool:
         """Cancel a waiting or running job; return whether it waited or ran."""
-        cancelled = await run_in_threadpool(self._jobs.finish, job.id, JobStatus.CANCELLED)
+        cancelled = await run_in_threadpool(self._jobs.finish, job.id, store.JobStatus.CANCELLED)
         await self._runner.cancel(job.id)
         if cancelled:
             self._publish(job)
@@ -162,10 +153,10 @@ class ExtractionQueue:
                         await self._runner.cancel(job_id)
                 for job in await run_in_threadpool(self._jobs.take_over):
                     await self._waiting.put(job.client, job.id)
-            except StoreError as error:
+            except store.StoreError as error:
                 logger.warning("the leases of jobs cannot be renewed now: %s", error)
 
-    async def _run(self, job: Job) -> None:
+    async def _run(self, job: store.Job) -> None:
         def event(progress: Progress) -> Event:
             event = job_event(job)
             return Event(event.kind, {**event.data, "progress": asdict(progress)})
@@ -179,14 +170,14 @@ class ExtractionQueue:
             self._running.discard(job.id)
         self._publish(job)
 
-    async def _extract(self, job: Job, report: Report) -> Finished | Failed | None:
+    async def _extract(self, job: store.Job, report: Report) -> Finished | Failed | None:
         """Extract a clip, unless its job was cancelled or it was deleted; return how it ended."""
         if not await persist(self._jobs.is_running, job.id):
             return None
         report(Progress("starting"))
         try:
             clip = (await persist(self._clips.get, job.clip_id)).clip
-        except NotFound:
+        except store.NotFound:
             return None
         place = self._clips.place
         if clip.turn:
@@ -215,7 +206,7 @@ class ExtractionQueue:
                     await persist(complete, job.id, found.frames, *warnings)
                 case Failed(code=code, detail=detail):
                     failed = partial(self._jobs.finish, code=code, error=detail)
-                    await persist(failed, job.id, JobStatus.FAILED)
+                    await persist(failed, job.id, store.JobStatus.FAILED)
         finally:
             so_far.unlink(missing_ok=True)
         return ended
@@ -223,11 +214,13 @@ class ExtractionQueue:
     async def _give_up(self, job_id: str) -> None:
         error = "the server could not keep what it found in this clip; try again"
         try:
-            await persist(self._jobs.finish, job_id, JobStatus.FAILED, code="internal", error=error)
-        except StoreError:
+            await persist(
+                self._jobs.finish, job_id, store.JobStatus.FAILED, code="internal", error=error
+            )
+        except store.StoreError:
             logger.exception("the end of job %s could not be stored", job_id)
 
-    def _publish(self, job: Job) -> None:
+    def _publish(self, job: store.Job) -> None:
         self._broadcast.send(job_event(job))
         self._broadcast.publish("clips", id=job.clip_id)
 
@@ -274,7 +267,7 @@ async def persist(
     while True:
         try:
             return await run_in_threadpool(call, *args, **kwargs)
-        except StoreUnavailable as error:
+        except store.StoreUnavailable as error:
             if pause == FIRST_PAUSE_SECONDS:
                 logger.warning("a job's state cannot be stored yet: %s", error)
             await asyncio.sleep(pause)

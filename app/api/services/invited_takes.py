@@ -15,6 +15,7 @@ from typing import Final
 
 from starlette.concurrency import run_in_threadpool
 
+from app import store
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
@@ -37,16 +38,6 @@ from app.recognition.recording.clip_range import Demonstration
 from app.recognition.recording.salute import FEW_HANDS
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
-from app.store import (
-    AuditEntry,
-    ClipWithJob,
-    InvitedTake,
-    JobStatus,
-    NotFound,
-    Quota,
-    QuotaExceeded,
-    StoreError,
-)
 from app.store.models import now
 
 LOOK_SECONDS: Final = 1.0
@@ -111,7 +102,7 @@ class Doubted(Exception):
 async def settle_takes(studio: Studio, identities: Identities) -> None:
     """Judge the takes that came in, as long as the server runs."""
     seen: int | None = None
-    takes: list[InvitedTake] = []
+    takes: list[store.InvitedTake] = []
     while True:
         try:
             changes = await run_in_threadpool(lambda: studio.invitations.changes)
@@ -122,7 +113,7 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
                         studio.edits, partial(_look_at, studio, identities, take)
                     )
                 seen = changes
-        except StoreError as error:
+        except store.StoreError as error:
             logger.warning("invited takes wait for the store: %s", error)
         except Exception:
             # The failure of one take must not end the judging of all others.
@@ -130,13 +121,13 @@ async def settle_takes(studio: Studio, identities: Identities) -> None:
         await asyncio.sleep(LOOK_SECONDS)
 
 
-def _look_at(studio: Studio, identities: Identities, take: InvitedTake) -> None:
+def _look_at(studio: Studio, identities: Identities, take: store.InvitedTake) -> None:
     """Judge a take if its job has ended, and keep the outcome."""
     found = None
     try:
         found = studio.clips.get(take.clip_id)
-        ready = JobStatus(found.job.status).final
-    except NotFound:
+        ready = store.JobStatus(found.job.status).final
+    except store.NotFound:
         # Its clip is being stored, was deleted, or never came because the server ended.
         ready = take.created < now() - LOST
     if not ready or not studio.invitations.claim(take.id):
@@ -150,16 +141,20 @@ def _look_at(studio: Studio, identities: Identities, take: InvitedTake) -> None:
         studio.broadcast.publish("clips", id=take.clip_id)
 
 
-def _settle(studio: Studio, take: InvitedTake, status: str, reason: str | None = None) -> None:
+def _settle(
+    studio: Studio, take: store.InvitedTake, status: str, reason: str | None = None
+) -> None:
     """Keep what became of a take, and tell the open pages; a returned one's clip goes."""
     studio.invitations.settle(take.id, status, reason)
     if status == "returned":
-        with suppress(NotFound):
+        with suppress(store.NotFound):
             studio.clips.delete(take.clip_id)
     studio.broadcast.publish("clips", id=take.clip_id)
 
 
-def answer_question(studio: Studio, take: InvitedTake, quota: Quota, *, confirmed: bool) -> None:
+def answer_question(
+    studio: Studio, take: store.InvitedTake, quota: store.Quota, *, confirmed: bool
+) -> None:
     """Keep what the person who shows says about a take; nothing happens to one that is not held.
 
     A take that was read as its gesture is added once it is confirmed. Another one waits for the
@@ -180,7 +175,7 @@ def answer_question(studio: Studio, take: InvitedTake, quota: Quota, *, confirme
         _settle(studio, take, "returned", str(returned))
 
 
-def remove_take(studio: Studio, take: InvitedTake, quota: Quota) -> None:
+def remove_take(studio: Studio, take: store.InvitedTake, quota: store.Quota) -> None:
     """Take a take out of its language, and hold it no longer.
 
     Raises
@@ -207,7 +202,7 @@ def remove_take(studio: Studio, take: InvitedTake, quota: Quota) -> None:
 
 
 def _judge(
-    studio: Studio, identities: Identities, take: InvitedTake, found: ClipWithJob | None
+    studio: Studio, identities: Identities, take: store.InvitedTake, found: store.ClipWithJob | None
 ) -> None:
     """Add a take to its language.
 
@@ -225,14 +220,14 @@ def _judge(
         raise Returned("This invitation was withdrawn.")
     if found is None:
         raise Returned("The clip did not arrive. Show it again.")
-    if found.job.status != JobStatus.DONE:
+    if found.job.status != store.JobStatus.DONE:
         raise Returned(
             f"The clip could not be read: {found.job.error or 'cancelled'}. Record it again."
         )
-    quota = Quota(owner.name, owner.quota_bytes, owner.quota_clips)
+    quota = store.Quota(owner.name, owner.quota_bytes, owner.quota_clips)
     add_take(studio, take, quota, sure=False)
     studio.audit.add(
-        AuditEntry(
+        store.AuditEntry(
             name=owner.name,
             role=owner.role.value,
             address="invitation",
@@ -244,7 +239,9 @@ def _judge(
     )
 
 
-def add_take(studio: Studio, take: InvitedTake, quota: Quota, *, sure: bool = True) -> None:
+def add_take(
+    studio: Studio, take: store.InvitedTake, quota: store.Quota, *, sure: bool = True
+) -> None:
     """Add a take to its language, unless it is there already.
 
     Raises
@@ -260,7 +257,7 @@ def add_take(studio: Studio, take: InvitedTake, quota: Quota, *, sure: bool = Tr
         state = studio.languages.get(invitation.language_id)
         language = studio.language(state)
         gesture = gesture_in(language, take.label)
-    except (NotFound, ProblemError) as error:
+    except (store.NotFound, ProblemError) as error:
         raise Returned("The language has no such gesture any more.") from error
     if any(
         each and each.clip_id == take.clip_id for each in find_sources(studio, language)[take.label]
@@ -278,9 +275,9 @@ def add_take(studio: Studio, take: InvitedTake, quota: Quota, *, sure: bool = Tr
             lambda newest: _with_take(newest, draft, shown),
         )
         state = save_revision(studio, quota, invitation.language_id, edit, None)
-    except QuotaExceeded as error:
+    except store.QuotaExceeded as error:
         raise Returned("The studio has no room for more. Tell whoever invited you.") from error
-    except (OsgError, NotFound, ProblemError) as error:
+    except (OsgError, store.NotFound, ProblemError) as error:
         detail = error.detail if isinstance(error, ProblemError) else error
         raise Returned(f"It cannot be used: {detail}.") from error
     keep_source(studio, state, take.label, draft, shown, index=-1)
@@ -325,7 +322,7 @@ def require_unshown(gesture: Gesture, diver: str) -> None:
 
 
 def choose_range(
-    studio: Studio, take: InvitedTake, gesture: Gesture, trigger: Trigger
+    studio: Studio, take: store.InvitedTake, gesture: Gesture, trigger: Trigger
 ) -> DemonstrationDraft:
     """Return the take's range without faults.
 

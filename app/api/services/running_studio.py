@@ -8,7 +8,7 @@ import time
 from collections import OrderedDict
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from functools import lru_cache, partial, wraps
 from inspect import Parameter, signature
@@ -20,6 +20,7 @@ from fastapi import Depends
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import HTTPConnection, Request
 
+from app import store
 from app.api.events.broadcast import Broadcast
 from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.http.connection import compute_while_connected
@@ -34,28 +35,6 @@ from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
 from app.settings import Settings
-from app.store import (
-    AuditStore,
-    ClipStore,
-    Database,
-    FolderLock,
-    InvitationStore,
-    JobStatus,
-    JobStore,
-    LabelledTakeStore,
-    LanguageState,
-    LanguageStore,
-    PracticeStore,
-    Quota,
-    QuotaExceeded,
-    QuotaStore,
-    RecognitionStore,
-    SignInStore,
-    SourceStore,
-    StoreError,
-    UploadStore,
-    identity_of,
-)
 from app.store.clips import SO_FAR
 from app.store.models import now
 from app.store.objects import open_object_store
@@ -117,14 +96,20 @@ class RecordingFile:
     whole: bool = True
 
 
-@dataclass(frozen=True)
 class Studio:
     """Parts of one running server.
 
-    Attributes
+    Parameters
     ----------
     settings
         Settings of the server.
+    database
+        Database of the store.
+    metrics
+        Metrics for Prometheus.
+
+    Attributes
+    ----------
     clips, uploads, quotas, jobs, languages, sources, recognitions, audit, labelled, practice,
     invitations, sign_ins
         The store.
@@ -140,8 +125,6 @@ class Studio:
         The languages and clips that come with the program.
     stopping
         Event that is set when the server is about to stop.
-    metrics
-        Metrics for Prometheus.
     computations
         Limits the computations in threads at the same time, see `computed`.
     brief_computations
@@ -153,34 +136,52 @@ class Studio:
 
     """
 
-    settings: Settings
-    clips: ClipStore
-    uploads: UploadStore
-    quotas: QuotaStore
-    jobs: JobStore
-    languages: LanguageStore
-    sources: SourceStore
-    recognitions: RecognitionStore
-    audit: AuditStore
-    labelled: LabelledTakeStore
-    practice: PracticeStore
-    invitations: InvitationStore
-    sign_ins: SignInStore
-    workers: Workers
-    runner: JobRunner
-    extractions: ExtractionQueue
-    broadcast: Broadcast
-    samples: Samples
-    stopping: Event = field(default_factory=Event)
-    metrics: Metrics = field(default_factory=Metrics)
-    computations: asyncio.Semaphore = field(
-        default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
-    )
-    brief_computations: asyncio.Semaphore = field(
-        default_factory=lambda: asyncio.Semaphore(MOST_COMPUTATIONS)
-    )
-    edits: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_EDITS))
-    exports: KeptExports = field(default_factory=KeptExports)
+    def __init__(self, settings: Settings, database: store.Database, metrics: Metrics) -> None:
+        self.settings = settings
+        self.metrics = metrics
+        self.clips = store.ClipStore(
+            database,
+            settings.clips,
+            open_object_store(settings.objects),
+            settings.limits.storage_copy_bytes if settings.objects else 0,
+        )
+        self.uploads = store.UploadStore(settings.data_dir / "uploads")
+        self.quotas = store.QuotaStore(database)
+        self.jobs = store.JobStore(database, store.identity_of(settings.data_dir))
+        self.languages = store.LanguageStore(database)
+        self.sources = store.SourceStore(database)
+        self.recognitions = store.RecognitionStore(database)
+        self.audit = store.AuditStore(database, settings.data_dir)
+        self.labelled = store.LabelledTakeStore(database)
+        self.practice = store.PracticeStore(database)
+        self.invitations = store.InvitationStore(database)
+        self.sign_ins = store.SignInStore(database)
+        self.samples = Samples(settings.samples_dir)
+        self.broadcast = Broadcast(partial(open_messages, database), self._hear)
+        self.workers = Workers(settings, metrics, self.clips.hold)
+        self.runner = JobRunner(self.broadcast, metrics)
+        self.extractions = ExtractionQueue(
+            self.runner,
+            self.clips,
+            self.jobs,
+            self.workers,
+            self.broadcast,
+            settings,
+            self.samples.find_recording,
+        )
+        self.stopping = Event()
+        self.computations = asyncio.Semaphore(MOST_COMPUTATIONS)
+        self.brief_computations = asyncio.Semaphore(MOST_COMPUTATIONS)
+        self.edits = asyncio.Semaphore(MOST_EDITS)
+        self.exports = KeptExports()
+
+    def _hear(self, event: BroadcastEvent) -> None:
+        """Store the progress of another server's job."""
+        if event.kind == "jobs":
+            progress = progress_of(event)
+            self.runner.note(event.data["id"], progress)
+            if progress is None:
+                self.extractions.look()
 
     async def stop_soon(self) -> None:
         """Cancel the jobs that somebody waits for, and end the event streams."""
@@ -188,8 +189,8 @@ class Studio:
         await self.runner.stop()
         self.broadcast.close()
 
-    def keep_within(self, quota: Quota, store: Callable[[], Stored]) -> Stored:
-        """Store something by `store`; if need be, purge first what its owner deleted.
+    def keep_within(self, quota: store.Quota, keep: Callable[[], Stored]) -> Stored:
+        """Store something by `keep`; if need be, purge first what its owner deleted.
 
         Raises
         ------
@@ -198,12 +199,12 @@ class Studio:
 
         """
         try:
-            return store()
-        except QuotaExceeded as error:
+            return keep()
+        except store.QuotaExceeded as error:
             if not error.deleted_suffice:
                 raise
             self.languages.purge_for(quota.owner, self.clips.purge_for(quota.owner, error.excess))
-        return store()
+        return keep()
 
     def recording(self, clip_id: str, *, so_far: bool = False) -> Recording:
         """Return the recording of a clip; see `recording_file`."""
@@ -228,11 +229,11 @@ class Studio:
 
         """
         found = self.clips.get(clip_id)
-        if so_far and found.job.status == JobStatus.RUNNING:
+        if so_far and found.job.status == store.JobStatus.RUNNING:
             with suppress(OSError):
                 file = self.clips.place(clip_id, SO_FAR)
                 return RecordingFile(file, file.stat().st_mtime_ns, whole=False)
-        if found.job.status != JobStatus.DONE:
+        if found.job.status != store.JobStatus.DONE:
             reason = f"{found.job.status}: {found.job.error}" if found.job.error else None
             raise ProblemError(
                 409,
@@ -243,11 +244,11 @@ class Studio:
             )
         return whole_recording(self.clips.recording(clip_id))
 
-    def language(self, state: LanguageState) -> Language:
+    def language(self, state: store.LanguageState) -> Language:
         """Return the language that a revision holds."""
         return _languages.get(state.revision.document)
 
-    def recognizer(self, state: LanguageState, profile: str | None = None) -> Recognizer:
+    def recognizer(self, state: store.LanguageState, profile: str | None = None) -> Recognizer:
         """Return a recogniser of a revision, by default with the language's own profile.
 
         Raises
@@ -334,65 +335,22 @@ def check_store(settings: Settings) -> None:
 
 
 @contextmanager
-def _opened(settings: Settings) -> Iterator[Database]:
+def _opened(settings: Settings) -> Iterator[store.Database]:
     """Open the database; keep other servers out of the data folder, and out of SQLite's file."""
     with ExitStack() as locks:
-        locks.enter_context(FolderLock(settings.data_dir))
-        database = Database(settings.database)
+        locks.enter_context(store.FolderLock(settings.data_dir))
+        database = store.Database(settings.database)
         locks.callback(database.close)
         if (file := database.file) is not None and file.parent != settings.data_dir:
-            locks.enter_context(FolderLock(file.parent, remedy=ONE_SERVER))
+            locks.enter_context(store.FolderLock(file.parent, remedy=ONE_SERVER))
         yield database
 
 
 @asynccontextmanager
 async def _studio(
-    settings: Settings, database: Database, metrics: Metrics
+    settings: Settings, database: store.Database, metrics: Metrics
 ) -> AsyncIterator[Studio]:
-    clips = ClipStore(
-        database,
-        settings.clips,
-        open_object_store(settings.objects),
-        settings.limits.storage_copy_bytes if settings.objects else 0,
-    )
-    jobs = JobStore(database, identity_of(settings.data_dir))
-    languages = LanguageStore(database)
-
-    def hear(event: BroadcastEvent) -> None:
-        """Store the progress of another server's job."""
-        if event.kind == "jobs":
-            progress = progress_of(event)
-            runner.note(event.data["id"], progress)
-            if progress is None:
-                extractions.look()
-
-    broadcast = Broadcast(partial(open_messages, database), hear)
-    workers, runner = Workers(settings, metrics, clips.hold), JobRunner(broadcast, metrics)
-    samples = Samples(settings.samples_dir)
-    extractions = ExtractionQueue(
-        runner, clips, jobs, workers, broadcast, settings, samples.find_recording
-    )
-    studio = Studio(
-        settings=settings,
-        clips=clips,
-        uploads=UploadStore(settings.data_dir / "uploads"),
-        quotas=QuotaStore(database),
-        jobs=jobs,
-        languages=languages,
-        sources=SourceStore(database),
-        recognitions=RecognitionStore(database),
-        audit=AuditStore(database, settings.data_dir),
-        labelled=LabelledTakeStore(database),
-        practice=PracticeStore(database),
-        invitations=InvitationStore(database),
-        sign_ins=SignInStore(database),
-        workers=workers,
-        runner=runner,
-        extractions=extractions,
-        broadcast=broadcast,
-        samples=samples,
-        metrics=metrics,
-    )
+    studio = Studio(settings, database, metrics)
     beside = metrics.watch_loop(), keep_trimmed(), _keep_clean(studio)
     watching = [asyncio.create_task(each) for each in beside]
     try:
@@ -402,15 +360,15 @@ async def _studio(
     finally:
         for each in watching:
             each.cancel()
-        broadcast.close()
+        studio.broadcast.close()
         await studio.runner.stop()
         await studio.extractions.stop()
-        await workers.close()
+        await studio.workers.close()
         studio.exports.clear()
-        await run_in_threadpool(broadcast.leave)
+        await run_in_threadpool(studio.broadcast.leave)
 
 
-def _prepare(studio: Studio, database: Database) -> None:
+def _prepare(studio: Studio, database: store.Database) -> None:
     """Migrate, remove leftovers of crashes, add the samples."""
     database.migrate()
     studio.audit.import_journal()
@@ -429,7 +387,7 @@ async def _keep_clean(studio: Studio) -> None:
         moment = started + timedelta(seconds=time.monotonic() - since)
         try:
             await run_in_threadpool(clean, studio, moment)
-        except (StoreError, OSError) as error:
+        except (store.StoreError, OSError) as error:
             logger.warning("what was deleted stays for now: %s", error)
 
 

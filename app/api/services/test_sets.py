@@ -6,16 +6,9 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from app import __version__
+from app import __version__, store
 from app.api.http.problems import ProblemError, problem_of
-from app.api.http.schemas.test_sets import (
-    GestureRateView,
-    LabelledResultView,
-    LabelledTakeDraft,
-    LabelledTakeView,
-    RateView,
-    TestSetView,
-)
+from app.api.http.schemas import test_sets as schemas
 from app.api.jobs.job import Job, Progress, Report, events_about, run_task
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
@@ -26,22 +19,13 @@ from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, RecognizedTake
 from app.evaluation.proportion import Share
-from app.store import (
-    LabelledResult,
-    LabelledTake,
-    LanguageState,
-    NotFound,
-    RecognitionRecord,
-    TestedTake,
-    TestSetFull,
-)
 
 SAME_TAKE = 0.5
 """Share of a take that a demonstration must cover to count as the same."""
 
 
 def add_labelled(
-    studio: Studio, language_id: str, drafts: Sequence[LabelledTakeDraft], sender: str
+    studio: Studio, language_id: str, drafts: Sequence[schemas.LabelledTakeDraft], sender: str
 ) -> None:
     """Add takes to the test set of a language in the name of a sender.
 
@@ -54,7 +38,7 @@ def add_labelled(
 
     """
     takes = [
-        LabelledTake(
+        store.LabelledTake(
             language_id=language_id,
             clip_id=draft.clip_id,
             start=start,
@@ -67,7 +51,7 @@ def add_labelled(
     ]
     try:
         studio.labelled.add(takes)
-    except TestSetFull as error:
+    except store.TestSetFull as error:
         raise ProblemError(409, "test_set_full", str(error)) from error
 
 
@@ -76,7 +60,7 @@ def test_run_key(language_id: str, revision: int) -> str:
     return f"test {language_id} {revision}"
 
 
-def test_run_of(studio: Studio, state: LanguageState) -> Job[Finished | Failed] | None:
+def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Failed] | None:
     """Return the job that recognises the takes without a result for the revision; None if none is.
 
     For a clip without poses, this fault is stored as the result of its takes.
@@ -92,7 +76,7 @@ def test_run_of(studio: Studio, state: LanguageState) -> Job[Finished | Failed] 
         try:
             wanted.append(_request_for(studio, take))
             takes.append(take)
-        except (ProblemError, NotFound) as error:
+        except (ProblemError, store.NotFound) as error:
             fault = problem_of(error).detail
             answer = RecognizedTake(start=take.start, end=take.end, fault=fault)
             _keep(studio, state, take, answer)
@@ -113,7 +97,7 @@ def test_run_of(studio: Studio, state: LanguageState) -> Job[Finished | Failed] 
     return Job("test_run", test_run_key(language_id, revision), event, run, detached=True)
 
 
-def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:
+def list_waiting(studio: Studio, state: store.LanguageState) -> list[store.LabelledTake]:
     """Return the takes that the revision has not recognised yet."""
     revision = state.revision.revision
     return [
@@ -123,7 +107,7 @@ def list_waiting(studio: Studio, state: LanguageState) -> list[LabelledTake]:
     ]
 
 
-def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
+def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
     """Return the test set of a language, as of its newest revision."""
     shown = _Demonstrations(studio, state)
     takes = [_view(tested, shown) for tested in studio.labelled.of(state.record.id)]
@@ -132,18 +116,18 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
     ]
     labels = dict.fromkeys(take.expected for take, _ in counted)
     gestures = [
-        GestureRateView(
+        schemas.GestureRateView(
             label=label,
             **_rate([each for each in counted if each[0].expected == label]),
         )
         for label in labels
     ]
     compared = [(take, result, take.before) for take, result in counted if take.before is not None]
-    return TestSetView(
+    return schemas.TestSetView(
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
-        overall=RateView(**_rate(counted)),
+        overall=schemas.RateView(**_rate(counted)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
         better=[
             take.id for take, now, before in compared if _worth(take, now) > _worth(take, before)
@@ -158,7 +142,7 @@ def view_test_set(studio: Studio, state: LanguageState) -> TestSetView:
     )
 
 
-def _request_for(studio: Studio, take: LabelledTake) -> TakeToRecognize:
+def _request_for(studio: Studio, take: store.LabelledTake) -> TakeToRecognize:
     recording, clip = studio.recording_file(take.clip_id).path, studio.clips.get(take.clip_id).clip
     return TakeToRecognize(
         recording=recording,
@@ -168,11 +152,15 @@ def _request_for(studio: Studio, take: LabelledTake) -> TakeToRecognize:
     )
 
 
-def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: RecognizedTake) -> None:
+def _keep(
+    studio: Studio, state: store.LanguageState, take: store.LabelledTake, found: RecognizedTake
+) -> None:
     """Store the result of a take, also if it cannot be recognised."""
-    result = LabelledResult(take_id=take.id, revision=state.revision.revision, fault=found.fault)
+    result = store.LabelledResult(
+        take_id=take.id, revision=state.revision.revision, fault=found.fault
+    )
     if (answer := found.answer) is not None:
-        record = RecognitionRecord(
+        record = store.RecognitionRecord(
             clip_id=take.clip_id,
             language_id=state.record.id,
             revision=state.revision.revision,
@@ -190,7 +178,7 @@ def _keep(studio: Studio, state: LanguageState, take: LabelledTake, found: Recog
 
 
 def _ranges(
-    studio: Studio, draft: LabelledTakeDraft, state: LanguageState
+    studio: Studio, draft: schemas.LabelledTakeDraft, state: store.LanguageState
 ) -> Iterator[tuple[float, float]]:
     """Yield start and end of each take that a draft means."""
     recording = studio.recording(draft.clip_id)
@@ -208,13 +196,14 @@ def _ranges(
     )
 
 
-def _worth(take: LabelledTakeView, result: LabelledResultView) -> int:
+def _worth(take: schemas.LabelledTakeView, result: schemas.LabelledResultView) -> int:
     """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer."""
     return 2 * result.right or int(take.expected in (result.pair or ()))
 
 
 def _were_upgraded(
-    studio: Studio, compared: Sequence[tuple[LabelledResultView, LabelledResultView]]
+    studio: Studio,
+    compared: Sequence[tuple[schemas.LabelledResultView, schemas.LabelledResultView]],
 ) -> bool:
     """Return whether another version of the program gave the oldest results before."""
     pairs = [pair for pair in compared if all(each.recognition_id for each in pair)]
@@ -225,12 +214,14 @@ def _were_upgraded(
             json.loads(studio.recognitions.get(each.recognition_id or "").result).get("version")
             for each in min(pairs, key=lambda pair: pair[0].revision)
         }
-    except NotFound:
+    except store.NotFound:
         return False
     return len(versions) > 1  # Versions up to 0.2.0 stored none.
 
 
-def _rate(counted: Sequence[tuple[LabelledTakeView, LabelledResultView]]) -> dict[str, Any]:
+def _rate(
+    counted: Sequence[tuple[schemas.LabelledTakeView, schemas.LabelledResultView]],
+) -> dict[str, Any]:
     share = Share(sum(result.right for _, result in counted), len(counted))
     low, high = share.interval() or (None, None)
     return {
@@ -247,7 +238,7 @@ def _rate(counted: Sequence[tuple[LabelledTakeView, LabelledResultView]]) -> dic
 class _Demonstrations:
     """The ranges of clips that are demonstrations of a language."""
 
-    def __init__(self, studio: Studio, state: LanguageState) -> None:
+    def __init__(self, studio: Studio, state: store.LanguageState) -> None:
         sources = find_sources(studio, studio.language(state)).values()
         self._ranges = [
             (source.clip_id, source.start, source.end)
@@ -256,7 +247,7 @@ class _Demonstrations:
             if source is not None
         ]
 
-    def have(self, take: LabelledTake) -> bool:
+    def have(self, take: store.LabelledTake) -> bool:
         """Return whether a demonstration covers most of a take."""
         least = SAME_TAKE * (take.end - take.start)
         return any(
@@ -265,17 +256,17 @@ class _Demonstrations:
         )
 
 
-def _view(tested: TestedTake, shown: _Demonstrations) -> LabelledTakeView:
+def _view(tested: store.TestedTake, shown: _Demonstrations) -> schemas.LabelledTakeView:
     take = tested.take
     results = [
-        LabelledResultView(
+        schemas.LabelledResultView(
             **result.model_dump(exclude={"take_id", "created", "pair"}),
             pair=read_pair(result.pair),
             right=result.label == take.expected,
         )
         for result in tested.results
     ]
-    return LabelledTakeView(
+    return schemas.LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created"}),
         clip=tested.clip,
         demonstration=shown.have(take),

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import Query, Response
 
-from app.api.http.problems import problem_responses
+from app.api.http.problems import file_responses
 from app.recognition import Gesture
 from app.recognition.features.png import encode_png
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture
 
-IMAGE_RESPONSES: dict[int | str, dict[str, Any]] = {
-    **problem_responses(404),
-    200: {"description": "The trajectory image", "content": {"image/png": {}}},
-}
+IMAGE_RESPONSES = file_responses("The trajectory image", "image/png")
 
 Marks = Annotated[bool, Query(description="With start dot and arrow, for people")]
 

@@ -12,17 +12,10 @@ from fastapi import APIRouter, Header, Request, Response
 from fastapi.responses import FileResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.images import picture_responses, send_picture
-from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.images import JPEG, send_picture
+from app.api.http.problems import ProblemError, file_responses, problem_responses
 from app.api.http.ranges import keep_single_range
-from app.api.http.schemas.clips import (
-    ClipAccepted,
-    ClipView,
-    PosesView,
-    TakeView,
-    TopicChoice,
-    TurnChoice,
-)
+from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
@@ -77,7 +70,7 @@ async def upload_clip(
     studio: CurrentStudio,
     quota: SenderQuota,
     idempotency_key: Annotated[str | None, Header(max_length=255, min_length=1)] = None,
-) -> ClipAccepted:
+) -> schemas.ClipAccepted:
     """Store a clip and queue the extraction of its poses.
 
     Another program's keypoint file is taken too (CSV, JSON, SLEAP, .pose, OpenPose's folder as
@@ -114,7 +107,7 @@ async def upload_clip(
         partial.unlink(missing_ok=True)
 
 
-async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> ClipAccepted:
+async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> schemas.ClipAccepted:
     """Answer an upload whose key was used before; its file must be the same."""
     # The body is read to its end, because a browser receives no answer in the middle of a body.
     partial = studio.clips.new_partial()
@@ -133,11 +126,11 @@ async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> Cli
             f"/api/v1/clips/{earlier.clip.id}/restore, or send another key"
         )
         raise ProblemError(409, "clip_deleted", detail, clip_id=earlier.clip.id)
-    return ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
+    return schemas.ClipAccepted(id=earlier.clip.id, job_id=earlier.job.id)
 
 
 @router.get("/{clip_id}", responses=problem_responses(404))
-def get_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
+def get_clip(clip_id: str, studio: CurrentStudio) -> schemas.ClipView:
     """Describe one clip."""
     return view_clip(studio.clips.get(clip_id))
 
@@ -153,7 +146,7 @@ async def delete_clip(clip_id: str, studio: CurrentStudio) -> Response:
 
 
 @router.post("/{clip_id}/restore", responses=problem_responses(404))
-def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
+def restore_clip(clip_id: str, studio: CurrentStudio) -> schemas.ClipView:
     """Bring a deleted clip back."""
     studio.clips.restore(clip_id)
     studio.broadcast.publish("clips", id=clip_id)
@@ -161,7 +154,7 @@ def restore_clip(clip_id: str, studio: CurrentStudio) -> ClipView:
 
 
 @router.post("/{clip_id}/jobs", status_code=202, responses=problem_responses(404, 409, 429))
-async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> ClipAccepted:
+async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> schemas.ClipAccepted:
     """Extract the poses again, after a job that failed or was cancelled."""
     clip = (await run_in_threadpool(studio.clips.get, clip_id)).clip
     if clip.needs_topic:
@@ -172,8 +165,8 @@ async def retry_clip(request: Request, clip_id: str, studio: CurrentStudio) -> C
 
 @router.post("/{clip_id}/topic", status_code=202, responses=problem_responses(404, 409, 429))
 async def choose_topic(
-    request: Request, clip_id: str, choice: TopicChoice, studio: CurrentStudio
-) -> ClipAccepted:
+    request: Request, clip_id: str, choice: schemas.TopicChoice, studio: CurrentStudio
+) -> schemas.ClipAccepted:
     """Choose the topic of a dive recording that a clip is made of, and extract its poses."""
     found = await run_in_threadpool(studio.clips.get, clip_id)
     known = [topic["name"] for topic in json.loads(found.clip.topics)]
@@ -190,8 +183,8 @@ async def choose_topic(
 
 @router.post("/{clip_id}/turn", status_code=202, responses=problem_responses(404, 409, 429))
 async def turn_clip(
-    request: Request, clip_id: str, choice: TurnChoice, studio: CurrentStudio
-) -> ClipAccepted:
+    request: Request, clip_id: str, choice: schemas.TurnChoice, studio: CurrentStudio
+) -> schemas.ClipAccepted:
     """Turn the pictures of a clip whose camera was held another way, and extract its poses anew.
 
     What was recognised in the clip before stays as it is.
@@ -209,7 +202,7 @@ async def turn_clip(
     return await _submit(job, studio)
 
 
-async def _another_job(request: Request, clip_id: str, studio: Studio) -> ClipAccepted:
+async def _another_job(request: Request, clip_id: str, studio: Studio) -> schemas.ClipAccepted:
     return await _submit(await _queue_again(request, clip_id, studio), studio)
 
 
@@ -224,18 +217,17 @@ async def _queue_again(
     return job
 
 
-async def _submit(job: Job, studio: Studio) -> ClipAccepted:
+async def _submit(job: Job, studio: Studio) -> schemas.ClipAccepted:
     await studio.extractions.submit(job)
     studio.broadcast.publish("clips", id=job.clip_id)
-    return ClipAccepted(id=job.clip_id, job_id=job.id)
+    return schemas.ClipAccepted(id=job.clip_id, job_id=job.id)
 
 
 @router.get(
     "/{clip_id}/video",
     response_class=FileResponse,
     responses={
-        **problem_responses(404, 409, 416),
-        200: {"description": "The clip's own bytes", "content": {"video/*": {}}},
+        **file_responses("The clip's own bytes", "video/*", refusals=(404, 409, 416)),
         206: {"description": "The range asked for", "content": {"video/*": {}}},
     },
 )
@@ -262,7 +254,7 @@ def get_video(request: Request, clip_id: str, studio: CurrentStudio) -> FileResp
 @router.get(
     "/{clip_id}/poster",
     response_class=Response,
-    responses=picture_responses("A small still picture"),
+    responses=file_responses("A small still picture", JPEG),
 )
 def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
     """Send a still picture of the clip: its first frame until its job begins, if it is a video."""
@@ -271,7 +263,9 @@ def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
     return send_picture(studio.clips.poster(clip_id), "no_poster", missing)
 
 
-@router.get("/{clip_id}/poses", response_model=PosesView, responses=problem_responses(404, 409))
+@router.get(
+    "/{clip_id}/poses", response_model=schemas.PosesView, responses=problem_responses(404, 409)
+)
 @computed_briefly
 def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the landmarks in every frame."""
@@ -287,7 +281,7 @@ def get_takes(
     studio: CurrentStudio,
     language_id: TriggerLanguage = None,
     so_far: SoFar = False,
-) -> list[TakeView]:
+) -> list[schemas.TakeView]:
     """List what lies between the salutes, or other triggers of a language."""
     state = None if language_id is None else studio.languages.get(language_id)
     return list(find_takes(studio, clip_id, state, so_far=so_far))

@@ -13,7 +13,7 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.problems import ProblemError, file_responses, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import events_about, task_job
 from app.api.routes.awaited_jobs import await_job
@@ -74,10 +74,9 @@ async def write_session(
 @router.get(
     "/{clip_id}/session.mcap",
     response_class=FileResponse,
-    responses={
-        **problem_responses(404, 409),
-        200: {"description": "An MCAP file with its schemas inside", "content": {MEDIA_TYPE: {}}},
-    },
+    responses=file_responses(
+        "An MCAP file with its schemas inside", MEDIA_TYPE, refusals=(404, 409)
+    ),
 )
 async def get_session(
     request: Request, clip_id: str, studio: CurrentStudio, export: ExportName = None

@@ -7,8 +7,8 @@ import json
 import numpy as np
 from fastapi import APIRouter, Response
 
-from app.api.http.images import picture_responses, send_picture
-from app.api.http.problems import problem_responses
+from app.api.http.images import JPEG, send_picture
+from app.api.http.problems import file_responses, problem_responses
 from app.api.http.schemas.values import SoFar, TriggerLanguage, View
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import trigger_of
@@ -78,7 +78,7 @@ def get_timeline(
 @router.get(
     "/{clip_id}/filmstrip",
     response_class=Response,
-    responses=picture_responses("Thumbnails side by side"),
+    responses=file_responses("Thumbnails side by side", JPEG),
 )
 def get_filmstrip(clip_id: str, studio: CurrentStudio) -> Response:
     """Send the thumbnails along the clip, once its poses are found."""

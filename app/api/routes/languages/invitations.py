@@ -6,16 +6,7 @@ from fastapi import APIRouter, Request, Response
 
 from app.api.http.page_files import INVITATION_ADDRESS, prefix_of
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.invitations import (
-    MEAN_TAKE_BYTES,
-    TAKES_OF_A_GESTURE,
-    InvitationDraft,
-    InvitationView,
-    NewInvitationView,
-    ReceivedTakeChange,
-    ReceivedTakeOutlook,
-    ReceivedTakeView,
-)
+from app.api.http.schemas import invitations as schemas
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.gesture_edits import add_demonstration_to, demonstration_at, gesture_in
 from app.api.services.invited_takes import Returned, add_take, choose_range, remove_take
@@ -32,7 +23,7 @@ router = APIRouter(prefix="/languages/{language_id}/invitations", tags=["invitat
 
 
 @router.get("", responses=problem_responses(404))
-def list_invitations(language_id: str, studio: CurrentStudio) -> list[InvitationView]:
+def list_invitations(language_id: str, studio: CurrentStudio) -> list[schemas.InvitationView]:
     """List the newest invitations to a language, with the takes that came in by each."""
     studio.languages.get(language_id)
     return [_view(each) for each in studio.invitations.of(language_id)]
@@ -42,10 +33,10 @@ def list_invitations(language_id: str, studio: CurrentStudio) -> list[Invitation
 def invite(
     request: Request,
     language_id: str,
-    draft: InvitationDraft,
+    draft: schemas.InvitationDraft,
     studio: CurrentStudio,
     quota: SenderQuota,
-) -> NewInvitationView:
+) -> schemas.NewInvitationView:
     """Invite other people to show each gesture of a language once, by a link.
 
     Who has the link sees the gestures of this language and adds takes to it, and can do nothing
@@ -56,19 +47,19 @@ def invite(
     if not gestures:
         detail = "this language has no gesture that others could show; save one first"
         raise ProblemError(409, "no_gestures", detail)
-    takes = draft.takes or draft.people * len(gestures) * TAKES_OF_A_GESTURE
+    takes = draft.takes or draft.people * len(gestures) * schemas.TAKES_OF_A_GESTURE
     made, token = studio.invitations.add(
         language_id,
         quota.owner,
         most_takes=takes,
-        most_bytes=draft.bytes or takes * MEAN_TAKE_BYTES,
+        most_bytes=draft.bytes or takes * schemas.MEAN_TAKE_BYTES,
         days=draft.days,
     )
     # After the "#", which browsers do not send: so the token is in no log.
     prefix = prefix_of(request.headers, studio.settings)
     link = f"{str(request.base_url).rstrip('/')}{prefix}{INVITATION_ADDRESS}#{token}"
     seen = _view(InvitationState(made, ()))
-    return NewInvitationView(**seen.model_dump(), link=link, qr=draw_qr_code(link))
+    return schemas.NewInvitationView(**seen.model_dump(), link=link, qr=draw_qr_code(link))
 
 
 @router.delete("/{invitation_id}", status_code=204, responses=problem_responses(404))
@@ -83,7 +74,7 @@ def withdraw_invitation(language_id: str, invitation_id: str, studio: CurrentStu
 @computed
 def get_received_take(
     language_id: str, invitation_id: str, take_id: str, studio: CurrentStudio
-) -> ReceivedTakeOutlook:
+) -> schemas.ReceivedTakeOutlook:
     """Show a take that is held, and what the language would read with it."""
     state = studio.languages.get(language_id)
     language = studio.language(state)
@@ -98,7 +89,7 @@ def get_received_take(
     takes = list(load_known(studio, language_id, recognizer, but=take.clip_id))
     with_it = Recognizer(changed, recognizer.profile, tuning=recognizer.tuning)
     repaired, broken = KnownTakes(recognizer, takes).try_change(with_it)
-    return ReceivedTakeOutlook(
+    return schemas.ReceivedTakeOutlook(
         start=shown.start,
         end=shown.end,
         image=data_url(mark_gesture(changed.gesture(take.label).single_demonstrations()[-1])),
@@ -114,17 +105,17 @@ def change_received_take(
     language_id: str,
     invitation_id: str,
     take_id: str,
-    change: ReceivedTakeChange,
+    change: schemas.ReceivedTakeChange,
     studio: CurrentStudio,
     quota: SenderQuota,
-) -> ReceivedTakeView:
+) -> schemas.ReceivedTakeView:
     """Add a take to the language, or remove it; its clip stays."""
     take = _find_take(studio, language_id, invitation_id, take_id)
     try:
         (add_take if change.status == "added" else remove_take)(studio, take, quota)
     except Returned as error:
         raise _refusal(error) from error
-    return ReceivedTakeView.of(studio.invitations.take(invitation_id, take_id))
+    return schemas.ReceivedTakeView.of(studio.invitations.take(invitation_id, take_id))
 
 
 def _find_take(studio: Studio, language_id: str, invitation_id: str, take_id: str) -> InvitedTake:
@@ -141,10 +132,10 @@ def _refusal(error: Returned) -> ProblemError:
     return ProblemError(409, "take_unusable", str(error))
 
 
-def _view(state: InvitationState) -> InvitationView:
+def _view(state: InvitationState) -> schemas.InvitationView:
     invitation = state.invitation
-    return InvitationView(
+    return schemas.InvitationView(
         **invitation.model_dump(exclude={"language_id", "sha256", "owner", "withdrawn"}),
         closed=invitation.closed,
-        shown=[ReceivedTakeView.of(take) for take in state.takes],
+        shown=[schemas.ReceivedTakeView.of(take) for take in state.takes],
     )

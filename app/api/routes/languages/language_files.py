@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
 from app.api.http.downloads import attachment
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import Fault, ProblemError, file_responses, problem_responses
 from app.api.http.revisions import Revision, revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name, View
@@ -64,13 +64,7 @@ async def import_language(
 @router.get(
     "/{language_id}/export",
     response_class=Response,
-    responses={
-        **problem_responses(404),
-        200: {
-            "description": "The language file",
-            "content": {"application/json": {}, "application/xml": {}},
-        },
-    },
+    responses=file_responses("The language file", "application/json", "application/xml"),
 )
 @computed
 def export_language(

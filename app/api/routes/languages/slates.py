@@ -5,12 +5,14 @@ from __future__ import annotations
 from fastapi import APIRouter, Response
 
 from app.api.http.downloads import attachment
-from app.api.http.problems import problem_responses
+from app.api.http.problems import file_responses
 from app.api.http.revisions import Revision
 from app.api.services.running_studio import CurrentStudio, computed_briefly
 from app.ui.slate.layout import lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg
+
+SVG, PDF = "image/svg+xml", "application/pdf"
 
 router = APIRouter(prefix="/languages", tags=["languages"])
 
@@ -18,10 +20,7 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 @router.get(
     "/{language_id}/slate.svg",
     response_class=Response,
-    responses={
-        **problem_responses(404),
-        200: {"description": "The slate", "content": {"image/svg+xml": {}}},
-    },
+    responses=file_responses("The slate", SVG),
 )
 @computed_briefly
 def get_slate_as_svg(
@@ -30,16 +29,13 @@ def get_slate_as_svg(
     """Send a language as one printable page, in the fonts of whoever opens it."""
     state = studio.languages.get(language_id, revision)
     content = to_svg(lay_out(studio.language(state)))
-    return _file(content.encode("utf-8"), "image/svg+xml", attachment(state.revision.name, ".svg"))
+    return _file(content.encode("utf-8"), SVG, attachment(state.revision.name, ".svg"))
 
 
 @router.get(
     "/{language_id}/slate.pdf",
     response_class=Response,
-    responses={
-        **problem_responses(404),
-        200: {"description": "The slate", "content": {"application/pdf": {}}},
-    },
+    responses=file_responses("The slate", PDF),
 )
 @computed_briefly
 def get_slate_as_pdf(
@@ -48,7 +44,7 @@ def get_slate_as_pdf(
     """Send a language as one printable page, with its fonts inside."""
     state = studio.languages.get(language_id, revision)
     content = to_pdf(lay_out(studio.language(state)))
-    return _file(content, "application/pdf", attachment(state.revision.name, ".pdf"))
+    return _file(content, PDF, attachment(state.revision.name, ".pdf"))
 
 
 def _file(content: bytes, media_type: str, disposition: str) -> Response:

@@ -6,7 +6,7 @@ from urllib.parse import quote
 
 from fastapi import APIRouter, Response
 
-from app.api.http.problems import problem_responses
+from app.api.http.problems import file_responses, problem_responses
 from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, computed
 from app.api.services.stored_recognitions import load_context, load_recognition
@@ -44,10 +44,9 @@ def get_compared_images(
 @router.get(
     "/{recognition_id}/analysis",
     response_class=Response,
-    responses={
-        **problem_responses(404, 409),
-        200: {"description": "One file that plays without a server", "content": {"text/html": {}}},
-    },
+    responses=file_responses(
+        "One file that plays without a server", "text/html", refusals=(404, 409)
+    ),
 )
 @computed
 def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
