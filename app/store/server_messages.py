@@ -31,11 +31,9 @@ class Messages(Protocol):
 
     def send(self, text: str) -> None:
         """Send a text to all servers, this one among them; from any thread, without waiting."""
-        ...
 
     def close(self) -> None:
         """Stop sending and receiving."""
-        ...
 
 
 def open_messages(

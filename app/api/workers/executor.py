@@ -35,7 +35,6 @@ class Lines(Protocol):
             When the connection to the process is lost.
 
         """
-        ...
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,6 @@ class Executor(Protocol):
             On entering, when no process can be started now.
 
         """
-        ...
 
     async def close(self) -> None:
         """Release all resources."""
-        ...

@@ -16,15 +16,12 @@ class BodyFinder(Protocol):
 
     def track(self, image: Image, time: float) -> FrameLandmarks:
         """Return the bodies in `image`, taken at `time` seconds, without hands."""
-        ...
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Return the body in `image` alone, without effect on the tracking."""
-        ...
 
     def reset(self) -> None:
         """Reset the tracking, before another clip."""
-        ...
 
 
 class HandFinder(Protocol):
@@ -32,15 +29,12 @@ class HandFinder(Protocol):
 
     def find(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return up to two hands a person in `image`, larger first, given the bodies in it."""
-        ...
 
     def examine(self, image: Image, bodies: Sequence[Body]) -> tuple[Hand, ...]:
         """Return those in `image` alone, without effect on the tracking."""
-        ...
 
     def reset(self) -> None:
         """Reset the tracking, before another clip."""
-        ...
 
 
 class TrackedHands:

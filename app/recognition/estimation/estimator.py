@@ -22,15 +22,12 @@ class PoseEstimator(Protocol):
 
     def estimate(self, image: Image, time: float) -> FrameLandmarks:
         """Find the body and the hands in `image`, taken `time` seconds after any fixed moment."""
-        ...
 
     def reset(self) -> None:
         """Reset tracking and smoothing."""
-        ...
 
     def close(self) -> None:
         """Release the models; the estimator cannot be used afterwards."""
-        ...
 
 
 def check_image(image: Image) -> None:

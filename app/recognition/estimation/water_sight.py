@@ -23,7 +23,6 @@ class Examiner(Protocol):
 
     def examine(self, image: Image) -> FrameLandmarks:
         """Find body and hands in `image` alone, without effect on the tracking."""
-        ...
 
 
 @runtime_checkable
@@ -32,7 +31,6 @@ class Sparing(Protocol):
 
     def spare(self, *, spares: bool) -> None:
         """Look at hands less often, or as often as usual."""
-        ...
 
 
 @runtime_checkable
@@ -41,7 +39,6 @@ class Adopter(Protocol):
 
     def adopt(self, image: Image) -> FrameLandmarks:
         """Return the last frame with what examinations of it, and a search in it, have found."""
-        ...
 
 
 class WaterSight:

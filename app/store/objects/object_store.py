@@ -18,7 +18,6 @@ class ObjectStore(Protocol):
             When it cannot be stored now.
 
         """
-        ...
 
     def download(self, name: str, target: Path) -> bool:
         """Write the file stored under `name` to `target`; return False if there is none.
@@ -29,7 +28,6 @@ class ObjectStore(Protocol):
             When the store does not answer; `target` may then be incomplete.
 
         """
-        ...
 
     def size(self, name: str) -> int | None:
         """Return the bytes of the file stored under `name`; None if there is none.
@@ -40,7 +38,6 @@ class ObjectStore(Protocol):
             When the store does not answer.
 
         """
-        ...
 
     def remove(self, clip_id: str) -> None:
         """Remove all files of a clip; do nothing if there are none.
@@ -51,7 +48,6 @@ class ObjectStore(Protocol):
             When some files may be left.
 
         """
-        ...
 
 
 class SharedFolder:
