@@ -11,12 +11,10 @@ def upgrade() -> None:
     """Create the table; the sources of gestures saved before are unknown."""
     op.create_table(
         "demonstration_source",
-        sa.Column("trajectory", sa.String(64), nullable=False),
-        sa.Column("clip_id", sa.String(32), nullable=False),
+        sa.Column("trajectory", sa.String(64), primary_key=True),
+        sa.Column("clip_id", sa.String(32), nullable=False, index=True),
         sa.Column("start", sa.Float(), nullable=False),
         sa.Column("end", sa.Float(), nullable=False),
         sa.Column("keep_transit", sa.Boolean(), nullable=False),
         sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("trajectory"),
     )
-    op.create_index("ix_demonstration_source_clip_id", "demonstration_source", ["clip_id"])

@@ -13,9 +13,9 @@ def upgrade() -> None:
     """Make the tables."""
     op.create_table(
         "invitation",
-        sa.Column("id", sa.String(32), nullable=False),
-        sa.Column("language_id", sa.String(32), nullable=False),
-        sa.Column("sha256", sa.String(64), nullable=False),
+        sa.Column("id", sa.String(32), primary_key=True),
+        sa.Column("language_id", sa.String(32), nullable=False, index=True),
+        sa.Column("sha256", sa.String(64), nullable=False, unique=True),
         sa.Column("owner", sa.String(80), nullable=False),
         sa.Column("most_takes", sa.Integer(), nullable=False),
         sa.Column("most_bytes", _BYTES, nullable=False),
@@ -25,19 +25,16 @@ def upgrade() -> None:
         sa.Column("expires", sa.DateTime(), nullable=False),
         sa.Column("withdrawn", sa.DateTime(), nullable=True),
         sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("id"),
-        sa.UniqueConstraint("sha256"),
     )
-    op.create_index("ix_invitation_language_id", "invitation", ["language_id"])
     op.create_table(
         "invited_take",
-        sa.Column("id", sa.String(32), nullable=False),
-        sa.Column("invitation_id", sa.String(32), nullable=False),
+        sa.Column("id", sa.String(32), primary_key=True),
+        sa.Column("invitation_id", sa.String(32), nullable=False, index=True),
         sa.Column("clip_id", sa.String(32), nullable=False),
         sa.Column("label", sa.String(200), nullable=False),
         sa.Column("diver", sa.String(80), nullable=False),
         sa.Column("size", _BYTES, nullable=False),
-        sa.Column("status", sa.String(16), nullable=False),
+        sa.Column("status", sa.String(16), nullable=False, index=True),
         sa.Column("reason", sa.Text(), nullable=True),
         sa.Column("claimed", sa.DateTime(), nullable=True),
         sa.Column("created", sa.DateTime(), nullable=False),
@@ -45,7 +42,4 @@ def upgrade() -> None:
             "status IN ('waiting', 'added', 'returned')", name="invited_take_status"
         ),
         sa.ForeignKeyConstraint(["invitation_id"], ["invitation.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("id"),
     )
-    op.create_index("ix_invited_take_invitation_id", "invited_take", ["invitation_id"])
-    op.create_index("ix_invited_take_status", "invited_take", ["status"])

@@ -25,24 +25,21 @@ def upgrade() -> None:
     """Create the tables; fill the first from the recognitions that served as the test until now."""
     takes = op.create_table(
         "labelled_take",
-        sa.Column("id", sa.String(32), nullable=False),
-        sa.Column("language_id", sa.String(32), nullable=False),
-        sa.Column("clip_id", sa.String(32), nullable=False),
+        sa.Column("id", sa.String(32), primary_key=True),
+        sa.Column("language_id", sa.String(32), nullable=False, index=True),
+        sa.Column("clip_id", sa.String(32), nullable=False, index=True),
         sa.Column("start", sa.Float(), nullable=False),
         sa.Column("end", sa.Float(), nullable=False),
         sa.Column("expected", sa.String(200), nullable=False),
         sa.Column("created", sa.DateTime(), nullable=False),
         sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
         sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("id"),
         sa.UniqueConstraint("language_id", "clip_id", "start", name="labelled_range"),
     )
-    op.create_index("ix_labelled_take_language_id", "labelled_take", ["language_id"])
-    op.create_index("ix_labelled_take_clip_id", "labelled_take", ["clip_id"])
     op.create_table(
         "labelled_result",
-        sa.Column("take_id", sa.String(32), nullable=False),
-        sa.Column("revision", sa.Integer(), nullable=False),
+        sa.Column("take_id", sa.String(32), primary_key=True),
+        sa.Column("revision", sa.Integer(), primary_key=True),
         sa.Column("recognition_id", sa.String(32), nullable=True),
         sa.Column("label", sa.String(200), nullable=True),
         sa.Column("nearest", sa.String(200), nullable=True),
@@ -50,7 +47,6 @@ def upgrade() -> None:
         sa.Column("fault", sa.Text(), nullable=True),
         sa.Column("created", sa.DateTime(), nullable=False),
         sa.ForeignKeyConstraint(["take_id"], ["labelled_take.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("take_id", "revision"),
     )
     newest: dict[tuple[str, str, float], sa.Row[tuple[object, ...]] | None] = {}
     for row in op.get_bind().execute(

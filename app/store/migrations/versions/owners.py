@@ -13,15 +13,13 @@ def upgrade() -> None:
     op.create_index("ix_clip_owner", "clip", ["owner"])
     op.create_table(
         "audit_entry",
-        sa.Column("id", sa.Integer(), nullable=False),
+        sa.Column("id", sa.Integer(), primary_key=True),
         sa.Column("time", sa.DateTime(), nullable=False),
-        sa.Column("name", sa.String(80), nullable=False),
+        sa.Column("name", sa.String(80), nullable=False, index=True),
         sa.Column("role", sa.String(16), nullable=False),
         sa.Column("address", sa.String(64), nullable=False),
         sa.Column("method", sa.String(16), nullable=False),
         sa.Column("path", sa.String(300), nullable=False),
         sa.Column("status", sa.Integer(), nullable=False),
         sa.Column("request_id", sa.String(64), nullable=False),
-        sa.PrimaryKeyConstraint("id"),
     )
-    op.create_index("ix_audit_entry_name", "audit_entry", ["name"])

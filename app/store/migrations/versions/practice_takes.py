@@ -11,9 +11,9 @@ def upgrade() -> None:
     """Make the table."""
     op.create_table(
         "practice_take",
-        sa.Column("id", sa.String(32), nullable=False),
-        sa.Column("language_id", sa.String(32), nullable=False),
-        sa.Column("clip_id", sa.String(32), nullable=False),
+        sa.Column("id", sa.String(32), primary_key=True),
+        sa.Column("language_id", sa.String(32), nullable=False, index=True),
+        sa.Column("clip_id", sa.String(32), nullable=False, index=True),
         sa.Column("start", sa.Float(), nullable=False),
         sa.Column("diver", sa.String(80), nullable=False),
         sa.Column("expected", sa.String(200), nullable=False),
@@ -23,7 +23,4 @@ def upgrade() -> None:
         sa.Column("created", sa.DateTime(), nullable=False),
         sa.ForeignKeyConstraint(["language_id"], ["language.id"], ondelete="CASCADE"),
         sa.ForeignKeyConstraint(["clip_id"], ["clip.id"], ondelete="CASCADE"),
-        sa.PrimaryKeyConstraint("id"),
     )
-    op.create_index("ix_practice_take_language_id", "practice_take", ["language_id"])
-    op.create_index("ix_practice_take_clip_id", "practice_take", ["clip_id"])

@@ -13,8 +13,7 @@ def upgrade() -> None:
     op.add_column("job", sa.Column("lease", sa.DateTime(), nullable=True))
     count = op.create_table(
         "change_count",
-        sa.Column("id", sa.Integer(), nullable=False),
+        sa.Column("id", sa.Integer(), primary_key=True),
         sa.Column("changes", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), nullable=False),
-        sa.PrimaryKeyConstraint("id"),
     )
     op.bulk_insert(count, [{"id": 1, "changes": 0}])

@@ -11,11 +11,8 @@ def upgrade() -> None:
     """Add the table."""
     op.create_table(
         "sign_in",
-        sa.Column("id", sa.String(64), nullable=False),
-        sa.Column("name", sa.String(80), nullable=False),
+        sa.Column("id", sa.String(64), primary_key=True),
+        sa.Column("name", sa.String(80), nullable=False, index=True),
         sa.Column("proof", sa.String(64), nullable=False),
-        sa.Column("created", sa.DateTime(), nullable=False),
-        sa.PrimaryKeyConstraint("id"),
+        sa.Column("created", sa.DateTime(), nullable=False, index=True),
     )
-    op.create_index("ix_sign_in_name", "sign_in", ["name"])
-    op.create_index("ix_sign_in_created", "sign_in", ["created"])

@@ -11,10 +11,8 @@ def upgrade() -> None:
     """Add the table."""
     op.create_table(
         "upload_reservation",
-        sa.Column("id", sa.String(32), nullable=False),
-        sa.Column("owner", sa.String(80), nullable=False),
+        sa.Column("id", sa.String(32), primary_key=True),
+        sa.Column("owner", sa.String(80), nullable=False, index=True),
         sa.Column("size", sa.BigInteger().with_variant(sa.Integer(), "sqlite"), nullable=False),
         sa.Column("touched", sa.DateTime(), nullable=False),
-        sa.PrimaryKeyConstraint("id"),
     )
-    op.create_index("ix_upload_reservation_owner", "upload_reservation", ["owner"])
