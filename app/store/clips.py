@@ -192,9 +192,7 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.reading() as session:
-            clip = session.get(Clip, clip_id)
-            if clip is None or clip.deleted is not None:
-                raise NotFound(f"there is no clip {clip_id!r}")
+            clip = _load(session, clip_id)
             return ClipWithJob(clip, _newest_jobs(col(Clip.id) == clip_id, session)[clip_id])
 
     def all(self) -> list[ClipWithJob]:
@@ -264,9 +262,7 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.writing() as session:
-            clip = session.get(Clip, clip_id)
-            if clip is None or clip.deleted is not None:
-                raise NotFound(f"there is no clip {clip_id!r}")
+            clip = _load(session, clip_id)
             clip.deleted = now()
             session.add(clip)
 
@@ -295,9 +291,7 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.writing() as session:
-            clip = session.get(Clip, clip_id)
-            if clip is None or clip.deleted is not None:
-                raise NotFound(f"there is no clip {clip_id!r}")
+            clip = _load(session, clip_id)
             known = {each["name"]: each for each in json.loads(clip.topics)}
             if topic not in known:
                 raise NotFound(f"clip {clip_id!r} has no topic {topic!r} to choose")
@@ -317,9 +311,7 @@ class ClipStore(DatabaseStore):
 
         """
         with self._database.writing() as session:
-            clip = session.get(Clip, clip_id)
-            if clip is None or clip.deleted is not None:
-                raise NotFound(f"there is no clip {clip_id!r}")
+            clip = _load(session, clip_id)
             options = json.loads(clip.options or "{}")
             options["turn"] = (clip.turn + degrees) % 360
             clip.options = json.dumps({name: each for name, each in options.items() if each})
@@ -470,6 +462,14 @@ class ClipStore(DatabaseStore):
     def _same_upload(self, clip: Clip) -> ClipWithJob | None:
         key = clip.idempotency_key
         return None if key is None else self.by_idempotency_key(key)
+
+
+def _load(session: Session, clip_id: str) -> Clip:
+    """Return a clip that is not deleted."""
+    clip = session.get(Clip, clip_id)
+    if clip is None or clip.deleted is not None:
+        raise NotFound(f"there is no clip {clip_id!r}")
+    return clip
 
 
 def _standing(statuses: tuple[JobStatus, ...]) -> SelectOfScalar[str]:

@@ -13,13 +13,7 @@ from fastapi import APIRouter, Depends, Query, Request
 from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.schemas.invitations import (
-    MOST_TAKE_BYTES,
-    InvitedAnswer,
-    InvitedGestureView,
-    InvitedTakeView,
-    InvitedView,
-)
+from app.api.http.schemas import invitations as schemas
 from app.api.http.schemas.values import Diver, Label
 from app.api.ingest.intake import UNSUPPORTED, Inspected, inspect, require_place_in_queue, store
 from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
@@ -63,16 +57,18 @@ FORM = {
 
 @router.get("", responses=problem_responses(404, 429))
 @computed_briefly
-def get_invited_language(studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedView:
+def get_invited_language(
+    studio: CurrentStudio, invitation: CurrentInvitation
+) -> schemas.InvitedView:
     """Show the gestures of the language that one is invited to."""
     language = studio.language(studio.languages.get(invitation.language_id))
-    return InvitedView(
+    return schemas.InvitedView(
         id=invitation.id,
         language=language.name,
         trigger=language.trigger.kind,
         expires=invitation.expires,
         takes_left=max(0, invitation.most_takes - invitation.takes),
-        most_bytes=min(studio.settings.max_clip_bytes, MOST_TAKE_BYTES),
+        most_bytes=min(studio.settings.max_clip_bytes, schemas.MOST_TAKE_BYTES),
         gestures=[_view(gesture) for gesture in language.gestures],
     )
 
@@ -90,7 +86,7 @@ async def send_take(
     invitation: CurrentInvitation,
     label: Annotated[Label, Query(description="The gesture that it shows")],
     diver: Annotated[Diver, Query(min_length=1, pattern=r"\S", description="Who shows it")],
-) -> InvitedTakeView:
+) -> schemas.InvitedTakeView:
     """Send a video of one gesture, shown once.
 
     The take is added to the gesture as this person's demonstration, or returned with the reason;
@@ -124,31 +120,33 @@ async def send_take(
             raise
     finally:
         received.unlink(missing_ok=True)
-    return InvitedTakeView.of(take)
+    return schemas.InvitedTakeView.of(take)
 
 
 @router.get("/takes/{take_id}", responses=problem_responses(404, 429))
-def get_take(take_id: str, studio: CurrentStudio, invitation: CurrentInvitation) -> InvitedTakeView:
+def get_take(
+    take_id: str, studio: CurrentStudio, invitation: CurrentInvitation
+) -> schemas.InvitedTakeView:
     """Tell whether a take was added, why it was returned, or what is asked about it."""
-    return InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
+    return schemas.InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
 
 
 @router.put("/takes/{take_id}/answer", responses=problem_responses(404, 429))
 @edited
 def answer_about_take(
     take_id: str,
-    answer: InvitedAnswer,
+    answer: schemas.InvitedAnswer,
     studio: CurrentStudio,
     quota: SenderQuota,
     invitation: CurrentInvitation,
-) -> InvitedTakeView:
+) -> schemas.InvitedTakeView:
     """Say whether a take is the gesture, where the language does not read it so.
 
     An answer that comes again changes nothing, nor does one about a take that is not asked about.
     """
     take = studio.invitations.take(invitation.id, take_id)
     answer_question(studio, take, quota, confirmed=answer.confirmed)
-    return InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
+    return schemas.InvitedTakeView.of(studio.invitations.take(invitation.id, take_id))
 
 
 async def _receive_within(
@@ -186,9 +184,9 @@ def _require_wanted(studio: Studio, invitation: Invitation, label: str, diver: s
         raise ProblemError(409, "already_shown", str(error)) from error
 
 
-def _view(gesture: Gesture) -> InvitedGestureView:
+def _view(gesture: Gesture) -> schemas.InvitedGestureView:
     shown = gesture.trajectory
-    return InvitedGestureView(
+    return schemas.InvitedGestureView(
         label=gesture.label,
         description=gesture.description,
         image=data_url(mark_gesture(gesture)),

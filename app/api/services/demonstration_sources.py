@@ -72,6 +72,12 @@ def find_sources(studio: Studio, language: Language) -> dict[str, list[Demonstra
     }
 
 
+def list_sources(studio: Studio, language: Language) -> list[DemonstrationSource]:
+    """Return the known sources of a language's demonstrations."""
+    rows = find_sources(studio, language).values()
+    return [source for row in rows for source in row if source is not None]
+
+
 def _view(
     studio: Studio, source: DemonstrationSource, shown: Gesture, trigger: Trigger
 ) -> SourceView:

@@ -19,14 +19,9 @@ from app import store
 from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import DemonstrationDraft
 from app.api.jobs.job import compute_in_place
+from app.api.services import gesture_edits
 from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
-from app.api.services.gesture_edits import (
-    add_demonstration_to,
-    demonstration_at,
-    gesture_in,
-    remove_demonstration_from,
-)
 from app.api.services.identities import Identities
 from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
@@ -190,7 +185,7 @@ def remove_take(studio: Studio, take: store.InvitedTake, quota: store.Quota) -> 
         row = find_sources(studio, language).get(take.label, [])
         for index, source in enumerate(row):
             if source is not None and source.clip_id == take.clip_id:
-                return remove_demonstration_from(language, take.label, index)
+                return gesture_edits.remove_demonstration_from(language, take.label, index)
         return language
 
     language = studio.language(studio.languages.get(language_id))
@@ -256,7 +251,7 @@ def add_take(
     try:
         state = studio.languages.get(invitation.language_id)
         language = studio.language(state)
-        gesture = gesture_in(language, take.label)
+        gesture = gesture_edits.gesture_in(language, take.label)
     except (store.NotFound, ProblemError) as error:
         raise Returned("The language has no such gesture any more.") from error
     if any(
@@ -267,7 +262,7 @@ def add_take(
     require_unshown(gesture, take.diver)
     draft = choose_range(studio, take, gesture, language.trigger)
     try:
-        shown = demonstration_at(studio, draft, language.trigger)
+        shown = gesture_edits.demonstration_at(studio, draft, language.trigger)
         if not sure:
             _require_read(studio.recognizer(state), take.label, shown)
         edit = edit_document(
@@ -301,8 +296,8 @@ def _with_take(language: Language, draft: DemonstrationDraft, shown: Demonstrati
 
     It is made from the newest revision, so that no other take comes in between.
     """
-    require_unshown(gesture_in(language, draft.label), draft.diver)
-    return add_demonstration_to(language, draft, shown)
+    require_unshown(gesture_edits.gesture_in(language, draft.label), draft.diver)
+    return gesture_edits.add_demonstration_to(language, draft, shown)
 
 
 def require_unshown(gesture: Gesture, diver: str) -> None:

@@ -13,7 +13,7 @@ from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, 
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import find_sources, list_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
@@ -137,12 +137,7 @@ def load_known(
 
     """
     language = recognizer.language
-    shown = {
-        source.clip_id
-        for row in find_sources(studio, language).values()
-        for source in row
-        if source is not None
-    }
+    shown = {source.clip_id for source in list_sources(studio, language)}
     count = 0
     for take in reversed(list_known(studio, language_id)):
         if take.clip_id in {*shown, but} or take.expected not in language.labels:

@@ -13,7 +13,7 @@ from app.api.jobs.job import Job, Progress, Report, events_about, run_task
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
@@ -109,7 +109,7 @@ def list_waiting(studio: Studio, state: store.LanguageState) -> list[store.Label
 
 def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
     """Return the test set of a language, as of its newest revision."""
-    shown = _Demonstrations(studio, state)
+    shown = list_sources(studio, studio.language(state))
     takes = [_view(tested, shown) for tested in studio.labelled.of(state.record.id)]
     counted = [
         (take, take.result) for take in takes if take.result is not None and not take.demonstration
@@ -235,28 +235,19 @@ def _rate(
     }
 
 
-class _Demonstrations:
-    """The ranges of clips that are demonstrations of a language."""
-
-    def __init__(self, studio: Studio, state: store.LanguageState) -> None:
-        sources = find_sources(studio, studio.language(state)).values()
-        self._ranges = [
-            (source.clip_id, source.start, source.end)
-            for row in sources
-            for source in row
-            if source is not None
-        ]
-
-    def have(self, take: store.LabelledTake) -> bool:
-        """Return whether a demonstration covers most of a take."""
-        least = SAME_TAKE * (take.end - take.start)
-        return any(
-            clip_id == take.clip_id and min(take.end, end) - max(take.start, start) > least
-            for clip_id, start, end in self._ranges
-        )
+def _is_demonstration(take: store.LabelledTake, shown: Sequence[store.DemonstrationSource]) -> bool:
+    """Return whether a demonstration covers most of a take."""
+    least = SAME_TAKE * (take.end - take.start)
+    return any(
+        each.clip_id == take.clip_id
+        and min(take.end, each.end) - max(take.start, each.start) > least
+        for each in shown
+    )
 
 
-def _view(tested: store.TestedTake, shown: _Demonstrations) -> schemas.LabelledTakeView:
+def _view(
+    tested: store.TestedTake, shown: Sequence[store.DemonstrationSource]
+) -> schemas.LabelledTakeView:
     take = tested.take
     results = [
         schemas.LabelledResultView(
@@ -269,7 +260,7 @@ def _view(tested: store.TestedTake, shown: _Demonstrations) -> schemas.LabelledT
     return schemas.LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created"}),
         clip=tested.clip,
-        demonstration=shown.have(take),
+        demonstration=_is_demonstration(take, shown),
         result=results[0] if results else None,
         before=results[1] if len(results) > 1 else None,
     )

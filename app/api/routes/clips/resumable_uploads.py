@@ -20,14 +20,8 @@ from starlette.requests import ClientDisconnect
 
 from app.api.http.page_files import prefix_of
 from app.api.http.problems import ProblemError, problem_responses
+from app.api.ingest import intake
 from app.api.ingest.fields import LONGEST, UploadFields
-from app.api.ingest.intake import (
-    bytes_to_come,
-    client_of,
-    inspect,
-    require_place_in_queue,
-    store,
-)
 from app.api.ingest.multipart import display_name, require_space
 from app.api.ingest.quotas import SenderQuota
 from app.api.middleware.request_bodies import too_large
@@ -97,14 +91,14 @@ async def begin_upload(
     # space.
     beginning = _beginning.setdefault(str(studio.clips.folder), asyncio.Lock())
     async with beginning:
-        reserved = await require_place_in_queue(request, studio)
+        reserved = await intake.require_place_in_queue(request, studio)
         require_space(studio.clips.folder, upload_length, studio.settings, reserved=reserved)
         upload = await run_in_threadpool(
             studio.uploads.create,
             name,
             upload_length,
             texts,
-            client_of(request),
+            intake.client_of(request),
             quota.owner,
         )
         try:
@@ -199,7 +193,7 @@ async def _append(request: Request, upload_id: str, studio: Studio, upload_offse
     others = [
         each for each in await run_in_threadpool(studio.uploads.active) if each.id != upload_id
     ]
-    reserved = bytes_to_come(others)
+    reserved = intake.bytes_to_come(others)
     require_space(studio.clips.folder, upload.missing, studio.settings, reserved=reserved)
     await run_in_threadpool(studio.quotas.renew, upload)
     offset = await _write(request, upload, upload_offset, studio)
@@ -301,7 +295,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
     clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     if clip is None:
         try:
-            made = await inspect(
+            made = await intake.inspect(
                 upload.path,
                 studio,
                 name=upload.name,
@@ -312,7 +306,7 @@ async def _accept(request: Request, upload: Upload, studio: Studio) -> dict[str,
             await run_in_threadpool(_forget, upload.id, studio)
             raise
         made.clip.idempotency_key, made.clip.owner = upload.id, upload.owner
-        await store(made, upload.path, studio, request, upload_id=upload.id)
+        await intake.store(made, upload.path, studio, request, upload_id=upload.id)
         clip = await run_in_threadpool(studio.clips.by_idempotency_key, upload.id)
     # Also when it was a clip already: a crash may have come between the two.
     await run_in_threadpool(studio.uploads.remove, upload.id)

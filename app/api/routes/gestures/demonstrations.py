@@ -15,14 +15,8 @@ from app.api.http.revisions import Revision
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
 from app.api.routes.language_edits import CurrentEdit
+from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source, sources_in
-from app.api.services.gesture_edits import (
-    add_demonstration_to,
-    demonstration_at,
-    gesture_in,
-    remove_demonstration_from,
-    require_demonstration,
-)
 from app.api.services.language_responses import view_demonstrations
 from app.api.services.running_studio import CurrentStudio, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
@@ -42,7 +36,7 @@ def list_demonstrations(
     """List the demonstrations of a gesture."""
     state = studio.languages.get(language_id, revision)
     language = studio.language(state)
-    gesture = gesture_in(language, label)
+    gesture = gesture_edits.gesture_in(language, label)
     return view_demonstrations(state, gesture, sources_in(studio, language)[label])
 
 
@@ -52,8 +46,8 @@ def add_demonstration(
     draft: DemonstrationDraft, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Add a take to a gesture as one more demonstration, by the same diver or another."""
-    demonstration = demonstration_at(studio, draft, edit.trigger)
-    changed = partial(add_demonstration_to, draft=draft, demonstration=demonstration)
+    demonstration = gesture_edits.demonstration_at(studio, draft, edit.trigger)
+    changed = partial(gesture_edits.add_demonstration_to, draft=draft, demonstration=demonstration)
     state = edit.save(f"Add a demonstration of {draft.label}", changed)
     keep_source(studio, state, draft.label, draft, demonstration, index=-1)
     return edit.answer(state)
@@ -65,7 +59,7 @@ def remove_demonstration(
     index: Index, label: str, studio: CurrentStudio, edit: CurrentEdit
 ) -> LanguageView:
     """Remove a demonstration of a gesture that has others; without the first, the next is first."""
-    changed = partial(remove_demonstration_from, label=label, index=index)
+    changed = partial(gesture_edits.remove_demonstration_from, label=label, index=index)
     return edit.answer(edit.save(f"Remove a demonstration of {label}", changed))
 
 
@@ -80,5 +74,5 @@ def get_demonstration_image(
 ) -> Response:
     """Send the trajectory image of a demonstration."""
     language = studio.language(studio.languages.get(language_id, revision))
-    shown = require_demonstration(gesture_in(language, label), index)
+    shown = gesture_edits.require_demonstration(gesture_edits.gesture_in(language, label), index)
     return send_trajectory_image(shown, revision, marks)

@@ -11,20 +11,10 @@ from pydantic import Field
 
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
-from app.api.http.schemas.gestures import (
-    HELD_SHAPES,
-    STROKES,
-    DemonstrationFaultView,
-    GestureChange,
-    SwitchPosition,
-)
+from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.values import Body, Label, View
+from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import view_faults
-from app.api.services.gesture_edits import (
-    EditedGesture,
-    demonstration_at,
-    gesture_in,
-)
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
@@ -35,12 +25,7 @@ from app.recognition.gestures.switches import Sensitivity, describe_effects
 from app.recognition.health.check import rank_others
 from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.preprocessing.salience import (
-    choose_representatives,
-    find_least_displacement,
-    find_salient_landmarks,
-    measure_displacements,
-)
+from app.recognition.preprocessing import salience
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.ui.charts import png
 from app.ui.direction_marks import mark_gesture
@@ -61,7 +46,7 @@ class PreviewRequest(Body):
 
     label: Label | None = None
     """Which gesture is changed; null: a new."""
-    change: GestureChange
+    change: schemas.GestureChange
     """A new gesture needs its demonstration."""
 
 
@@ -97,7 +82,7 @@ class PreviewView(View):
     """The trajectory image, a data URI of a PNG."""
     salient: list[str]
     """The keypoints that are drawn."""
-    held_shapes: int = Field(description=HELD_SHAPES)
+    held_shapes: int = Field(description=schemas.HELD_SHAPES)
     keypoints: list[KeypointView]
     """Empty without a demonstration."""
     threshold: Annotated[float, Field(ge=0)] | None
@@ -110,15 +95,15 @@ class PreviewView(View):
     end: float | None
     seconds: float | None
     """How long the demonstration lasts."""
-    strokes: str = Field(description=STROKES)
-    faults: list[DemonstrationFaultView]
+    strokes: str = Field(description=schemas.STROKES)
+    faults: list[schemas.DemonstrationFaultView]
     """Why its range of the clip is a bad demonstration, the gravest fault first."""
 
 
 class SwitchView(View):
     """A switch, and what comes of it in this language."""
 
-    position: SwitchPosition
+    position: schemas.SwitchPosition
     counts: bool | None
     """Null: only the drawing is compared."""
     words: str
@@ -214,25 +199,29 @@ def _nearest(gesture: Gesture, recognizer: Recognizer) -> list[NearGestureView] 
     ]
 
 
-def _draft(language: Language, request: PreviewRequest, studio: Studio) -> EditedGesture:
+def _draft(
+    language: Language, request: PreviewRequest, studio: Studio
+) -> gesture_edits.EditedGesture:
     where = request.change.demonstration
     if request.label is not None:
-        gesture_in(language, request.label)
+        gesture_edits.gesture_in(language, request.label)
     elif where is None:
         detail = "a new gesture needs a demonstration: name its clip"
         fault = Fault(pointer="/change/demonstration", detail=detail)
         raise ProblemError(422, "request_invalid", detail, errors=[fault])
-    shown = None if where is None else demonstration_at(studio, where, language.trigger)
-    return EditedGesture(language, request.label, request.change, shown)
+    shown = (
+        None if where is None else gesture_edits.demonstration_at(studio, where, language.trigger)
+    )
+    return gesture_edits.EditedGesture(language, request.label, request.change, shown)
 
 
 def _view(
     gesture: Gesture | None,
-    draft: EditedGesture,
+    draft: gesture_edits.EditedGesture,
     problem: str | None,
     *,
     marks: bool,
-    faults: Sequence[DemonstrationFaultView] = (),
+    faults: Sequence[schemas.DemonstrationFaultView] = (),
 ) -> PreviewView:
     trajectory, shown = draft.trajectory(), draft.demonstration
     known = trajectory is not None and len(trajectory) > 0
@@ -242,7 +231,7 @@ def _view(
         salient=[] if gesture is None else list(gesture.salient),
         held_shapes=0 if gesture is None else len(gesture.held_shapes),
         keypoints=_keypoints(trajectory) if known and trajectory else [],
-        threshold=find_least_displacement(trajectory) if known and trajectory else None,
+        threshold=salience.find_least_displacement(trajectory) if known and trajectory else None,
         unit="torso_length" if trajectory is None else trajectory.unit,
         descriptors=[] if gesture is None else _descriptors(gesture),
         start=None if shown is None else shown.start,
@@ -260,8 +249,11 @@ def _image(gesture: Gesture, *, marks: bool) -> str:
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:
-    moved, usual = measure_displacements(trajectory), choose_representatives(trajectory)
-    proposed = find_salient_landmarks(trajectory)
+    moved, usual = (
+        salience.measure_displacements(trajectory),
+        salience.choose_representatives(trajectory),
+    )
+    proposed = salience.find_salient_landmarks(trajectory)
     views = [
         KeypointView(
             landmark=name,

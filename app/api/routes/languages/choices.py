@@ -14,12 +14,7 @@ from pydantic import Field, model_validator
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
-from app.api.http.schemas.gestures import (
-    MOST_GESTURES_AT_ONCE,
-    GestureDraft,
-    GesturesDraft,
-    NewDemonstration,
-)
+from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.routes.language_edits import CurrentEdit
@@ -58,10 +53,10 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 PEOPLE = "By whose demonstrations this is known, in a sentence"
 
 
-class ChoiceRequest(GesturesDraft):
+class ChoiceRequest(schemas.GesturesDraft):
     """Takes of clips, of which some are to become gestures."""
 
-    keep: Annotated[int, Field(ge=1, le=MOST_GESTURES_AT_ONCE)]
+    keep: Annotated[int, Field(ge=1, le=schemas.MOST_GESTURES_AT_ONCE)]
     """How many of them."""
     language_id: Identifier | None = None
     """Language that has gestures beside them; null: a new one."""
@@ -91,9 +86,9 @@ class ReplacementsRequest(Body):
     """A gesture of a language that may get another movement."""
 
     label: Label
-    gestures: Annotated[list[GestureDraft], Field(max_length=MOST_GESTURES_AT_ONCE)] = Field(
-        default=[]
-    )
+    gestures: Annotated[
+        list[schemas.GestureDraft], Field(max_length=schemas.MOST_GESTURES_AT_ONCE)
+    ] = Field(default=[])
     """Takes of clips that may take its place; those that cannot are left out."""
 
 
@@ -141,7 +136,7 @@ class ReplacementDraft(Body):
     sample: Identifier | None = None
     gesture: Label | None = None
     """Label in the sample language."""
-    demonstration: NewDemonstration | None = None
+    demonstration: schemas.NewDemonstration | None = None
 
     @model_validator(mode="after")
     def _require_one(self) -> ReplacementDraft:
@@ -309,7 +304,7 @@ def _list_samples(studio: Studio, language: Language, own: Gesture) -> Iterator[
 
 def _list_takes(
     studio: Studio,
-    drafts: Sequence[GestureDraft],
+    drafts: Sequence[schemas.GestureDraft],
     language: Language,
     advance: Callable[[], None],
 ) -> Iterator[_Candidate]:

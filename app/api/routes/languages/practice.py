@@ -11,7 +11,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.recognitions import RecognitionRequest
 from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds, View
 from app.api.ingest.quotas import SenderQuota
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import list_sources
 from app.api.services.explanation_notes import write_notes
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
@@ -110,11 +110,7 @@ def show_gesture(
     language = studio.language(state)
     if draft.expected not in language.labels:
         raise ProblemError(404, "not_found", f"there is no gesture {draft.expected[:80]!r}")
-    if any(
-        source is not None and source.clip_id == draft.clip_id
-        for row in find_sources(studio, language).values()
-        for source in row
-    ):
+    if draft.clip_id in {source.clip_id for source in list_sources(studio, language)}:
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
     shown = draft.model_dump(exclude={"diver"})
