@@ -6,7 +6,7 @@ import shutil
 import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
@@ -48,6 +48,17 @@ class Upload:
     name: str
     size: int
     fields: UploadFields
+
+
+def file_form(**properties: Any) -> dict[str, Any]:
+    """Return the ``openapi_extra`` of a route that takes a form with a file and more."""
+    schema = {
+        "type": "object",
+        "required": ["file"],
+        "properties": {"file": {"type": "string", "format": "binary"}, **properties},
+    }
+    content = {"multipart/form-data": {"schema": schema}}
+    return {"requestBody": {"required": True, "content": content}}
 
 
 async def receive_file(

@@ -16,7 +16,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import invitations as schemas
 from app.api.http.schemas.values import Diver, Label
 from app.api.ingest.intake import UNSUPPORTED, Inspected, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, receive_file
+from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, file_form, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.invited_takes import Returned, answer_question, require_unshown
@@ -38,21 +38,6 @@ def _invitation_of(request: Request) -> Invitation:
 
 CurrentInvitation = Annotated[Invitation, Depends(_invitation_of)]
 """Type of a route's parameter that receives the invitation of the request's token."""
-
-FORM = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["file"],
-                    "properties": {"file": {"type": "string", "format": "binary"}},
-                }
-            }
-        },
-    }
-}
 
 
 @router.get("", responses=problem_responses(404, 429))
@@ -77,7 +62,7 @@ def get_invited_language(
     "/takes",
     status_code=202,
     responses=problem_responses(404, 408, 409, 415, 429),
-    openapi_extra=FORM,
+    openapi_extra=file_form(),
 )
 async def send_take(
     request: Request,

@@ -19,7 +19,7 @@ from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import FRAME_BYTES, receive_file
+from app.api.ingest.multipart import FRAME_BYTES, file_form, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
@@ -38,24 +38,6 @@ TIME_DIGITS = 6
 CONFIDENCE_DIGITS = 3
 """Decimals of a confidence: the models' own rounding noise is larger."""
 
-_UPLOAD_FORM = {
-    "requestBody": {
-        "required": True,
-        "content": {
-            "multipart/form-data": {
-                "schema": {
-                    "type": "object",
-                    "required": ["file"],
-                    "properties": {
-                        "file": {"type": "string", "format": "binary"},
-                        **UploadFields.model_json_schema()["properties"],
-                    },
-                }
-            }
-        },
-    }
-}
-
 router = APIRouter(prefix="/clips", tags=["clips"])
 
 
@@ -63,7 +45,7 @@ router = APIRouter(prefix="/clips", tags=["clips"])
     "",
     status_code=202,
     responses=problem_responses(408, 409, 415, 429),
-    openapi_extra=_UPLOAD_FORM,
+    openapi_extra=file_form(**UploadFields.model_json_schema()["properties"]),
 )
 async def upload_clip(
     request: Request,

@@ -47,10 +47,11 @@ def require_version(tus_resumable: Annotated[str | None, Header()] = None) -> No
         raise ProblemError(412, "tus_version", detail, headers={"Tus-Version": VERSION})
 
 
-router = APIRouter(prefix="/uploads", tags=["clips"])
+router = APIRouter(tags=["clips"])
+versioned = APIRouter(prefix="/uploads", dependencies=[Depends(require_version)])
 
 
-@router.options("", status_code=204, responses=problem_responses())
+@router.options("/uploads", status_code=204, responses=problem_responses())
 def tell_abilities(studio: CurrentStudio) -> Response:
     """Return the version and the extensions of the tus protocol."""
     size = str(studio.settings.max_clip_bytes)
@@ -58,12 +59,7 @@ def tell_abilities(studio: CurrentStudio) -> Response:
     return Response(status_code=204, headers=_COMMON | abilities)
 
 
-@router.post(
-    "",
-    status_code=201,
-    dependencies=[Depends(require_version)],
-    responses=problem_responses(412, 429),
-)
+@versioned.post("", status_code=201, responses=problem_responses(412, 429))
 async def begin_upload(
     request: Request,
     studio: CurrentStudio,
@@ -111,9 +107,7 @@ async def begin_upload(
     return Response(status_code=201, headers=_COMMON | {"Location": location})
 
 
-@router.head(
-    "/{upload_id}", dependencies=[Depends(require_version)], responses=problem_responses(404, 412)
-)
+@versioned.head("/{upload_id}", responses=problem_responses(404, 412))
 def tell_offset(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
     """Return how many bytes have arrived; `Content-Location` is the clip once all of it has.
 
@@ -133,10 +127,9 @@ def tell_offset(request: Request, upload_id: str, studio: CurrentStudio) -> Resp
     return Response(headers=_COMMON | progress)
 
 
-@router.patch(
+@versioned.patch(
     "/{upload_id}",
     status_code=204,
-    dependencies=[Depends(require_version)],
     responses=problem_responses(404, 409, 412, 415),
     openapi_extra={"requestBody": {"content": {OFFSETS: {"schema": {"type": "string"}}}}},
 )
@@ -159,17 +152,15 @@ async def append_part(
             raise NotFound(f"upload {upload_id} was given up meanwhile; begin it anew") from error
 
 
-@router.delete(
-    "/{upload_id}",
-    status_code=204,
-    dependencies=[Depends(require_version)],
-    responses=problem_responses(404, 412),
-)
+@versioned.delete("/{upload_id}", status_code=204, responses=problem_responses(404, 412))
 def give_up_upload(request: Request, upload_id: str, studio: CurrentStudio) -> Response:
     """Forget an upload and what came of it."""
     _require_owner(request, upload_id, studio.uploads.get(upload_id).owner)
     _forget(upload_id, studio)
     return Response(status_code=204, headers=_COMMON)
+
+
+router.include_router(versioned)
 
 
 async def _append(request: Request, upload_id: str, studio: Studio, upload_offset: int) -> Response:
