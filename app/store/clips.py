@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Collection
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Collection, Iterator
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -121,6 +121,15 @@ class ClipStore(DatabaseStore):
     def new_partial(self) -> Path:
         """Return a fresh path for a file that is still being received."""
         return self.folder / f"{new_id()}{PARTIAL_SUFFIX}"
+
+    @contextmanager
+    def receiving(self) -> Iterator[Path]:
+        """Yield a fresh path for a file that is received meanwhile; what is left there goes."""
+        partial = self.new_partial()
+        try:
+            yield partial
+        finally:
+            partial.unlink(missing_ok=True)
 
     def add(
         self,

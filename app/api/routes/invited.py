@@ -84,8 +84,7 @@ async def send_take(
     require_open(invitation, least)
     reserved = await require_place_in_queue(request, studio)
     await require_quota(quota, studio, least)
-    received = studio.clips.new_partial()
-    try:
+    with studio.clips.receiving() as received:
         upload = await _receive_within(invitation, request, received, studio, reserved)
         receive = studio.invitations.receive
         count = partial(receive, invitation.id, label=label, diver=diver, size=upload.size)
@@ -103,8 +102,6 @@ async def send_take(
         except Exception:
             await run_in_threadpool(studio.invitations.release, take)
             raise
-    finally:
-        received.unlink(missing_ok=True)
     return schemas.InvitedTakeView.of(take)
 
 

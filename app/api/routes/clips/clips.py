@@ -77,28 +77,22 @@ async def upload_clip(
     stated = request.headers.get("content-length", "")
     least = int(stated) - FRAME_BYTES if stated.isdecimal() else 0
     await require_quota(quota, studio, max(0, least))
-    partial = studio.clips.new_partial()
-    try:
+    with studio.clips.receiving() as partial:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         made = await inspect(
             partial, studio, name=upload.name, size=upload.size, fields=upload.fields
         )
         made.clip.idempotency_key = idempotency_key
         return await store(made, partial, studio, request)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 async def _repeat(request: Request, studio: Studio, earlier: ClipWithJob) -> schemas.ClipAccepted:
     """Answer an upload whose key was used before; its file must be the same."""
     # The body is read to its end, because a browser receives no answer in the middle of a body.
-    partial = studio.clips.new_partial()
-    try:
+    with studio.clips.receiving() as partial:
         await receive_file(request, partial, studio.settings)
         received = await run_in_threadpool(studio.clips.received, earlier.clip)
         same = await run_in_threadpool(filecmp.cmp, partial, received, shallow=False)
-    finally:
-        partial.unlink(missing_ok=True)
     if not same:
         detail = "this Idempotency-Key was used for another file; send this one with its own key"
         raise ProblemError(422, "idempotency_key_reused", detail)

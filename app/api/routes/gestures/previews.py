@@ -16,10 +16,10 @@ from app.api.http.schemas.values import Body, Label, View
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import view_faults
 from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.trajectory_images import draw_trajectory_image
 from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
 from app.recognition.features.motion import find_hands
-from app.recognition.features.png import encode_png
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.switches import Sensitivity, describe_effects
 from app.recognition.health.check import rank_others
@@ -27,8 +27,6 @@ from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing import salience
 from app.recognition.voters.registry import PAPER_VOTERS
-from app.ui.charts import png
-from app.ui.direction_marks import mark_gesture
 
 SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
 
@@ -244,7 +242,7 @@ def _view(
 
 def _image(gesture: Gesture, *, marks: bool) -> str:
     """Return a gesture's trajectory image as a data URI."""
-    image = png(mark_gesture(gesture)) if marks else encode_png(gesture.image)
+    image = draw_trajectory_image(gesture, marks)
     return f"data:image/png;base64,{b64encode(image).decode('ascii')}"
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import OrderedDict
+from functools import lru_cache
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
@@ -21,7 +21,7 @@ from app.api.services.running_studio import CurrentStudio, Studio
 from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
-from app.recognition import Language, Recognizer
+from app.recognition import Recognizer
 from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.health.finding import Finding
@@ -103,7 +103,7 @@ def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
         if faults
     ]
     seen = {label for label, _ in told}
-    told += [each for each in _blame(studio, state, language) if each[0] not in seen]
+    told += [each for each in _blame(studio, state) if each[0] not in seen]
     return [
         Finding("demonstration_fault", (label,), sentence, True).to_dict()
         for label, sentence in told
@@ -113,21 +113,23 @@ def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:
 CACHED_BLAME = 64
 """Revisions, each with its known takes, of which it is known which demonstrations they blame."""
 
-_blamed: OrderedDict[tuple[Any, ...], list[tuple[str, str]]] = OrderedDict()
 
-
-def _blame(studio: Studio, state: LanguageState, language: Language) -> list[tuple[str, str]]:
+def _blame(studio: Studio, state: LanguageState) -> tuple[tuple[str, str], ...]:
     """Return gesture and sentence of each demonstration that the known takes blame."""
     takes = list_known(studio, state.record.id)
-    if not takes or not language.gestures:
-        return []
     ranges = tuple((each.clip_id, each.start, each.expected) for each in takes)
-    key = state.record.id, state.revision.revision, ranges
-    if key not in _blamed:
-        recognizer = Recognizer(language, "full")
-        known = list(load_known(studio, state.record.id, recognizer))
-        found = find_blame(KnownTakes(recognizer, known))
-        _blamed[key] = [(each.label, each.sentence) for each in found]
-        while len(_blamed) > CACHED_BLAME:
-            _blamed.popitem(last=False)
-    return _blamed[key]
+    return _blame_by(studio, state.record.id, state.revision.revision, ranges) if takes else ()
+
+
+@lru_cache(CACHED_BLAME)
+def _blame_by(
+    studio: Studio, language_id: str, revision: int, _takes: tuple[tuple[str, float, str], ...]
+) -> tuple[tuple[str, str], ...]:
+    """Find the same; the known takes distinguish the states of the test set in the cache."""
+    language = studio.language(studio.languages.get(language_id, revision))
+    if not language.gestures:
+        return ()
+    recognizer = Recognizer(language, "full")
+    known = list(load_known(studio, language_id, recognizer))
+    found = find_blame(KnownTakes(recognizer, known))
+    return tuple((each.label, each.sentence) for each in found)

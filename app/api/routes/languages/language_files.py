@@ -52,13 +52,10 @@ async def import_language(
 ) -> LanguageView:
     """Add the language of a file: ours, or the published implementation's (then under `name`)."""
     # Stored on disk first, because many slow uploads must not fill the memory.
-    partial = studio.clips.new_partial()
-    try:
+    with studio.clips.receiving() as partial:
         size = await receive_body(request, partial, studio.settings)
         found = await while_connected(request, _read(partial, size, name, studio))
         return await run_in_threadpool(_create, studio, quota, found, response)
-    finally:
-        partial.unlink(missing_ok=True)
 
 
 @router.get(

@@ -9,9 +9,10 @@ import numpy as np
 from fastapi import APIRouter, Query, Request
 
 from app.api.http.connection import compute_while_connected
-from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label, View
+from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio
 from app.recognition import Recognizer
 from app.recognition.explanation.alignment import Alignment
@@ -71,19 +72,16 @@ async def contrast_gestures(
 def _contrast(
     recognizer: Recognizer, one: str, other: str, advance: Callable[[], None]
 ) -> ContrastView:
-    labels = recognizer.language.labels
+    language = recognizer.language
     for label in (one, other):
-        if label not in labels:
-            detail = f"there is no gesture {label[:80]!r} in this language"
-            raise ProblemError(404, "not_found", detail)
-    first, second = labels.index(one), labels.index(other)
+        gesture_in(language, label)
+    first, second = language.labels.index(one), language.labels.index(other)
     advance()
     forth = compare_pair(recognizer, first, second)
     advance()
     back = compare_pair(recognizer, second, first)
-    gestures = recognizer.language.gestures
     return ContrastView(
-        gestures=(_paths(gestures[first]), _paths(gestures[second])),
+        gestures=(_paths(language.gestures[first]), _paths(language.gestures[second])),
         differs=(_words(forth), _words(back)),
         alignment=None if forth is None else forth.alignment,
     )

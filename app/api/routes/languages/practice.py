@@ -13,6 +13,7 @@ from app.api.http.schemas.values import Body, Diver, Identifier, Label, Seconds,
 from app.api.ingest.quotas import SenderQuota
 from app.api.services.demonstration_sources import list_sources
 from app.api.services.explanation_notes import write_notes
+from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
     load_context,
@@ -108,8 +109,7 @@ def show_gesture(
     """Recognise what a diver shows, say what to change, and keep it in the diver's record."""
     state = studio.languages.get(language_id)
     language = studio.language(state)
-    if draft.expected not in language.labels:
-        raise ProblemError(404, "not_found", f"there is no gesture {draft.expected[:80]!r}")
+    gesture_in(language, draft.expected)
     if draft.clip_id in {source.clip_id for source in list_sources(studio, language)}:
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)

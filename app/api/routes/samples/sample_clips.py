@@ -35,10 +35,7 @@ async def import_sample(
     sample = samples[chosen.name]
     await require_place_in_queue(request, studio)
     await require_quota(quota, studio, sample.size)
-    partial = studio.clips.new_partial()
-    try:
+    with studio.clips.receiving() as partial:
         await run_in_threadpool(shutil.copyfile, sample.path, partial)
         made = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
         return await store(made, partial, studio, request)
-    finally:
-        partial.unlink(missing_ok=True)

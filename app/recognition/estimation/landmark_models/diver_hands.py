@@ -10,6 +10,7 @@ beyond the edge is padded with black, and keypoints are pixels of the image.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Final
 
@@ -75,20 +76,10 @@ class DiverHands:
     def __init__(
         self, detector: Path, keypoints: Path, *, threads: int = 1, provider: Provider = "cpu"
     ) -> None:
-        self._detector = PlanarModel(
-            detector,
-            "a YOLOv7 hand detector",
-            side=DETECTOR_SIDE,
-            threads=threads,
-            provider=provider,
-        )
-        self._keypoints = PlanarModel(
-            keypoints,
-            "a hand-keypoint classifier with heat maps",
-            side=KEYPOINTS_SIDE,
-            threads=threads,
-            provider=provider,
-        )
+        load = partial(PlanarModel, threads=threads, provider=provider)
+        self._detector = load(detector, "a YOLOv7 hand detector", side=DETECTOR_SIDE)
+        described = "a hand-keypoint classifier with heat maps"
+        self._keypoints = load(keypoints, described, side=KEYPOINTS_SIDE)
         _boxes(self._detector.blank(), detector)
         _heat_maps(self._keypoints.blank(), keypoints)
         width, height = self._keypoints.input_size
