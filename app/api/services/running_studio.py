@@ -412,7 +412,8 @@ CurrentStudio = Annotated[Studio, Depends(_studio_of)]
 def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
     """Decorate a route that computes for seconds: few run at a time, while their clients wait.
 
-    Its parameters must include ``studio``.
+    Its parameters must include ``studio``. A route with the parameter ``advance`` calls it between
+    its steps, and is ended there once its client has left.
     """
     return _limited(route, lambda studio: studio.computations)
 
@@ -425,16 +426,19 @@ def computed_briefly(route: Callable[..., Made]) -> Callable[..., Coroutine[Any,
 def _limited(
     route: Callable[..., Made], places: Callable[[Studio], asyncio.Semaphore]
 ) -> Callable[..., Coroutine[Any, Any, Made]]:
+    parameters = dict(signature(route).parameters)
+    has_steps = parameters.pop("advance", None) is not None
+
     @wraps(route)
     async def limited(*, connection: Request, studio: Studio, **given: Any) -> Made:
-        return await compute_while_connected(
-            connection, places(studio), lambda _: route(studio=studio, **given)
-        )
+        def compute(advance: Callable[[], None]) -> Made:
+            return route(studio=studio, **given, **({"advance": advance} if has_steps else {}))
 
-    known = signature(route)
+        return await compute_while_connected(connection, places(studio), compute)
+
     asked = Parameter("connection", Parameter.KEYWORD_ONLY, annotation=Request)
-    limited.__signature__ = known.replace(  # type: ignore[attr-defined]
-        parameters=[*known.parameters.values(), asked]
+    limited.__signature__ = signature(route).replace(  # type: ignore[attr-defined]
+        parameters=[*parameters.values(), asked]
     )
     return limited
 

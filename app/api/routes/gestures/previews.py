@@ -6,16 +6,15 @@ from base64 import b64encode
 from collections.abc import Callable, Sequence
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Query
 from pydantic import Field
 
-from app.api.http.connection import compute_while_connected
 from app.api.http.problems import Fault, ProblemError, problem_responses
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.values import Body, Label, View
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import view_faults
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import CurrentStudio, Studio, computed
 from app.api.services.trajectory_images import draw_trajectory_image
 from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
@@ -126,37 +125,15 @@ class OutlookView(View):
 
 
 @router.post("/preview", responses=problem_responses(404, 409))
-async def preview_gesture(
+@computed
+def preview_gesture(
     language_id: str,
     request: PreviewRequest,
-    connection: Request,
     studio: CurrentStudio,
     *,
     marks: Annotated[bool, Query(description="Image with start dot and arrow, for people")] = False,
 ) -> PreviewView:
     """Return what a gesture would be; nothing is written."""
-    return await compute_while_connected(
-        connection,
-        studio.computations,
-        lambda _: _preview(language_id, request, studio, marks=marks),
-    )
-
-
-@router.post("/preview/health", responses=problem_responses(404, 409))
-async def preview_health(
-    language_id: str, request: PreviewRequest, connection: Request, studio: CurrentStudio
-) -> OutlookView:
-    """Return how a gesture would change its language's report; nothing is written."""
-    return await compute_while_connected(
-        connection,
-        studio.computations,
-        lambda advance: _outlook(language_id, request, studio, advance),
-    )
-
-
-def _preview(
-    language_id: str, request: PreviewRequest, studio: Studio, *, marks: bool
-) -> PreviewView:
     language = studio.language(studio.languages.get(language_id))
     draft = _draft(language, request, studio)
     try:
@@ -168,9 +145,12 @@ def _preview(
     return _view(gesture, draft, None, marks=marks, faults=faults)
 
 
-def _outlook(
-    language_id: str, request: PreviewRequest, studio: Studio, advance: Callable[[], None]
+@router.post("/preview/health", responses=problem_responses(404, 409))
+@computed
+def preview_health(
+    language_id: str, request: PreviewRequest, studio: CurrentStudio, advance: Callable[[], None]
 ) -> OutlookView:
+    """Return how a gesture would change its language's report; nothing is written."""
     language = studio.language(studio.languages.get(language_id))
     advance()
     draft = _draft(language, request, studio)

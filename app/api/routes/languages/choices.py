@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Request
+from fastapi import APIRouter
 from pydantic import Field, model_validator
 
-from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas import gestures as schemas
@@ -20,7 +18,7 @@ from app.api.http.schemas.values import Body, Identifier, Label, View
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
-from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
 from app.api.services.sample_library import STROKES
 from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
@@ -148,24 +146,42 @@ class ReplacementDraft(Body):
 
 
 @router.post("/choice", responses=problem_responses(404, 409))
-async def choose_gestures(
-    choice: ChoiceRequest, request: Request, studio: CurrentStudio
+@computed
+def choose_gestures(
+    choice: ChoiceRequest, studio: CurrentStudio, advance: Callable[[], None]
 ) -> ChoiceView:
     """Return which takes of clips to make gestures of, so that they are told apart best.
 
     The gestures of the language stay. Nothing is written.
     """
-    return await compute_while_connected(
-        request, studio.computations, partial(_choose, choice, studio)
+    state = None if choice.language_id is None else studio.languages.get(choice.language_id)
+    language = Language("choice", []) if state is None else studio.language(state)
+    _require_few(language, len(choice.gestures))
+    made = gestures_from(studio, choice.gestures, language.trigger)
+    joined = join_candidates(language, [gesture for gesture, _ in made])
+    known = [] if state is None else _load_known(studio, state, language)
+    confusions = measure_confusions(joined, known, advance=advance)
+    fixed = list(range(len(language.gestures)))
+    chosen = confusions.choose(choice.keep, fixed)
+    labels = [*language.labels, *(draft.label for draft in choice.gestures)]
+    left_out = []
+    for index in sorted({*range(len(fixed), len(labels))} - {*chosen}):
+        other, words = _find_most_alike(confusions, index, [*fixed, *chosen])
+        left_out.append(LeftOutView(index=index - len(fixed), other=labels[other], words=words))
+    return ChoiceView(
+        keep=[each - len(fixed) for each in chosen],
+        left_out=left_out,
+        people=describe_people(confusions.people),
     )
 
 
 @router.post("/{language_id}/replacements", responses=problem_responses(404))
-async def propose_replacements(
+@computed
+def propose_replacements(
     language_id: str,
     wanted: ReplacementsRequest,
-    request: Request,
     studio: CurrentStudio,
+    advance: Callable[[], None],
     revision: Revision = None,
 ) -> ReplacementsView:
     """Return the movements that fit best in the place of a gesture; nothing is written.
@@ -174,12 +190,25 @@ async def propose_replacements(
     movements for a movement and held hand shapes for a held one, and the takes of the request;
     where none is told apart better, also the signs by which divers mean something else.
     """
-
-    def compute(advance: Callable[[], None]) -> ReplacementsView:
-        state = studio.languages.get(language_id, revision)
-        return _propose(studio, state, wanted, advance)
-
-    return await compute_while_connected(request, studio.computations, compute)
+    state = studio.languages.get(language_id, revision)
+    language = studio.language(state)
+    own = gesture_in(language, wanted.label)
+    samples = list(_list_samples(studio, language, own))
+    _require_few(language, len(samples) + len(wanted.gestures))
+    candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
+    known = _load_known(studio, state, language)
+    views: list[ReplacementView] = []
+    found: tuple[Replacement, ...] = ()
+    # A robot would act on a sign that one diver shows to another, so others are proposed first.
+    for signs in (False, True):
+        among = [each for each in candidates if (each.sign is not None) == signs]
+        if found or not among:
+            continue
+        gestures = [each.gesture for each in among]
+        found = find_replacements(language, wanted.label, gestures, known, advance=advance)
+        views = [among[each.candidate].view(each) for each in found]
+    people = describe_people(found[0].people) if found else None
+    return ReplacementsView(label=wanted.label, people=people, replacements=views)
 
 
 @router.put("/{language_id}/replacements", responses=problem_responses(404, 409, 412))
@@ -210,58 +239,10 @@ def replace_gesture(
     return edit.answer(state)
 
 
-def _choose(choice: ChoiceRequest, studio: Studio, advance: Callable[[], None]) -> ChoiceView:
-    state = None if choice.language_id is None else studio.languages.get(choice.language_id)
-    language = Language("choice", []) if state is None else studio.language(state)
-    _require_few(language, len(choice.gestures))
-    made = gestures_from(studio, choice.gestures, language.trigger)
-    joined = join_candidates(language, [gesture for gesture, _ in made])
-    known = [] if state is None else _load_known(studio, state, language)
-    confusions = measure_confusions(joined, known, advance=advance)
-    fixed = list(range(len(language.gestures)))
-    chosen = confusions.choose(choice.keep, fixed)
-    labels = [*language.labels, *(draft.label for draft in choice.gestures)]
-    left_out = []
-    for index in sorted({*range(len(fixed), len(labels))} - {*chosen}):
-        other, words = _find_most_alike(confusions, index, [*fixed, *chosen])
-        left_out.append(LeftOutView(index=index - len(fixed), other=labels[other], words=words))
-    return ChoiceView(
-        keep=[each - len(fixed) for each in chosen],
-        left_out=left_out,
-        people=describe_people(confusions.people),
-    )
-
-
 def _find_most_alike(confusions: Confusions, left_out: int, kept: Sequence[int]) -> tuple[int, str]:
     """Return which of the kept gestures another one is most like, and how much."""
     nearest = kept[int(np.argmax(confusions.rates[left_out, kept]))]
     return nearest, confusions.compare(left_out, nearest).words
-
-
-def _propose(
-    studio: Studio,
-    state: LanguageState,
-    wanted: ReplacementsRequest,
-    advance: Callable[[], None],
-) -> ReplacementsView:
-    language = studio.language(state)
-    own = gesture_in(language, wanted.label)
-    samples = list(_list_samples(studio, language, own))
-    _require_few(language, len(samples) + len(wanted.gestures))
-    candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
-    known = _load_known(studio, state, language)
-    views: list[ReplacementView] = []
-    found: tuple[Replacement, ...] = ()
-    # A robot would act on a sign that one diver shows to another, so others are proposed first.
-    for signs in (False, True):
-        among = [each for each in candidates if (each.sign is not None) == signs]
-        if found or not among:
-            continue
-        gestures = [each.gesture for each in among]
-        found = find_replacements(language, wanted.label, gestures, known, advance=advance)
-        views = [among[each.candidate].view(each) for each in found]
-    people = describe_people(found[0].people) if found else None
-    return ReplacementsView(label=wanted.label, people=people, replacements=views)
 
 
 @dataclass(frozen=True)

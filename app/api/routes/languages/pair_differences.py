@@ -6,15 +6,13 @@ from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Query
 
-from app.api.http.connection import compute_while_connected
 from app.api.http.problems import problem_responses
 from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label, View
 from app.api.services.gesture_edits import gesture_in
-from app.api.services.running_studio import CurrentStudio
-from app.recognition import Recognizer
+from app.api.services.running_studio import CurrentStudio, computed
 from app.recognition.explanation.alignment import Alignment
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
@@ -52,26 +50,17 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 
 @router.get("/{language_id}/contrast", responses=problem_responses(404))
-async def contrast_gestures(
+@computed
+def contrast_gestures(
     language_id: str,
-    request: Request,
     studio: CurrentStudio,
+    advance: Callable[[], None],
     one: Annotated[Label, Query(description="A gesture's label")],
     other: Annotated[Label, Query(description="Another one's")],
     revision: Revision = None,
 ) -> ContrastView:
     """Return in what two gestures differ, and which of their moments correspond."""
-
-    def compute(advance: Callable[[], None]) -> ContrastView:
-        state = studio.languages.get(language_id, revision)
-        return _contrast(studio.recognizer(state, "full"), one, other, advance)
-
-    return await compute_while_connected(request, studio.computations, compute)
-
-
-def _contrast(
-    recognizer: Recognizer, one: str, other: str, advance: Callable[[], None]
-) -> ContrastView:
+    recognizer = studio.recognizer(studio.languages.get(language_id, revision), "full")
     language = recognizer.language
     for label in (one, other):
         gesture_in(language, label)
