@@ -24,14 +24,10 @@ from app.recognition.errors import PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.hand_differences import (
-    find_held_differences,
-    find_moving_hand_differences,
+    find_held_difference,
+    find_moving_hand_difference,
 )
-from app.recognition.explanation.undoing import (
-    Comparison,
-    Undone,
-    compare_with,
-)
+from app.recognition.explanation.undoing import Comparison, Undone, Where, compare_with
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
@@ -99,6 +95,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "reversed": "The take goes through {label} backwards{also}. Begin at its other end.",
     "begun_late": "The beginning of {label} is missing. Start earlier, or set the range.",
     "ended_early": "The end of {label} is missing. Finish it, or set the range.",
+    "part_added": "A movement {where} {label} was added. Leave it out.",
     "part_missing": "A part of {label} is missing in the middle. Show all of it.",
     "upside_down": "The take shows {label} upside down{also}. Show all of it upright.",
     "other_arm": "The take shows {label} with the other arm{also}. Use the demonstrated one.",
@@ -111,12 +108,15 @@ SENTENCES: Final[Mapping[str, str]] = {
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",
     "not_seen": "The arm is not seen in {frames}. Film all of it.",
     "not_comparable": "A keypoint that {label} needs is not seen moving. Film the whole arm.",
-    "start": "A movement before {label} was added. Begin later, or set the range.",
-    "middle": "A movement in the middle of {label} was added. Leave it out.",
-    "end": "A movement after {label} was added. Stop earlier, or set the range.",
 }
-"""The cause and what the diver can do, at most fifteen words with labels of one word; of added
-parts by their place."""
+"""The cause and what the diver can do, at most fifteen words with labels of one word."""
+
+WHERE: Final[Mapping[Where, str]] = {
+    "start": "before",
+    "middle": "in the middle of",
+    "end": "after",
+}
+"""Where a part was added."""
 
 ALSO: Final[Mapping[str, str]] = {
     "": "",
@@ -266,17 +266,22 @@ def measure_share(before: float, after: float) -> float:
     return min(1.0, max(0.0, 1.0 - max(0.0, after - USUAL) / beyond)) if beyond > 0 else 0.0
 
 
+def tell_change(undone: Undone, label: str) -> str:
+    """Return a proven change of a take, and what the diver can do, as a sentence each."""
+    where = WHERE[undone.part.where] if undone.part else ""
+    words = {"label": repr(label), "also": ALSO[undone.also], "where": where}
+    return SENTENCES[undone.kind].format(**words)
+
+
 def _name_change(
     comparison: Comparison, share: float, undone: Undone, label: str, begins: float
 ) -> Cause:
     """Return a proven change as a cause."""
-    assert undone.part is not None or undone.kind != "part_added"
-    key = undone.part.where if undone.part and undone.kind == "part_added" else undone.kind
     start, end = comparison.locate(undone)
     return Cause(
         kind=CauseKind(undone.kind),
         share=share,
-        sentence=SENTENCES[key].format(label=repr(label), also=ALSO[undone.also]),
+        sentence=tell_change(undone, label),
         also=CauseKind(undone.also) if undone.also else None,
         start=None if start is None else begins + start,
         end=None if end is None else begins + end,
@@ -344,21 +349,19 @@ def _compare_hands(
     """Return how the hand differs, where it is the hand that is too far from the gesture's."""
     query = context.trace.query
     at = recognizer.language.labels.index(gesture.label)
+    found = None
     if gesture.is_held:
-        found = find_held_differences(gesture.label, query.held_shapes, gesture.held_shapes)
+        found = find_held_difference(gesture.label, query.held_shapes, gesture.held_shapes)
     elif gesture.trajectory is not None and _is_by_hand(table, at):
         mirrored = bool(table.mirrored[at])
         shown = gesture.trajectory.mirror() if mirrored else gesture.trajectory
-        found = find_moving_hand_differences(gesture.label, query.moving_hands, shown.moving_hands)
-    else:
+        found = find_moving_hand_difference(gesture.label, query.moving_hands, shown.moving_hands)
+    if found is None:
         return None
-    if not found:
-        return None
-    words = found[0].words
     return Cause(
-        kind=CauseKind.no_hand if not found[0].share else CauseKind.other_hand_shape,
-        share=found[0].share or 1.0,
-        sentence=f"{words[0].upper()}{words[1:]}. Show the hand again.",
+        kind=CauseKind.other_hand_shape if found.share else CauseKind.no_hand,
+        share=found.share or 1.0,
+        sentence=f"{found.words[0].upper()}{found.words[1:]}. Show the hand again.",
     )
 
 

@@ -116,16 +116,6 @@ class RecognitionContext:
         """The recogniser's language."""
         return self.recognizer.language
 
-    @property
-    def profile(self) -> str:
-        """The recogniser's profile."""
-        return self.recognizer.profile
-
-    @property
-    def tuning(self) -> Tuning:
-        """The recogniser's tuning."""
-        return self.recognizer.tuning
-
     @cached_property
     def trace(self) -> Trace:
         """The trace of the recognition, computed once.
@@ -169,18 +159,14 @@ class RecognitionContext:
         """Return the context with another stroke."""
         return replace(self, poses=poses, recorded=None)
 
-    def _with_recognizer(self, recognizer: Recognizer) -> RecognitionContext:
-        return replace(self, recognizer=recognizer, recorded=None)
-
     def with_tuning(self, tuning: Tuning) -> RecognitionContext:
         """Return the context with another tuning."""
-        return self._with_recognizer(Recognizer(self.language, self.profile, tuning=tuning))
+        return self._with_language(self.language, tuning)
 
     def with_gesture(self, changed: Gesture) -> RecognitionContext:
         """Return the context with another gesture for the one of the same label."""
-        gestures = [
-            changed if gesture.label == changed.label else gesture
-            for gesture in self.language.gestures
-        ]
-        language = replace(self.language, gestures=gestures)
-        return self._with_recognizer(Recognizer(language, self.profile, tuning=self.tuning))
+        return self._with_language(self.language.with_changed(changed), self.recognizer.tuning)
+
+    def _with_language(self, language: Language, tuning: Tuning) -> RecognitionContext:
+        recognizer = Recognizer(language, self.recognizer.profile, tuning=tuning)
+        return replace(self, recognizer=recognizer, recorded=None)

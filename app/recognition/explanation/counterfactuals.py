@@ -10,34 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, get_args
 
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
 
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import describe_repair
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.text.wording import humanize
-
-MOST = 6
-"""Most counterfactuals returned, few enough to read."""
-
-ORDER: Final = (
-    "demonstration_cut",
-    "keypoint_repair",
-    "trim",
-    "switch",
-    "further_demonstration",
-)
-"""Kinds of interventions, from those that undo a fault to that by which this take is right whatever
-it shows; each kind has its most useful one."""
 
 TRIM_STEP = 0.1
 """Step of trimming, as a share of the stroke."""
@@ -60,6 +47,10 @@ Reach = Literal["take", "gesture", "language"]
 InterventionKind = Literal[
     "demonstration_cut", "keypoint_repair", "trim", "switch", "further_demonstration"
 ]
+"""What is changed, from what undoes a fault to that by which this take is right whatever it shows;
+each kind has its most useful one."""
+
+ORDER: Final = get_args(InterventionKind)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -82,7 +73,7 @@ class Intervention:
     """
 
     kind: InterventionKind
-    reach: Reach
+    reach: Reach = "gesture"
     size: float
     words: str
     values: Mapping[str, Any]
@@ -100,7 +91,6 @@ def cut_demonstration(
     """Keep another range of a demonstration; `size` is the share of its time that is cut off."""
     return Intervention(
         kind="demonstration_cut",
-        reach="gesture",
         size=size,
         words=f"with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s",
         values={"label": label, "demonstration": demonstration, "start": start, "end": end},
@@ -135,7 +125,9 @@ def repair_keypoints(*, on: bool, size: float) -> Intervention:
         size=size,
         words=describe_repair(on),
         values={"on": on},
-        apply=lambda context: context.with_tuning(replace(context.tuning, keypoints_repaired=on)),
+        apply=lambda context: context.with_tuning(
+            replace(context.recognizer.tuning, keypoints_repaired=on)
+        ),
     )
 
 
@@ -149,7 +141,6 @@ def set_switch(label: str, switch: SwitchName, position: Switch) -> Intervention
 
     return Intervention(
         kind="switch",
-        reach="gesture",
         size=1 / 3,
         words=f"with the switch {humanize(switch)} of {label!r} {position}",
         values={"label": label, "switch": switch, "position": position},
@@ -161,7 +152,6 @@ def demonstrate_take(label: str, *, size: float) -> Intervention:
     """Make the take one more demonstration of a gesture; `size` is its share of them."""
     return Intervention(
         kind="further_demonstration",
-        reach="gesture",
         size=size,
         words=f"with this take as another demonstration of {label!r}",
         values={"label": label},
@@ -230,26 +220,6 @@ class Counterfactual:
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
-@dataclass(frozen=True, kw_only=True)
-class Counterfactuals:
-    """The interventions that correct a recognition, in the order in which to try them.
-
-    Attributes
-    ----------
-    found
-        At most `MOST`, the best of each kind; by none does a gesture lose a demonstration.
-    tried
-        Number of interventions that were tried.
-
-    """
-
-    found: tuple[Counterfactual, ...]
-    tried: int
-
-
-NONE_NEEDED = Counterfactuals(found=(), tried=0)
-
-
 def measure_margin(scores: Sequence[float], expected: int) -> float:
     """Return the least other score minus the expected gesture's: positive when it is nearest.
 
@@ -262,7 +232,7 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
 
 def find_counterfactuals(
     context: RecognitionContext, expected: str, cuts: Sequence[KeptRange] = ()
-) -> Counterfactuals:
+) -> tuple[tuple[Counterfactual, ...], int]:
     """Find the interventions with which `expected` is recognised and no gesture is lost.
 
     Of each series of increasing interventions the first that succeeds is kept.
@@ -276,12 +246,15 @@ def find_counterfactuals(
     cuts
         Better ranges of demonstrations at fault.
 
+    Returns
+    -------
+    The best of each kind, in the order in which to try them, and how many were tried.
+
     """
     shown = [
-        KnownTake(gesture.label, each.trajectory)
+        KnownTake(gesture.label, each)
         for gesture in context.language.gestures
-        for each in gesture.single_demonstrations()
-        if each.trajectory is not None
+        for each in gesture.trajectories
     ]
     demonstrations = KnownTakes(context.recognizer, shown)
     best: dict[str, Counterfactual] = {}
@@ -289,15 +262,12 @@ def find_counterfactuals(
     for series in list_interventions(context, expected, cuts):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
-            found = _verify(context, change, expected, demonstrations)
-            if found is None:
-                continue
-            if change.kind not in best or found.rank < best[change.kind].rank:
-                best[change.kind] = found
-            break
+            if found := _verify(context, change, expected, demonstrations):
+                first = best.get(change.kind, found)
+                best[change.kind] = min(first, found, key=lambda each: each.rank)
+                break
     kept = [each for each in best.values() if each.effect is None or not each.effect.lost]
-    ordered = sorted(kept, key=lambda each: each.rank)
-    return Counterfactuals(found=tuple(ordered[:MOST]), tried=tried)
+    return tuple(sorted(kept, key=lambda each: each.rank)), tried
 
 
 def _verify(
@@ -373,30 +343,27 @@ def _cuts(context: RecognitionContext, expected: str, cuts: Sequence[KeptRange])
 
 def _trims(context: RecognitionContext) -> Iterator[Series]:
     """Move the start, the end, or both, within the take, and keep most of the stroke."""
-    time, whole = context.poses.time, context.whole.time
-    start, end = float(time[0]), float(time[-1])
-    duration = end - start
-    shifts = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * duration
-    spans: list[list[tuple[float, float]]] = [
-        [(start + shift, end) for shift in shifts],
-        [(start, end - shift) for shift in shifts],
-        [(start + shift, end - shift) for shift in shifts],
-        [(start - shift, end) for shift in shifts],
-        [(start, end + shift) for shift in shifts],
-        [(float(whole[0]), float(whole[-1]))],
-    ]
-    for series in spans:
-        inside = {(max(a, float(whole[0])), min(b, float(whole[-1]))) for a, b in series}
-        inside -= {(start, end)}
+    start, end, first, last = (
+        float(each)
+        for time in (context.poses.time, context.whole.time)
+        for each in (time[0], time[-1])
+    )
+    steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
+    ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
+    for spans in (
+        *([(start + a * by, end + b * by) for by in steps] for a, b in ways),
+        [(first, last)],
+    ):
+        inside = {(max(a, first), min(b, last)) for a, b in spans} - {(start, end)}
         yield [
             trim_take(
                 a,
                 b,
-                size=min(1.0, (abs(a - start) + abs(b - end)) / duration),
+                size=min(1.0, (abs(a - start) + abs(b - end)) / (end - start)),
                 longer=bool(a < start or b > end),
             )
             for a, b in inside
-            if duration > 0 and min(b, end) - max(a, start) >= LEAST_KEPT * duration - 1e-9
+            if min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
         ]
 
 
@@ -411,7 +378,7 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
     """Change the expected gesture, or the one that was recognised."""
     for label in dict.fromkeys((expected, context.result.nearest)):
         gesture = context.language.gesture(label)
-        if gesture.trajectory is not None and PROFILES[context.profile].compares_motion:
+        if gesture.trajectory is not None and isinstance(context.recognizer.vote, FusedVote):
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
     if len(shown) < MAX_DEMONSTRATIONS:

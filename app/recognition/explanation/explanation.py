@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,18 +13,11 @@ from pydantic import BaseModel, ConfigDict, Field, computed_field
 from app.recognition.decision.result import WRITTEN, Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
-from app.recognition.explanation.alignment import (
-    AlignedBy,
-    Alignment,
-    Example,
-    align,
-    find_nearest_example,
-)
+from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.blame import Blame, find_blame
 from app.recognition.explanation.causes import Cause, CauseKind, find_causes
 from app.recognition.explanation.context import KnownTakes, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
-    NONE_NEEDED,
     Counterfactual,
     KeptRange,
     find_counterfactuals,
@@ -37,15 +29,9 @@ from app.recognition.explanation.transcript import (
     transcribe,
     transcribe_gesture,
 )
-from app.recognition.explanation.undoing import (
-    compare_with,
-    find_better_range,
-)
+from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
-from app.recognition.features.motion import build_movement
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.profile import PROFILES
 
 
 class Explanation(BaseModel):
@@ -82,8 +68,7 @@ class Explanation(BaseModel):
     turned
         Share of `score` minus `other_score` that comes from the penalties of traversals.
     alignments
-        Alignments of the query with the expected gesture and with the other: of the paths, and in
-        profile ``full`` of the postures.
+        Alignments of the query's path with the expected gesture's and with the other one's.
     causes
         Why, the cause first; empty for a right recognition and without evidence.
     blame
@@ -234,7 +219,6 @@ def explain(
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
     other = _find_other(result, expected)
-    pairings = _Pairings(context)
     gesture = table.find_nearest_demonstration(context.language.gestures, at)
     blame: tuple[Blame, ...] = ()
     if wanted := with_counterfactuals and result.label != expected:
@@ -243,33 +227,24 @@ def explain(
         known = context.known_takes if is_full else KnownTakes(full, context.known)
         blame = find_blame(known, [expected])
     causes = find_causes(context, expected, blame if wanted else None)
-    found = NONE_NEEDED
-    if wanted:
-        found = find_counterfactuals(context, expected, _list_cuts(context, at, causes, blame))
+    cuts = _list_cuts(context, at, causes, blame)
+    found, tried = find_counterfactuals(context, expected, cuts) if wanted else ((), 0)
+    answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
-        profile=result.profile,
+        **{name: getattr(result, name) for name in (*answered, "fault", "support")},
         expected=expected,
-        label=result.label,
-        nearest=result.nearest,
-        runner_up=result.runner_up,
-        confidence=result.confidence,
-        between=result.between,
-        disagreed=result.disagreed,
         other=None if other is None else result.gestures[other],
         score=float(table.scores[at]),
         other_score=math.inf if other is None else float(table.scores[other]),
         novelty=float(table.novelty[at]),
-        fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
-        support=result.support,
         breakdown=break_down_votes(table, result, at, other),
         facing=table.facing,
         turned=_difference(table, at, other),
         alignments=tuple(
             alignment
             for index in (at, other)
-            if index is not None
-            for alignment in pairings.alignments(index)
+            if index is not None and (alignment := _align(context, index))
         ),
         causes=causes,
         blame=blame,
@@ -278,8 +253,8 @@ def explain(
             transcribe_gesture(gesture),
             table.traversals[at] or AS_SHOWN,
         ),
-        counterfactuals=found.found,
-        tried=found.tried,
+        counterfactuals=found,
+        tried=tried,
     )
 
 
@@ -312,37 +287,15 @@ def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
     return float(table.turned[expected] - table.turned[other])
 
 
-class _Pairings:
-    """Pairings of a context's query with its gestures, as the recogniser compared them."""
-
-    def __init__(self, context: RecognitionContext) -> None:
-        self._gestures = context.language.gestures
-        self._table = context.score_table
-        self._full = PROFILES[context.profile].compares_motion
-        self._start = float(context.poses.time[0])
-        self._landmarks = context.recognizer.landmarks
-        self._query = context.trajectory
-
-    def alignments(self, index: int) -> Iterator[Alignment]:
-        """Yield alignments of the query with a gesture, if both have a movement."""
-        example = self._example(index)
-        if example is None or len(self._query) < 2:
-            return
-        query = build_movement(self._query, self._landmarks)
-        kinds: tuple[AlignedBy, ...] = ("path", "posture") if self._full else ("path",)
-        for kind in kinds:
-            aligned = align(query, example, self._landmarks, start=self._start, by=kind)
-            if aligned is not None:
-                yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
-
-    def _gesture(self, index: int) -> Gesture:
-        return self._table.find_nearest_demonstration(self._gestures, index)
-
-    def _example(self, index: int) -> Example | None:
-        gesture, traversal = self._gesture(index), self._table.traversals[index]
-        if gesture.is_held:
-            return None
-        if traversal is None:
-            return find_nearest_example(self._query, gesture, self._landmarks)
-        mirrored = bool(self._table.mirrored[index])
-        return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
+def _align(context: RecognitionContext, at: int) -> Alignment | None:
+    """Align the query with a gesture as the recogniser compared them; None without movements."""
+    table = context.score_table
+    return align(
+        context.trajectory,
+        table.find_nearest_demonstration(context.language.gestures, at),
+        context.recognizer.landmarks,
+        table.traversals[at],
+        mirrored=bool(table.mirrored[at]),
+        start=float(context.poses.time[0]),
+        demonstration=table.nearest_demonstration(at),
+    )

@@ -9,16 +9,16 @@ export interface components {
     schemas: {
         /**
          * Alignment
-         * @description The best DTW alignment of a query with a gesture, by one voter; rounded in JSON.
+         * @description The best DTW alignment of a query's path with a gesture's; rounded in JSON.
          *
          *     Attributes
          *     ----------
          *     label
          *         The gesture's.
          *     voter
-         *         ``path``, the voter, or ``posture``: where the arms' bones point.
+         *         ``path``, whose distance it is.
          *     parts
-         *         P landmarks; of postures the limbs' outer ends.
+         *         P landmarks.
          *     pairs
          *         ``(S, 2)``: corresponding steps of the query and of the gesture.
          *     time
@@ -26,10 +26,9 @@ export interface components {
          *     gesture_time
          *         ``(N,)`` seconds in the demonstration of each of the gesture's steps.
          *     query, gesture
-         *         ``(N, P, 2)``: the voter's descriptors, step by step and part by part, x right and y down,
-         *         in its own unit; NaN where not seen. For `Path` each landmark's position relative to its
-         *         mean, in sizes of the gesture: the costs are the distances between corresponding positions,
-         *         divided by N.
+         *         ``(N, P, 2)``: step by step each landmark's position relative to its mean, x right and
+         *         y down, in sizes of the gesture: the costs are the distances between corresponding
+         *         positions, divided by N.
          *     costs
          *         ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
          *         their sum.
@@ -41,7 +40,10 @@ export interface components {
         Alignment: {
             /** Label */
             label: string;
-            /** Voter */
+            /**
+             * Voter
+             * @default path
+             */
             voter: string;
             /** Parts */
             parts: string[];
@@ -59,20 +61,20 @@ export interface components {
             gesture_time: number[];
             /**
              * Query
-             * @description Step by step and part by part, x right and y down; null: not seen.
+             * @description Step by step and part by part, x right and y down.
              */
-            query: ([
+            query: [
                 number,
                 number
-            ] | null)[][];
+            ][][];
             /**
              * Gesture
-             * @description Step by step and part by part, x right and y down; null: not seen.
+             * @description Step by step and part by part, x right and y down.
              */
-            gesture: ([
+            gesture: [
                 number,
                 number
-            ] | null)[][];
+            ][][];
             /**
              * Costs
              * @description Per pair and part; their sum is `distance`.
@@ -770,7 +772,7 @@ export interface components {
         };
         /**
          * FaultKind
-         * @description What is wrong with a demonstration, the gravest first.
+         * @description What is wrong with a demonstration, the gravest first, and that as a clause about it.
          * @enum {string}
          */
         FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand" | "unlike_takes";
