@@ -194,7 +194,11 @@ def _judge_demonstration(
         known.recognizer, gesture, number, takes, medoid
     ):
         left_out = own[medoid] if change == "show_again" else None
-        repaired, broken = _count_effect(known, changed, left_out)
+        language = known.recognizer.language.with_changed(changed)
+        after = Recognizer(language, "full", tuning=known.recognizer.tuning)
+        repaired, broken = (
+            sum(index != left_out for index in rows) for rows in known.try_change(after)
+        )
         gain = (repaired - broken) / (len(own) - (left_out is not None))
         tried.append(
             Blame(
@@ -280,15 +284,3 @@ def _show_again(shown: Gesture, take: Trajectory) -> Gesture | None:
     hands = shown.trajectory.moving_hands
     trajectory = replace(take.select(names), hands=(), then_hands=(), moving_hands=hands)
     return replace(shown, trajectory=trajectory).redraw()
-
-
-def _count_effect(known: KnownTakes, changed: Gesture, left_out: int | None) -> tuple[int, int]:
-    """Return how many known takes a changed gesture repairs and breaks."""
-    recognizer = known.recognizer
-    try:
-        language = recognizer.language.with_changed(changed)
-        effect = known.try_change(Recognizer(language, "full", tuning=recognizer.tuning))
-    except OsgError:
-        return 0, len(known.takes)
-    repaired, broken = (sum(index != left_out for index in rows) for rows in effect)
-    return repaired, broken

@@ -8,8 +8,8 @@ drawings show it. Without such evidence no cause is named, and the transcript te
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -50,9 +50,6 @@ bring it as near, within `SAME`, the first one is named."""
 
 SAME: Final = 0.25
 """Step of novelty within which two changes are as good."""
-
-USUAL: Final = 0.45
-"""Novelty of a right take by another person: what no change is expected to remove."""
 
 LEAST_JUMPED: Final = 0.06
 """Least share of a take's frames in which keypoints leap away, or another body is read."""
@@ -153,7 +150,7 @@ class Cause:
     __pydantic_config__ = WRITTEN
 
     kind: CauseKind
-    share: float
+    share: float = 1.0
     sentence: str
     also: CauseKind | None = None
     start: float | None = None
@@ -204,11 +201,11 @@ def find_causes(
     comparison = compare_with(recognizer, context.trace.query, table, at)
     if comparison is not None and (proven := prove_change(comparison, explained, following)):
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
-        if proven[1].novelty <= rival:
-            found.append(_name_change(comparison, *proven, expected, float(context.poses.time[0])))
+        if proven.novelty <= rival:
+            found.append(_name_change(comparison, proven, expected, float(context.poses.time[0])))
     if not found and not np.isfinite(table.scores[at]):
         sentence = SENTENCES["not_comparable"].format(label=repr(expected))
-        found.append(Cause(kind=CauseKind.not_seen, share=1.0, sentence=sentence))
+        found.append(Cause(kind=CauseKind.not_seen, sentence=sentence))
     return tuple(found)
 
 
@@ -225,13 +222,13 @@ def _find_bad_demonstration(
     else:
         return None
     kind = CauseKind.demonstration
-    return Cause(kind=kind, share=1.0, sentence=sentence, label=label, demonstration=number)
+    return Cause(kind=kind, sentence=sentence, label=label, demonstration=number)
 
 
 def prove_change(
     comparison: Comparison, explained: float = EXPLAINED, following: float = NEXT
-) -> tuple[float, Undone] | None:
-    """Return the one change that explains a take's distance, and the share of it that it removes.
+) -> Undone | None:
+    """Return the one change that explains a take's distance.
 
     None where none removes `explained` of it, where another kind removes more than `following` of
     that share, or where the drawings do not show it.
@@ -239,31 +236,18 @@ def prove_change(
     best: dict[tuple[str, str], Undone] = {}
     for undone in comparison.undo_all():
         key = undone.kind, undone.also
-        if key not in best or undone.novelty < best[key].novelty:
-            best[key] = undone
-    shares = {key: measure_share(comparison.base, each.novelty) for key, each in best.items()}
+        best[key] = min(best.get(key, undone), undone, key=lambda each: each.novelty)
 
-    def rank(key: tuple[str, str]) -> tuple[float, int, int]:
-        order = TURNS.index(key[0]) if key[0] in TURNS else len(TURNS)
-        return PAIR * bool(key[1]) - shares[key], int(best[key].novelty / SAME), order
+    def rank(each: Undone) -> tuple[float, int, int]:
+        order = TURNS.index(each.kind) if each.kind in TURNS else len(TURNS)
+        return PAIR * bool(each.also) - each.share, int(each.novelty / SAME), order
 
-    first = min(best, key=rank)
-    others = [
-        share
-        for (kind, also), share in shares.items()
-        # A circle that is drawn backwards is its mirror image too: of turns the nearest one counts.
-        if not also and kind not in first and not {kind, first[0]} <= {*TURNS}
-    ]
-    enough = shares[first] >= max(explained, max(others, default=0.0) / following)
-    return (shares[first], best[first]) if enough and comparison.is_drawn(best[first]) else None
-
-
-def measure_share(before: float, after: float) -> float:
-    """Return the share of a distance beyond `USUAL` that a change removes, in [0, 1]."""
-    if not math.isfinite(before):
-        return 1.0 if math.isfinite(after) else 0.0
-    beyond = before - USUAL
-    return min(1.0, max(0.0, 1.0 - max(0.0, after - USUAL) / beyond)) if beyond > 0 else 0.0
+    first = min(best.values(), key=rank)
+    # A circle that is drawn backwards is its mirror image too: of turns the nearest one counts.
+    same = {first.kind, first.also, *(TURNS if first.kind in TURNS else ())}
+    others = [each.share for each in best.values() if not each.also and each.kind not in same]
+    enough = first.share >= max(explained, max(others, default=0.0) / following)
+    return first if enough and comparison.is_drawn(first) else None
 
 
 def tell_change(undone: Undone, label: str) -> str:
@@ -273,14 +257,12 @@ def tell_change(undone: Undone, label: str) -> str:
     return SENTENCES[undone.kind].format(**words)
 
 
-def _name_change(
-    comparison: Comparison, share: float, undone: Undone, label: str, begins: float
-) -> Cause:
+def _name_change(comparison: Comparison, undone: Undone, label: str, begins: float) -> Cause:
     """Return a proven change as a cause."""
     start, end = comparison.locate(undone)
     return Cause(
         kind=CauseKind(undone.kind),
-        share=share,
+        share=undone.share,
         sentence=tell_change(undone, label),
         also=CauseKind(undone.also) if undone.also else None,
         start=None if start is None else begins + start,
@@ -294,7 +276,7 @@ def _list_seen(
     """Yield what the keypoints and the hand themselves show, what most frames show first."""
     fault = context.result.fault_kind
     if fault == "unseen_hand":
-        yield Cause(kind=CauseKind.no_hand, share=1.0, sentence=SENTENCES["no_hand"])
+        yield Cause(kind=CauseKind.no_hand, sentence=SENTENCES["no_hand"])
         return
     found = sorted(_list_bad_frames(context, gesture), key=lambda each: -each[1].mean())
     for key, bad in found:
@@ -302,7 +284,6 @@ def _list_seen(
         frames = f"{np.count_nonzero(bad)} of {len(bad)} frames"
         yield Cause(
             kind=CauseKind.keypoints_jumped if key == "mixed" else CauseKind(key),
-            share=1.0,
             sentence=SENTENCES[key].format(frames=frames),
             start=float(times[0]),
             end=float(times[-1]),
@@ -311,14 +292,14 @@ def _list_seen(
         words = context.result.fault
         kind = CauseKind.keypoints_jumped if fault == "leaps" else CauseKind.not_seen
         sentence = f"{words[0].upper()}{words[1:]}. Film nearer, or in better light."
-        yield Cause(kind=kind, share=1.0, sentence=sentence)
+        yield Cause(kind=kind, sentence=sentence)
     here = context.trace.query.facing
     there = None if gesture.trajectory is None else gesture.trajectory.facing
     # Where left and right are mixed, nobody knows which way the diver faces.
     known = "mixed" not in dict(found)
     if known and here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
         sentence = SENTENCES["turned_away"].format(degrees=abs(here - there))
-        yield Cause(kind=CauseKind.turned_away, share=1.0, sentence=sentence)
+        yield Cause(kind=CauseKind.turned_away, sentence=sentence)
     if shaped := _compare_hands(context, recognizer, table, gesture):
         yield shaped
 
@@ -391,18 +372,14 @@ def _find_near_gesture(
         return None
     names = {"label": repr(labels[at]), "other": repr(others[0])}
     sentence = SENTENCES["near_gesture"].format(**names)
-    return Cause(kind=CauseKind.near_gesture, share=1.0, sentence=sentence, label=others[0])
+    return Cause(kind=CauseKind.near_gesture, sentence=sentence, label=others[0])
 
 
 def _are_alike(recognizer: Recognizer, one: int, other: int) -> bool:
     """Return whether the demonstration of one of two gestures is nearly one of the other."""
-    for shown, compared in ((one, other), (other, one)):
-        trajectory = recognizer.language.gestures[shown].trajectory
-        if trajectory is None or recognizer.language.gestures[compared].trajectory is None:
-            return False
-        try:
-            if recognizer.compare(trajectory).novelty[compared] < ALIKE:
+    shown = [recognizer.language.gestures[each].trajectory for each in (one, other)]
+    for trajectory, compared in zip(shown, (other, one), strict=True):
+        with suppress(PoseError):
+            if trajectory is not None and recognizer.compare(trajectory).novelty[compared] < ALIKE:
                 return True
-        except PoseError:
-            return False
     return False

@@ -70,12 +70,10 @@ class KnownTakes:
         Repaired takes are read right by the changed recogniser only, broken ones by this one only.
         """
         after = KnownTakes(changed, self.takes).readings
-        rows = [
-            (was == take.label, now == take.label)
-            for take, was, now in zip(self.takes, self.readings, after, strict=True)
-        ]
-        repaired = [index for index, (was, now) in enumerate(rows) if now and not was]
-        return repaired, [index for index, (was, now) in enumerate(rows) if was and not now]
+        rows = list(zip(self.takes, self.readings, after, strict=True))
+        repaired = [at for at, (take, was, now) in enumerate(rows) if was != take.label == now]
+        broken = [at for at, (take, was, now) in enumerate(rows) if was == take.label != now]
+        return repaired, broken
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

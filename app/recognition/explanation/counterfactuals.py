@@ -19,7 +19,9 @@ from app.recognition.decision.distinctions import CLEARLY_SLOWER
 from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
+from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
+from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import describe_repair
@@ -34,9 +36,6 @@ TRIM_STEPS = 4
 
 LEAST_KEPT = 0.8
 """Share of the stroke that a trim keeps; a shorter part of it is another gesture."""
-
-KeptRange = tuple[int, float, float]
-"""A demonstration, counted from 0, and the seconds of its own clock between which it is kept."""
 
 SwitchName = Literal["direction", "tempo", "mirror", "hand_shape"]
 
@@ -231,7 +230,7 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
 
 
 def find_counterfactuals(
-    context: RecognitionContext, expected: str, cuts: Sequence[KeptRange] = ()
+    context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
 ) -> tuple[tuple[Counterfactual, ...], int]:
     """Find the interventions with which `expected` is recognised and no gesture is lost.
 
@@ -243,8 +242,10 @@ def find_counterfactuals(
         The context, in which another label was recognised, or none.
     expected
         A label of the language.
-    cuts
-        Better ranges of demonstrations at fault.
+    blame
+        Demonstrations of the gesture that are at fault for the known takes.
+    faulty
+        Whether the nearest demonstration is at fault for this take.
 
     Returns
     -------
@@ -259,7 +260,7 @@ def find_counterfactuals(
     demonstrations = KnownTakes(context.recognizer, shown)
     best: dict[str, Counterfactual] = {}
     tried = 0
-    for series in list_interventions(context, expected, cuts):
+    for series in list_interventions(context, expected, blame, faulty=faulty):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
             if found := _verify(context, change, expected, demonstrations):
@@ -306,7 +307,7 @@ Series = list[Intervention]
 
 
 def list_interventions(
-    context: RecognitionContext, expected: str, cuts: Sequence[KeptRange] = ()
+    context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
 ) -> Iterator[Series]:
     """Yield all interventions to try, in series of one kind and increasing size.
 
@@ -316,29 +317,30 @@ def list_interventions(
         A context in which `expected` was not recognised.
     expected
         A label of its language.
-    cuts
+    blame, faulty
         See `find_counterfactuals`.
 
     """
-    yield _cuts(context, expected, cuts)
+    yield list(_cuts(context, expected, blame, faulty=faulty))
     yield from _trims(context)
     yield from _repairs(context)
     yield from _gestures(context, expected)
 
 
-def _cuts(context: RecognitionContext, expected: str, cuts: Sequence[KeptRange]) -> Series:
-    """Cut the demonstrations that are at fault."""
-    shown = context.language.gesture(expected).trajectories
-    return [
-        cut_demonstration(
-            expected,
-            number,
-            start,
-            end,
-            size=min(1.0, max(0.0, 1.0 - (end - start) / float(shown[number].time[-1]))),
-        )
-        for number, start, end in cuts
-    ]
+def _cuts(
+    context: RecognitionContext, expected: str, blame: Sequence[Blame], *, faulty: bool
+) -> Iterator[Intervention]:
+    """Cut the demonstrations that are at fault, for the known takes and for this one."""
+    cuts = [(each.demonstration, each.start, each.end) for each in blame]
+    table, at = context.score_table, context.language.labels.index(expected)
+    comparison = compare_with(context.recognizer, context.trajectory, table, at) if faulty else None
+    if comparison and (better := find_better_range([comparison])):
+        cuts.append((table.nearest_demonstration(at), *better))
+    for number, start, end in cuts:
+        if start is not None and end is not None:
+            whole = float(context.language.gesture(expected).trajectories[number].time[-1])
+            size = min(1.0, max(0.0, 1.0 - (end - start) / whole))
+            yield cut_demonstration(expected, number, start, end, size=size)
 
 
 def _trims(context: RecognitionContext) -> Iterator[Series]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 import numpy as np
@@ -19,7 +19,6 @@ from app.recognition.explanation.causes import Cause, CauseKind, find_causes
 from app.recognition.explanation.context import KnownTakes, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     Counterfactual,
-    KeptRange,
     find_counterfactuals,
 )
 from app.recognition.explanation.transcript import (
@@ -29,7 +28,6 @@ from app.recognition.explanation.transcript import (
     transcribe,
     transcribe_gesture,
 )
-from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.traversals import AS_SHOWN
 
@@ -227,8 +225,11 @@ def explain(
         known = context.known_takes if is_full else KnownTakes(full, context.known)
         blame = find_blame(known, [expected])
     causes = find_causes(context, expected, blame if wanted else None)
-    cuts = _list_cuts(context, at, causes, blame)
-    found, tried = find_counterfactuals(context, expected, cuts) if wanted else ((), 0)
+    found: tuple[Counterfactual, ...] = ()
+    tried = 0
+    if wanted:
+        faulty = any(each.kind is CauseKind.demonstration for each in causes)
+        found, tried = find_counterfactuals(context, expected, blame, faulty=faulty)
     answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
         **{name: getattr(result, name) for name in (*answered, "fault", "support")},
@@ -256,23 +257,6 @@ def explain(
         counterfactuals=found,
         tried=tried,
     )
-
-
-def _list_cuts(
-    context: RecognitionContext, at: int, causes: Sequence[Cause], blame: Sequence[Blame]
-) -> list[KeptRange]:
-    """Return the better ranges of demonstrations that are at fault, by known takes and by this."""
-    cuts = [
-        (each.demonstration, each.start, each.end)
-        for each in blame
-        if each.start is not None and each.end is not None
-    ]
-    table = context.score_table
-    if any(each.kind is CauseKind.demonstration for each in causes):
-        comparison = compare_with(context.recognizer, context.trajectory, table, at)
-        if comparison is not None and (span := find_better_range([comparison])):
-            cuts.append((table.nearest_demonstration(at), *span))
-    return cuts
 
 
 def _find_other(result: Recognition, expected: str) -> int | None:

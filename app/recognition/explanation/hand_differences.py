@@ -199,14 +199,11 @@ def _find_largest(found: Sequence[HandDifference]) -> HandDifference | None:
 
 def measure_distance(one: HandShape, other: HandShape) -> float:
     """Return the mean distance of the voters in `_LOCAL`, each over its between-class distance."""
-    return float(
-        np.mean(
-            [
-                voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
-                for voter in _LOCAL
-            ]
-        )
-    )
+    apart = [
+        voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
+        for voter in _LOCAL
+    ]
+    return float(np.mean(apart))
 
 
 def measure_bends(hand: HandShape) -> FloatArray:
@@ -220,12 +217,13 @@ def measure_bends(hand: HandShape) -> FloatArray:
     bends = np.linspace(0.0, MOST_BENT, 41)
     # A third of the bend at each joint.
     reach = np.cos(np.radians(bends)[:, None] * np.array([1, 2, 3]) / 3) @ BONE_SHARES
-    measured = []
-    for finger, length in enumerate(FINGER_LENGTHS, start=1):
-        finger_vector = hand.xy[4 + 4 * finger] - hand.xy[1 + 4 * finger]
-        share = float(finger_vector @ axis / max(length * (axis @ axis), 1e-9))
-        measured.append(float(np.interp(-share, -reach, bends)))
-    return np.array(measured)
+    fingers = 4 * np.arange(1, 5)
+    shares = (
+        (hand.xy[4 + fingers] - hand.xy[1 + fingers])
+        @ axis
+        / np.maximum(np.array(FINGER_LENGTHS) * (axis @ axis), 1e-9)
+    )
+    return np.asarray(np.interp(-shares, -reach, bends), dtype=np.float64)
 
 
 def _fingers(
@@ -234,20 +232,17 @@ def _fingers(
     """Yield the share and the words of every finger that differs clearly."""
     more = measure_bends(query) - measure_bends(example)
     for finger, name in enumerate(FINGERS):
+        inner, joints = 1 + 4 * finger, slice(2 + 4 * finger, 5 + 4 * finger)
         undone = query.xy.copy()
-        joints = [1 + 4 * finger + joint for joint in range(4)]
-        inner = joints[0]
-        undone[joints[1:]] = undone[inner] + example.xy[joints[1:]] - example.xy[inner]
-        left = measure_distance(HandShape(query.side, undone), example)
-        share = _share(whole, left)
-        if finger == 0:
-            yield share, f"the thumb points otherwise than in {label!r}"
-        elif abs(more[finger - 1]) >= CLEARLY_BENT:
-            degrees = _round(more[finger - 1])
+        undone[joints] = undone[inner] + example.xy[joints] - example.xy[inner]
+        share = _share(whole, measure_distance(HandShape(query.side, undone), example))
+        words = f"the {name} points otherwise than in {label!r}"
+        if finger and abs(more[finger - 1]) >= CLEARLY_BENT:
             word = "more" if more[finger - 1] > 0 else "less"
-            yield share, f"the {name} is bent {degrees} degrees {word} than in {label!r}"
-        else:
-            yield share, f"the {name} points otherwise than in {label!r}"
+            words = (
+                f"the {name} is bent {_round(more[finger - 1])} degrees {word} than in {label!r}"
+            )
+        yield share, words
 
 
 def _turn(query: HandShape, example: HandShape, whole: float) -> Iterator[tuple[float, str]]:

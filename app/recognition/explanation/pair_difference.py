@@ -78,7 +78,7 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
         words = f"it goes {ways[0]} where {against.label!r} goes {ways[1]}"
         span = (ours.start, ours.end) if ours else (strokes.shown[-1].end, strokes.shown[-1].end)
     if proven := prove_change(comparison):
-        told = tell_change(proven[1], against.label).partition(". ")[0]
+        told = tell_change(proven, against.label).partition(". ")[0]
         words = (
             told.replace("The take", "it", 1) if "The take" in told else told[0].lower() + told[1:]
         )
