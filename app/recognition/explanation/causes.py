@@ -193,7 +193,7 @@ def find_causes(
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    found = list(_list_seen(context, recognizer, table, gesture))
+    found = list(_list_seen(context, table, gesture))
     if near := _find_near_gesture(context, table, at, with_known=blame is not None):
         found.append(near)
     if bad := _find_bad_demonstration(context, table, at, blame or ()):
@@ -270,9 +270,7 @@ def _name_change(comparison: Comparison, undone: Undone, label: str, begins: flo
     )
 
 
-def _list_seen(
-    context: RecognitionContext, recognizer: Recognizer, table: ScoreTable, gesture: Gesture
-) -> Iterator[Cause]:
+def _list_seen(context: RecognitionContext, table: ScoreTable, gesture: Gesture) -> Iterator[Cause]:
     """Yield what the keypoints and the hand themselves show, what most frames show first."""
     fault = context.result.fault_kind
     if fault == "unseen_hand":
@@ -300,7 +298,7 @@ def _list_seen(
     if known and here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
         sentence = SENTENCES["turned_away"].format(degrees=abs(here - there))
         yield Cause(kind=CauseKind.turned_away, sentence=sentence)
-    if shaped := _compare_hands(context, recognizer, table, gesture):
+    if shaped := _compare_hands(context, table, gesture):
         yield shaped
 
 
@@ -325,17 +323,17 @@ def _list_bad_frames(
 
 
 def _compare_hands(
-    context: RecognitionContext, recognizer: Recognizer, table: ScoreTable, gesture: Gesture
+    context: RecognitionContext, table: ScoreTable, gesture: Gesture
 ) -> Cause | None:
     """Return how the hand differs, where it is the hand that is too far from the gesture's."""
-    query = context.trace.query
-    at = recognizer.language.labels.index(gesture.label)
+    query, at = context.trace.query, context.language.labels.index(gesture.label)
+    movement, hand = (float(row[at]) for row in table.novelty_by_view)
     found = None
     if gesture.is_held:
         found = find_held_difference(gesture.label, query.held_shapes, gesture.held_shapes)
-    elif gesture.trajectory is not None and _is_by_hand(table, at):
-        mirrored = bool(table.mirrored[at])
-        shown = gesture.trajectory.mirror() if mirrored else gesture.trajectory
+    elif gesture.trajectory is not None and is_rejected(hand) and not is_rejected(movement):
+        shown = gesture.mirror().trajectory if table.mirrored[at] else gesture.trajectory
+        assert shown is not None
         found = find_moving_hand_difference(gesture.label, query.moving_hands, shown.moving_hands)
     if found is None:
         return None
@@ -344,12 +342,6 @@ def _compare_hands(
         share=found.share or 1.0,
         sentence=f"{found.words[0].upper()}{found.words[1:]}. Show the hand again.",
     )
-
-
-def _is_by_hand(table: ScoreTable, at: int) -> bool:
-    """Return whether the hand alone is too far from a gesture's, and the movement is not."""
-    movement, hand = (float(row[at]) for row in table.novelty_by_view)
-    return is_rejected(hand) and not is_rejected(movement)
 
 
 def _find_near_gesture(
@@ -367,11 +359,10 @@ def _find_near_gesture(
     pair = {labels[at], others[0]}
     known = zip(context.known, context.known_takes.readings, strict=True) if with_known else ()
     confused = sum(take.label != read and {take.label, read} == pair for take, read in known)
-    one, other = at, labels.index(others[0])
-    if confused < CONFUSED and not _are_alike(context.full_recognizer, one, other):
+    other = labels.index(others[0])
+    if confused < CONFUSED and not _are_alike(context.full_recognizer, at, other):
         return None
-    names = {"label": repr(labels[at]), "other": repr(others[0])}
-    sentence = SENTENCES["near_gesture"].format(**names)
+    sentence = SENTENCES["near_gesture"].format(label=repr(labels[at]), other=repr(others[0]))
     return Cause(kind=CauseKind.near_gesture, sentence=sentence, label=others[0])
 
 

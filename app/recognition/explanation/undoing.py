@@ -256,12 +256,10 @@ class Comparison:
         whole, other = (undone.query, self.shown[0]) if added else (self.shown[0], undone.query)
         here, there = whole.paths, other.paths - other.paths.mean(axis=0)
         kept = here[undone.part.rest]
+        part = np.delete(here, undone.part.rest, axis=0) - kept.mean(axis=0)
         scale = np.sqrt((there**2).sum() / STEPS)
         size = np.sqrt(((kept - kept.mean(axis=0)) ** 2).sum() / len(kept))
-        if scale <= 0 or size <= 0:
-            return False
-        part = np.delete(here, undone.part.rest, axis=0) - kept.mean(axis=0)
-        apart = part[:, None] / size - there[None] / scale
+        apart = part[:, None] / max(size, 1e-9) - there[None] / max(scale, 1e-9)
         nearest = np.sqrt((apart**2).sum(axis=(2, 3))).min(axis=1)
         return bool(nearest.max() >= OUTSIDE)
 
