@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, computed_field
@@ -30,6 +30,12 @@ from app.recognition.explanation.transcript import (
 )
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
 from app.recognition.features.traversals import AS_SHOWN
+
+UNFOLLOWED: Final = {CauseKind.keypoints_jumped, CauseKind.other_person, CauseKind.not_seen}
+"""Causes for which neither the strokes nor the turn of the diver are those that were shown."""
+
+CLEARLY_TURNED: Final = 15.0
+"""Least degrees by which a diver is turned that the numbers tell."""
 
 
 class Explanation(BaseModel):
@@ -144,7 +150,11 @@ class Explanation(BaseModel):
             return f"Read as {self.expected!r}, as expected."
         if self.causes:
             return self.causes[0].sentence
-        return describe_transcript(self.transcript, self.expected)
+        told = describe_transcript(self.transcript, self.expected)
+        if self.transcript.differs is None and self.pair and self.expected in self.pair:
+            other = self.pair[self.pair[0] == self.expected]
+            told = f"{told} {other!r} is nearly as near."
+        return told
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -163,7 +173,8 @@ class Explanation(BaseModel):
                 f"{self.other!r} at {self.other_score:.2f}."
             )
         if not self.right and math.isfinite(self.novelty):
-            yield f"The take is {self.novelty:.1f} times as far as the limit allows."
+            far = f"{self.novelty:.1f} times as far as the limit allows"
+            yield f"The take is {far if self.novelty > 1 else 'within the limit'}."
         if self.causes and self.causes[0].share < 1:
             share = f"{self.causes[0].share:.0%}"
             yield f"Undoing the cause removes {share} of the distance beyond that of usual takes."
@@ -173,11 +184,16 @@ class Explanation(BaseModel):
                 f"Of {first.takes} known takes the change repairs {first.repaired} and breaks "
                 f"{first.broken}."
             )
-        if self.causes and self.transcript.shown:
+        followed = UNFOLLOWED.isdisjoint(each.kind for each in self.causes)
+        if (
+            self.causes
+            and followed
+            and self.transcript.shown
+            and self.transcript.differs is not None
+        ):
             yield describe_transcript(self.transcript, self.expected)
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
-        jumped = any(each.kind is CauseKind.keypoints_jumped for each in self.causes)
-        if self.facing is not None and not jumped:
+        if followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
         yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."

@@ -68,11 +68,20 @@ STRAIGHT: Final = math.radians(55)
 DIRECT: Final = 0.9
 """Least ratio of distance to path of a straight line."""
 
-LOOP: Final = math.radians(290)
+NEARLY: Final = 0.95
+"""Least such ratio of a straight line whose ends are bent, by a rounded corner."""
+
+LOOP: Final = math.radians(270)
 """Least turn of a loop."""
 
 CLOSED: Final = 0.3
 """Largest ratio of distance to path of a loop that does not turn so far."""
+
+VAGUE: Final = 0.5
+"""Ratio of distance to path below which a curve leads nowhere."""
+
+MOST_TOLD: Final = 7
+"""Most pieces that a sentence tells of a movement, unless it first differs later."""
 
 PAUSE_SECONDS: Final = 0.5
 """Shortest pause that is told."""
@@ -97,7 +106,8 @@ class Piece:
     hand
         The landmark that draws it.
     direction
-        Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+        Degrees from its start to its end, 0 to the right, 90 down; None of loops, pauses, and
+        curves that end near their start.
     turn
         Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
     start, end
@@ -128,7 +138,7 @@ class Piece:
                 turns = max(1, round(abs(self.turn) / 360))
                 return f"{sense} loop" if turns == 1 else f"{turns} {sense} loops"
             case "curve":
-                return "a curve"
+                return "a curve" if self.direction is None else f"a curve {self._way}"
             case _:
                 return "a pause"
 
@@ -204,15 +214,25 @@ def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
     return transcribe(gesture.trajectory, gesture.salient)
 
 
-def describe_strokes(pieces: Sequence[Piece]) -> str:
-    """Return strokes in words; of two hands, one after the other."""
-    hands = list(dict.fromkeys(each.hand for each in pieces))
-    words = [", ".join(each.words for each in pieces if each.hand == hand) for hand in hands]
-    if len(hands) < 2:
+def describe_strokes(
+    pieces: Sequence[Piece], most: int | None = None, *, named: bool = False
+) -> str:
+    """Return strokes in words; of two hands, one after the other, and at most so many of each.
+
+    `named` is whether the hand is named where there is one only.
+    """
+    rows: dict[str, list[str]] = {}
+    for each in pieces:
+        rows.setdefault(each.hand, []).append(each.words)
+    words = [", ".join(row[:most]) for row in rows.values()]
+    for index, row in enumerate(rows.values()):
+        if most is not None and len(row) > most:
+            words[index] += f", then {len(row) - most} more"
+    if len(words) < 2 and not named:
         return "".join(words)
-    if len(set(words)) == 1:
+    if len(words) > len(set(words)) == 1:
         return f"both hands {words[0]}"
-    sides = [parse_body_part(hand).partition("_")[0] for hand in hands]
+    sides = [parse_body_part(hand).partition("_")[0] for hand in rows]
     return "; ".join(f"{side} hand {each}" for side, each in zip(sides, words, strict=True))
 
 
@@ -337,7 +357,7 @@ class _Run:
         bent = all(STRAIGHT <= abs(run.turn) < LOOP for run in (before, self))
         follows = self.time[0] - before.time[-1] < PAUSE_SECONDS
         whole = before.join(self)
-        return bent and follows and before.turn * self.turn > 0 and whole.direct < CLOSED
+        return bent and follows and abs(whole.turn) >= LOOP and whole.direct < CLOSED
 
     @property
     def turn(self) -> float:
@@ -402,14 +422,15 @@ class _Run:
         kind: PieceKind = "curve"
         if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
             kind = "loop"
-        elif self.direct >= DIRECT and abs(turn) < STRAIGHT:
+        elif self.direct >= (DIRECT if abs(turn) < STRAIGHT else NEARLY):
             kind = "line"
         elif is_bent:
             kind = "arc"
+        vague = kind == "loop" or (kind == "curve" and self.direct < VAGUE)
         return Piece(
             kind=kind,
             hand=hand,
-            direction=None if kind == "loop" else math.degrees(math.atan2(chord[1], chord[0])),
+            direction=None if vague else math.degrees(math.atan2(chord[1], chord[0])),
             turn=0.0 if kind == "line" else math.degrees(turn),
             start=start + float(self.time[0]),
             end=start + float(self.time[-1]),
@@ -424,14 +445,24 @@ def _is_monotone(headings: FloatArray) -> bool:
 
 def describe_transcript(transcript: Transcript, label: str) -> str:
     """Return what was shown and what was expected, in one sentence."""
+    hands = {each.hand for each in (*transcript.shown, *transcript.expected)}
+    shown, expected = (
+        _say(pieces, transcript.differs, named=len(hands) > 1)
+        for pieces in (transcript.shown, transcript.expected)
+    )
     if not transcript.shown:
-        return f"No movement of a hand was seen. {label!r} is: {_say(transcript.expected)}."
+        return f"No movement of a hand was seen. {label!r} is: {expected}."
     if not transcript.expected:
-        return f"You showed: {_say(transcript.shown)}. {label!r} is a held hand shape."
+        return f"You showed: {shown}. {label!r} is a held hand shape."
     if transcript.differs is None:
-        return f"You showed the strokes of {label!r}: {_say(transcript.shown)}."
-    return f"You showed: {_say(transcript.shown)}. {label!r}: {_say(transcript.expected)}."
+        return f"You showed the strokes of {label!r}: {shown}."
+    return f"You showed: {shown}. {label!r}: {expected}."
 
 
-def _say(pieces: Sequence[Piece]) -> str:
-    return describe_strokes(pieces) or "no stroke"
+def _say(pieces: Sequence[Piece], differs: int | None, *, named: bool) -> str:
+    """Return at most `MOST_TOLD` strokes in words, and always the first that differs."""
+    hands = [each.hand for each in pieces]
+    most = MOST_TOLD // max(1, len(set(hands)))
+    if differs is not None and differs < len(hands):
+        most = max(most, differs + 1 - hands.index(hands[differs]))
+    return describe_strokes(pieces, most, named=named) or "no stroke"

@@ -273,7 +273,10 @@ export interface components {
          */
         Cause: {
             kind: components["schemas"]["CauseKind"];
-            /** Share */
+            /**
+             * Share
+             * @default 1
+             */
             share: number;
             /** Sentence */
             sentence: string;
@@ -1971,7 +1974,8 @@ export interface components {
          *     hand
          *         The landmark that draws it.
          *     direction
-         *         Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+         *         Degrees from its start to its end, 0 to the right, 90 down; None of loops, pauses, and
+         *         curves that end near their start.
          *     turn
          *         Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
          *     start, end

@@ -256,6 +256,22 @@ def test_the_numbers_tell_nothing_of_a_turn_that_mixed_sides_make_up() -> None:
     assert "The diver is turned 24 degrees to their left." in right.details
 
 
+def test_strokes_that_could_not_be_followed_are_no_numbers() -> None:
+    told = why(recording(circle, jitter=0.01), "wedge")
+    for kind, strokes in (("near_gesture", True), ("keypoints_jumped", False)):
+        cause = Cause(kind=CauseKind(kind), sentence="So.")
+        details = told.model_copy(update={"causes": (cause,)}).details
+        assert any("You showed" in each for each in details) is strokes
+
+
+def test_who_showed_the_strokes_is_told_which_gesture_is_as_near() -> None:
+    told = explain(between(asked=True), "wedge", with_counterfactuals=False)
+    same = told.model_copy(update={"transcript": replace(told.transcript, differs=None)})
+    assert same.sentence.endswith("'circle' is nearly as near.")
+    assert "nearly" not in told.model_copy(update={"between": ()}).sentence
+    assert "The take is within the limit." in told.model_copy(update={"novelty": 0.6}).details
+
+
 def test_the_numbers_of_a_blamed_demonstration_stand_only_below_its_sentence() -> None:
     evidence = Evidence(unlike=2.0, failing=1.0, gain=1.0)
     blamed = Blame(
