@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-import numpy.typing as npt
-from pydantic import Field, InstanceOf, PlainSerializer, computed_field
+from pydantic import Field
 
 from app.recognition.decision.result import WRITTEN
 from app.recognition.features.motion import build_movement, find_hands
@@ -23,34 +22,9 @@ DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond."""
 
 
-def _round(values: Any) -> Any:
-    """Round for JSON."""
-    return np.round(values, DIGITS).tolist()
-
-
-def _pair(values: FloatArray | npt.NDArray[np.intp]) -> Any:
-    """Round the pairs in the last axis."""
-    return [_pair(each) for each in values] if values.ndim > 1 else tuple(_round(values))
-
-
 Places = Annotated[
-    FloatArray,
-    InstanceOf(),
-    PlainSerializer(_pair, list[list[tuple[float, float]]]),
+    list[list[tuple[float, float]]],
     Field(description="Step by step and part by part, x right and y down."),
-]
-Times = Annotated[FloatArray, InstanceOf(), PlainSerializer(_round, list[float])]
-Steps = Annotated[
-    npt.NDArray[np.intp],
-    InstanceOf(),
-    PlainSerializer(_pair, list[tuple[int, int]]),
-    Field(description="Corresponding steps of the take and of the gesture."),
-]
-Costs = Annotated[
-    FloatArray,
-    InstanceOf(),
-    PlainSerializer(_round, list[list[float]]),
-    Field(description="Per pair and part; their sum is `distance`."),
 ]
 
 
@@ -67,18 +41,19 @@ class Alignment:
     parts
         P landmarks.
     pairs
-        ``(S, 2)``: corresponding steps of the query and of the gesture.
+        S corresponding steps of the query and of the gesture.
     time
-        ``(N,)`` seconds in the query's clock of each of its steps.
+        Seconds in the query's clock of each of its steps.
     gesture_time
-        ``(N,)`` seconds in the demonstration of each of the gesture's steps.
+        Seconds in the demonstration of each of the gesture's steps.
     query, gesture
-        ``(N, P, 2)``: step by step each landmark's position relative to its mean, x right and
+        Step by step each landmark's position relative to its mean, x right and
         y down, in sizes of the gesture: the costs are the distances between corresponding
-        positions, divided by N.
+        positions, divided by the number of steps.
     costs
-        ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
-        their sum.
+        The contribution of each pair and part to the voter's distance, >= 0.
+    distance
+        The voter's distance, in its unit: the sum of the costs.
     backward, mirrored
         Whether the gesture is traversed backwards, and whether it is its mirror image.
     demonstration
@@ -91,21 +66,21 @@ class Alignment:
     label: str
     voter: str = Path.name
     parts: tuple[str, ...]
-    pairs: Steps
-    time: Times
-    gesture_time: Times
+    pairs: Annotated[
+        list[tuple[int, int]],
+        Field(description="Corresponding steps of the take and of the gesture."),
+    ]
+    time: list[float]
+    gesture_time: list[float]
     query: Places
     gesture: Places
-    costs: Costs
+    costs: Annotated[
+        list[list[float]], Field(description="Per pair and part; their sum is `distance`.")
+    ]
+    distance: float
     backward: bool
     mirrored: bool
     demonstration: int = 0
-
-    @computed_field  # type: ignore[prop-decorator]
-    @property
-    def distance(self) -> Annotated[float, PlainSerializer(_round, float)]:
-        """The voter's distance, in its unit."""
-        return float(self.costs.sum())
 
 
 def align(
@@ -156,17 +131,27 @@ def align(
     apart = moved.figure[pairs[:, 0]] - shown.figure[pairs[:, 1]]
     # A step's distance is the root of its squares, of which each part has its share.
     squares = (apart**2).sum(axis=2)
-    roots = np.sqrt(np.maximum(squares.sum(axis=1, keepdims=True), 1e-12))
+    costs = squares / np.sqrt(np.maximum(squares.sum(axis=1, keepdims=True), 1e-12)) / len(read)
     return Alignment(
         label=gesture.label,
         parts=tuple(landmarks),
-        pairs=pairs,
-        time=start + moved.reached,
-        gesture_time=whole.reached[traversal.order],
-        query=moved.figure,
-        gesture=shown.figure,
-        costs=squares / roots / len(read),
+        pairs=[(one, other) for one, other in pairs.tolist()],
+        time=_round(start + moved.reached),
+        gesture_time=_round(whole.reached[traversal.order]),
+        query=_list_places(moved.figure),
+        gesture=_list_places(shown.figure),
+        costs=_round(costs),
+        distance=_round(costs.sum()),
         backward=traversal.backward,
         mirrored=mirrored,
         demonstration=demonstration,
     )
+
+
+def _list_places(figure: FloatArray) -> list[list[tuple[float, float]]]:
+    return [[(x, y) for x, y in step] for step in _round(figure)]
+
+
+def _round(values: FloatArray) -> Any:
+    """Round for JSON."""
+    return np.round(values, DIGITS).tolist()

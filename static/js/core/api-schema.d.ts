@@ -20,18 +20,19 @@ export interface components {
          *     parts
          *         P landmarks.
          *     pairs
-         *         ``(S, 2)``: corresponding steps of the query and of the gesture.
+         *         S corresponding steps of the query and of the gesture.
          *     time
-         *         ``(N,)`` seconds in the query's clock of each of its steps.
+         *         Seconds in the query's clock of each of its steps.
          *     gesture_time
-         *         ``(N,)`` seconds in the demonstration of each of the gesture's steps.
+         *         Seconds in the demonstration of each of the gesture's steps.
          *     query, gesture
-         *         ``(N, P, 2)``: step by step each landmark's position relative to its mean, x right and
+         *         Step by step each landmark's position relative to its mean, x right and
          *         y down, in sizes of the gesture: the costs are the distances between corresponding
-         *         positions, divided by N.
+         *         positions, divided by the number of steps.
          *     costs
-         *         ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
-         *         their sum.
+         *         The contribution of each pair and part to the voter's distance, >= 0.
+         *     distance
+         *         The voter's distance, in its unit: the sum of the costs.
          *     backward, mirrored
          *         Whether the gesture is traversed backwards, and whether it is its mirror image.
          *     demonstration
@@ -80,6 +81,8 @@ export interface components {
              * @description Per pair and part; their sum is `distance`.
              */
             costs: number[][];
+            /** Distance */
+            distance: number;
             /** Backward */
             backward: boolean;
             /** Mirrored */
@@ -89,11 +92,6 @@ export interface components {
              * @default 0
              */
             demonstration: number;
-            /**
-             * Distance
-             * @description The voter's distance, in its unit.
-             */
-            readonly distance: number;
         };
         /**
          * AlikeView
