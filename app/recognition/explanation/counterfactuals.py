@@ -8,7 +8,7 @@ known takes at hand.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any, Final, Literal, get_args
 
@@ -37,8 +37,6 @@ TRIM_STEPS = 4
 LEAST_KEPT = 0.8
 """Share of the stroke that a trim keeps; a shorter part of it is another gesture."""
 
-SwitchName = Literal["direction", "tempo", "mirror", "hand_shape"]
-
 Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
@@ -52,112 +50,75 @@ each kind has its most useful one."""
 ORDER: Final = get_args(InterventionKind)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True)
 class Intervention:
     """A change of the take, of a gesture or of the language that is tried.
 
     Attributes
     ----------
-    kind, reach
-        What is changed, and its scope.
+    kind
+        What is changed.
     size
-        In [0, 1]: share of its object that it changes; see the function that makes it.
-    words
-        The intervention as a clause after "it would have been recognised".
+        In [0, 1]: share of its object that it changes: of the stroke's, the demonstration's or the
+        repaired moments, of a switch's positions, of a gesture's demonstrations.
     values
-        What the kind needs to be applied elsewhere, in plain JSON types.
-    apply
-        Returns a context with this intervention; raises `OsgError` where it cannot be applied.
+        What the kind needs to be applied, in plain JSON types.
 
     """
 
     kind: InterventionKind
-    reach: Reach = "gesture"
     size: float
-    words: str
     values: Mapping[str, Any]
-    apply: Callable[[RecognitionContext], RecognitionContext]
+
+    @property
+    def reach(self) -> Reach:
+        """The scope of the change."""
+        if self.kind == "trim":
+            return "take"
+        return "language" if self.kind == "keypoint_repair" else "gesture"
+
+    @property
+    def words(self) -> str:
+        """The intervention as a clause after "it would have been recognised"."""
+        values = self.values
+        match self.kind:
+            case "trim":
+                how = "more of the clip," if values["longer"] else "the take trimmed to"
+                return "with {how} {start:.2f}-{end:.2f} s".format(**values, how=how)
+            case "demonstration_cut":
+                cut = "with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s"
+                return cut.format(**values)
+            case "switch":
+                switch = humanize(values["switch"])
+                return "with the switch {0} of {label!r} {position}".format(switch, **values)
+            case "keypoint_repair":
+                return describe_repair(values["on"])
+            case _:
+                return f"with this take as another demonstration of {values['label']!r}"
+
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
+        """Return a context with this intervention; raises `OsgError` where it cannot be applied."""
+        values = self.values
+        if self.kind == "trim":
+            # The ends are times of frames; a rounding error must not drop these.
+            stroke = context.whole.between(values["start"] - 1e-6, values["end"] + 1e-6)
+            return context.with_poses(stroke)
+        if self.kind == "keypoint_repair":
+            tuning = replace(context.recognizer.tuning, keypoints_repaired=values["on"])
+            return context.with_tuning(tuning)
+        gesture = context.language.gesture(values["label"])
+        if self.kind == "demonstration_cut":
+            cut = values["demonstration"], values["start"], values["end"]
+            return context.with_gesture(gesture.with_cut(*cut))
+        if self.kind == "switch":
+            switches = replace(gesture.switches, **{values["switch"]: values["position"]})
+            return context.with_gesture(replace(gesture, switches=switches))
+        return context.with_gesture(gesture.with_demonstration(context.poses))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types: the kind, the scope, and the values to apply."""
         told = {"kind": self.kind, "reach": self.reach, "size": self.size, **self.values}
         return {**told, "words": self.words}
-
-
-def cut_demonstration(
-    label: str, demonstration: int, start: float, end: float, *, size: float
-) -> Intervention:
-    """Keep another range of a demonstration; `size` is the share of its time that is cut off."""
-    return Intervention(
-        kind="demonstration_cut",
-        size=size,
-        words=f"with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s",
-        values={"label": label, "demonstration": demonstration, "start": start, "end": end},
-        apply=lambda context: context.with_gesture(
-            context.language.gesture(label).with_cut(demonstration, start, end)
-        ),
-    )
-
-
-def trim_take(start: float, end: float, *, size: float, longer: bool = False) -> Intervention:
-    """Keep another stretch of the clip; `size` is the share of the stroke added or removed.
-
-    `longer` is whether it holds more than the stroke.
-    """
-    span = f"{start:.2f}-{end:.2f} s"
-    return Intervention(
-        kind="trim",
-        reach="take",
-        size=size,
-        words=f"with more of the clip, {span}" if longer else f"with the take trimmed to {span}",
-        values={"start": start, "end": end, "longer": longer},
-        # The ends are times of frames; a rounding error must not drop these.
-        apply=lambda context: context.with_poses(context.whole.between(start - 1e-6, end + 1e-6)),
-    )
-
-
-def repair_keypoints(*, on: bool, size: float) -> Intervention:
-    """Repair keypoints or not; `size` is the share of moments that a repair changes."""
-    return Intervention(
-        kind="keypoint_repair",
-        reach="language",
-        size=size,
-        words=describe_repair(on),
-        values={"on": on},
-        apply=lambda context: context.with_tuning(
-            replace(context.recognizer.tuning, keypoints_repaired=on)
-        ),
-    )
-
-
-def set_switch(label: str, switch: SwitchName, position: Switch) -> Intervention:
-    """Set one of a gesture's switches to another position, a third of all that it can be."""
-
-    def apply(context: RecognitionContext) -> RecognitionContext:
-        gesture = context.language.gesture(label)
-        switches = replace(gesture.switches, **{switch: position})
-        return context.with_gesture(replace(gesture, switches=switches))
-
-    return Intervention(
-        kind="switch",
-        size=1 / 3,
-        words=f"with the switch {humanize(switch)} of {label!r} {position}",
-        values={"label": label, "switch": switch, "position": position},
-        apply=apply,
-    )
-
-
-def demonstrate_take(label: str, *, size: float) -> Intervention:
-    """Make the take one more demonstration of a gesture; `size` is its share of them."""
-    return Intervention(
-        kind="further_demonstration",
-        size=size,
-        words=f"with this take as another demonstration of {label!r}",
-        values={"label": label},
-        apply=lambda context: context.with_gesture(
-            context.language.gesture(label).with_demonstration(context.poses)
-        ),
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -303,12 +264,9 @@ def _verify(
     )
 
 
-Series = list[Intervention]
-
-
 def list_interventions(
     context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
-) -> Iterator[Series]:
+) -> Iterator[list[Intervention]]:
     """Yield all interventions to try, in series of one kind and increasing size.
 
     Parameters
@@ -340,10 +298,11 @@ def _cuts(
         if start is not None and end is not None:
             whole = float(context.language.gesture(expected).trajectories[number].time[-1])
             size = min(1.0, max(0.0, 1.0 - (end - start) / whole))
-            yield cut_demonstration(expected, number, start, end, size=size)
+            values = {"label": expected, "demonstration": number, "start": start, "end": end}
+            yield Intervention("demonstration_cut", size, values)
 
 
-def _trims(context: RecognitionContext) -> Iterator[Series]:
+def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     """Move the start, the end, or both, within the take, and keep most of the stroke."""
     start, end, first, last = (
         float(each)
@@ -358,25 +317,24 @@ def _trims(context: RecognitionContext) -> Iterator[Series]:
     ):
         inside = {(max(a, first), min(b, last)) for a, b in spans} - {(start, end)}
         yield [
-            trim_take(
-                a,
-                b,
-                size=min(1.0, (abs(a - start) + abs(b - end)) / (end - start)),
-                longer=bool(a < start or b > end),
+            Intervention(
+                "trim",
+                min(1.0, (abs(a - start) + abs(b - end)) / (end - start)),
+                {"start": a, "end": b, "longer": bool(a < start or b > end)},
             )
             for a, b in inside
             if min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
         ]
 
 
-def _repairs(context: RecognitionContext) -> Iterator[Series]:
+def _repairs(context: RecognitionContext) -> Iterator[list[Intervention]]:
     """Switch the repair of keypoints on or off, if it changes any."""
     share = float(repair_poses(context.poses).touched.mean())
     if share > 0:
-        yield [repair_keypoints(on=not context.recognizer.repairs, size=share)]
+        yield [Intervention("keypoint_repair", share, {"on": not context.recognizer.repairs})]
 
 
-def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
+def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Intervention]]:
     """Change the expected gesture, or the one that was recognised."""
     for label in dict.fromkeys((expected, context.result.nearest)):
         gesture = context.language.gesture(label)
@@ -384,10 +342,13 @@ def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
     if len(shown) < MAX_DEMONSTRATIONS:
-        yield [demonstrate_take(expected, size=1 / (len(shown) + 1))]
+        values = {"label": expected}
+        yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]
 
 
-def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
+def _switches(
+    context: RecognitionContext, label: str, *, expected: bool
+) -> Iterator[list[Intervention]]:
     """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
     Only switches that affect this recognition: direction, tempo, mirror image or hand shape.
@@ -399,7 +360,7 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
     traversal = table.traversals[at]
     slower = table.distances[table.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
-    positions: dict[SwitchName, tuple[Switch, bool]] = {
+    positions: dict[str, tuple[Switch, bool]] = {
         "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
         "mirror": ("on" if expected else "off", bool(table.mirrored[at]) != expected),
@@ -407,4 +368,5 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
     }
     for switch, (position, matters) in positions.items():
         if matters and getattr(gesture.switches, switch) != position:
-            yield [set_switch(label, switch, position)]
+            values = {"label": label, "switch": switch, "position": position}
+            yield [Intervention("switch", 1 / 3, values)]

@@ -10,14 +10,9 @@ from app.recognition.explanation.context import KnownTake, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
     Counterfactual,
     Intervention,
-    cut_demonstration,
-    demonstrate_take,
     find_counterfactuals,
     list_interventions,
     measure_margin,
-    repair_keypoints,
-    set_switch,
-    trim_take,
 )
 from app.recognition.explanation.demonstration_faults import DemonstrationFault, FaultKind
 from app.recognition.explanation.explanation import explain
@@ -30,6 +25,14 @@ from tests.recognition.demonstrations import drawn_language, drawn_recognizer
 from tests.recognition.explanation.test_blame import SALUTE
 from tests.recognition.explanation.test_causes import HOOK, corners, hook
 from tests.recognition.strategies import SHAPES, circle, recording, wedge
+
+TRIM = Intervention("trim", 0.5, {"start": 0.2, "end": 1.0, "longer": False})
+UNREPAIRED = Intervention("keypoint_repair", 0.1, {"on": False})
+
+
+def cut(label: str, demonstration: int, start: float, end: float) -> Intervention:
+    values = {"label": label, "demonstration": demonstration, "start": start, "end": end}
+    return Intervention("demonstration_cut", 0.5, values)
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +53,7 @@ def found_for(
 def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(
     context: RecognitionContext,
 ) -> None:
-    changed = trim_take(0.2, 1.0, size=0.5).apply(context)
+    changed = TRIM.apply(context)
     assert (changed.poses.time[0], changed.poses.time[-1]) == pytest.approx((0.2, 1.0))
     assert changed.recognizer is context.recognizer
 
@@ -58,12 +61,12 @@ def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(
 def test_a_change_forgets_the_recorded_answer(context: RecognitionContext) -> None:
     recorded = replace(context, recorded=replace(context.result, nearest="line"))
     assert recorded.result.nearest == "line"
-    assert trim_take(0.2, 1.0, size=0.5).apply(recorded).recorded is None
-    assert repair_keypoints(on=False, size=0.1).apply(recorded).recorded is None
+    assert TRIM.apply(recorded).recorded is None
+    assert UNREPAIRED.apply(recorded).recorded is None
 
 
 def test_tuning_changes_one_thing_and_keeps_the_rest(context: RecognitionContext) -> None:
-    unrepaired = repair_keypoints(on=False, size=0.1).apply(context)
+    unrepaired = UNREPAIRED.apply(context)
     assert (unrepaired.recognizer.repairs, unrepaired.recognizer.tuning.weights) == (
         False,
         {"velocity": 3.0},
@@ -73,21 +76,21 @@ def test_tuning_changes_one_thing_and_keeps_the_rest(context: RecognitionContext
 def test_a_switch_is_the_only_thing_that_changes_about_a_gesture(
     context: RecognitionContext,
 ) -> None:
-    change = set_switch("wedge", "mirror", "on")
+    change = Intervention("switch", 1 / 3, {"label": "wedge", "switch": "mirror", "position": "on"})
     switches = change.apply(context).language.gesture("wedge").switches
     assert (switches.mirror, switches.direction, switches.tempo) == ("on", "auto", "auto")
 
 
 def test_a_cut_keeps_the_middle_of_a_demonstration(context: RecognitionContext) -> None:
-    cut = cut_demonstration("circle", 0, 0.5, 1.5, size=0.5)
-    before, after = (each.language.gesture("circle") for each in (context, cut.apply(context)))
+    middle = cut("circle", 0, 0.5, 1.5)
+    before, after = (each.language.gesture("circle") for each in (context, middle.apply(context)))
     assert before.trajectory is not None
     assert after.trajectory is not None
     assert after.trajectory.time[-1] == pytest.approx(1.0, abs=0.05)
     assert (after.image != before.image).any()
     for wrong in (
-        cut_demonstration("circle", 3, 0.5, 1.5, size=0.5),
-        cut_demonstration("circle", 0, 0.5, 0.51, size=0.5),
+        cut("circle", 3, 0.5, 1.5),
+        cut("circle", 0, 0.5, 0.51),
     ):
         with pytest.raises(GestureError, match=r"no demonstration 3|would be left"):
             wrong.apply(context)
@@ -99,7 +102,7 @@ def test_a_further_demonstration_leaves_the_others_as_they_are(profile: str) -> 
     made = RecognitionContext(
         recognizer=Recognizer(drawn_language(), profile), poses=query, whole=query
     )
-    after = demonstrate_take("circle", size=0.5).apply(made)
+    after = Intervention("further_demonstration", 0.5, {"label": "circle"}).apply(made)
     first, second = after.language.gesture("circle").single_demonstrations()
     assert (first.image == drawn_language().gesture("circle").image).all()
     assert (second.image == drawn_language().gesture("wedge").image).all()
@@ -109,26 +112,32 @@ def test_a_further_demonstration_leaves_the_others_as_they_are(profile: str) -> 
 def test_nothing_can_be_demonstrated_by_a_hand_at_rest(context: RecognitionContext) -> None:
     still = recording(lambda share: circle(0 * share))
     with pytest.raises(GestureError, match="nothing moves"):
-        demonstrate_take("circle", size=0.5).apply(replace(context, poses=still))
+        Intervention("further_demonstration", 0.5, {"label": "circle"}).apply(
+            replace(context, poses=still)
+        )
 
 
 @pytest.mark.parametrize(
     ("change", "values", "words"),
     [
-        (trim_take(0.1, 1.6, size=0.2), {"start": 0.1, "end": 1.6}, "0.10-1.60 s"),
-        (repair_keypoints(on=True, size=0.1), {"on": True}, "put right"),
         (
-            set_switch("a", "tempo", "off"),
+            Intervention("trim", 0.2, {"start": 0.1, "end": 1.6, "longer": True}),
+            {"start": 0.1, "end": 1.6, "reach": "take"},
+            "with more of the clip, 0.10-1.60 s",
+        ),
+        (Intervention("keypoint_repair", 0.1, {"on": True}), {"reach": "language"}, "put right"),
+        (
+            Intervention("switch", 1 / 3, {"label": "a", "switch": "tempo", "position": "off"}),
             {"switch": "tempo", "position": "off"},
             "switch tempo of 'a' off",
         ),
         (
-            demonstrate_take("a", size=0.5),
+            Intervention("further_demonstration", 0.5, {"label": "a"}),
             {"label": "a", "reach": "gesture"},
             "with this take as another demonstration of 'a'",
         ),
         (
-            cut_demonstration("a", 1, 0.5, 1.5, size=0.5),
+            cut("a", 1, 0.5, 1.5),
             {"demonstration": 1, "start": 0.5},
             "with the demonstration of 'a' cut to 0.50-1.50 s",
         ),
