@@ -153,7 +153,7 @@ class Explanation(BaseModel):
         told = describe_transcript(self.transcript, self.expected)
         if self.transcript.differs is None and self.pair and self.expected in self.pair:
             other = self.pair[self.pair[0] == self.expected]
-            told = f"{told} {other!r} is nearly as near."
+            told = f"{told} {other!r} is about as near."
         return told
 
     @computed_field  # type: ignore[prop-decorator]

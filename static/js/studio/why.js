@@ -385,6 +385,9 @@ function transcriptOf(why) {
     },
     strokes("You showed", shown, why),
     strokes(why.expected, expected, why),
+    differs === null && why.pair?.includes(why.expected)
+      ? h("p", {}, `${why.pair.find((each) => each !== why.expected)} is about as near.`)
+      : null,
   );
 }
 

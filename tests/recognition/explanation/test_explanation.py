@@ -267,8 +267,8 @@ def test_strokes_that_could_not_be_followed_are_no_numbers() -> None:
 def test_who_showed_the_strokes_is_told_which_gesture_is_as_near() -> None:
     told = explain(between(asked=True), "wedge", with_counterfactuals=False)
     same = told.model_copy(update={"transcript": replace(told.transcript, differs=None)})
-    assert same.sentence.endswith("'circle' is nearly as near.")
-    assert "nearly" not in told.model_copy(update={"between": ()}).sentence
+    assert same.sentence.endswith("'circle' is about as near.")
+    assert "as near" not in told.model_copy(update={"between": ()}).sentence
     assert "The take is within the limit." in told.model_copy(update={"novelty": 0.6}).details
 
 
