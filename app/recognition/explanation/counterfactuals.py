@@ -50,11 +50,10 @@ each kind has its most useful one."""
 ORDER: Final = get_args(InterventionKind)
 
 
-@dataclass(frozen=True)
 class Intervention:
     """A change of the take, of a gesture or of the language that is tried.
 
-    Attributes
+    Parameters
     ----------
     kind
         What is changed.
@@ -66,9 +65,8 @@ class Intervention:
 
     """
 
-    kind: InterventionKind
-    size: float
-    values: Mapping[str, Any]
+    def __init__(self, kind: InterventionKind, size: float, values: Mapping[str, Any]) -> None:
+        self.kind, self.size, self.values = kind, size, values
 
     @property
     def reach(self) -> Reach:
