@@ -18,6 +18,7 @@ from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError, explain_missing_package
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
+from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.wording import list_some
 
 MOST_NAMED: Final = 10
@@ -185,9 +186,7 @@ def write_table(path: Path, rows: Sequence[Row]) -> None:
     content = (
         _to_parquet(rows) if path.suffix.lower() == PARQUET else write_csv(rows).encode("utf-8")
     )
-    unfinished = path.with_name(f".{path.name}.part")
-    unfinished.write_bytes(content)
-    unfinished.replace(path)
+    write_atomically(path, content)
 
 
 def _to_parquet(rows: Sequence[Row]) -> bytes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
@@ -28,6 +27,7 @@ from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
+from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.look_alikes import find_confusable, list_look_alikes
 from app.recognition.text.strict_json import build_pointer
@@ -282,16 +282,7 @@ class Language:
 
     def save(self, path: str | Path) -> None:
         """Write the language file atomically: readers see the old file or the new one."""
-        target = Path(path)
-        partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
-        try:
-            with partial.open("wb") as file:
-                file.write(self.to_json().encode("utf-8"))
-                file.flush()
-                os.fsync(file.fileno())
-            partial.replace(target)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_atomically(Path(path), self.to_json().encode("utf-8"))
 
     @classmethod
     def load(cls, path: str | Path) -> Language:
