@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.recognition.errors import OsgError
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def backup(
         clips = write_backup(settings.data_dir, file.absolute(), **_places(settings))
         with audit_of(settings) as note:
             note("backup", str(file.absolute()))
-    people.print(f"{clips} clips and all languages are in {file}", markup=False, highlight=False)
+    tell(f"{clips} clips and all languages are in {file}")
 
 
 def restore(
@@ -149,7 +149,7 @@ def restore(
         with audit_of(settings) as note:
             note("restore", str(file.absolute()))
     place = "the database of OSG_DATABASE_URL" if settings.database_url else settings.data_dir
-    people.print(f"{clips} clips and all languages are in {place}", markup=False, highlight=False)
+    tell(f"{clips} clips and all languages are in {place}")
 
 
 tokens_command = typer.Typer(help="Named tokens of a studio: add, list, remove.")
@@ -203,11 +203,7 @@ def add_token(
             "points, @, _ or -"
         ) from error
     typer.echo(secret)
-    people.print(
-        f"{name} may {role.value}; the token is not kept, only its digest in {settings.tokens}",
-        markup=False,
-        highlight=False,
-    )
+    tell(f"{name} may {role.value}; the token is not kept, only its digest in {settings.tokens}")
 
 
 @tokens_command.command("list")
@@ -237,13 +233,9 @@ def remove_token(name: Name, data_dir: DataDir = None) -> None:
         except NotFound as error:
             raise OsgError(f"{error}; osg-studio tokens list shows them") from error
         note("tokens remove", name)
-    people.print(f"{name} is not let in any more", markup=False, highlight=False)
+    tell(f"{name} is not let in any more")
     if not left and settings.token is None:
-        people.print(
-            "that was the last token, so nobody is let in now; add one: osg-studio tokens add",
-            markup=False,
-            highlight=False,
-        )
+        tell("that was the last token, so nobody is let in now; add one: osg-studio tokens add")
 
 
 models_command = typer.Typer(
@@ -280,7 +272,7 @@ def install_models_command(
         install_models(
             progress=lambda stage, done, total: advance(done, total, stage), source=source
         )
-    people.print(f"all models are in {models_dir()}")
+    tell(f"all models are in {models_dir()}")
 
 
 @models_command.command("export")
@@ -291,4 +283,4 @@ def export_models_command(
     from app.recognition.models import export_models
 
     export_models(directory)
-    people.print(f"on the robot: osg-studio models install --source {directory}")
+    tell(f"on the robot: osg-studio models install --source {directory}")

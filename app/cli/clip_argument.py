@@ -14,7 +14,7 @@ from typing import Annotated, Any
 import typer
 
 from app.bags import bag_and_topic
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.clip_sources import ClipSource, ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
 from app.recognition import Language, Recognition, Recognizer, Recording, Take, takes_in
@@ -256,7 +256,7 @@ def read_clip(
     else:
         read = _read_keypoints(source, path, options, language)
     for warning in read.recording.list_warnings(how.trigger):
-        people.print(f"{clip}: {warning}", markup=False)
+        tell(f"{clip}: {warning}")
     return replace(read, trigger=how.trigger)
 
 
@@ -309,35 +309,47 @@ HandsOption = Annotated[
 ]
 
 
-def reads_clips(command: Callable[..., None]) -> Callable[..., None]:
-    """Decorate a command with the options for reading clips, which it gets as ``reading``."""
+def takes_options(
+    name: str, build: Callable[..., object]
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Decorate a command with the options that are the parameters of `build`.
 
-    def read_options(
-        *,
-        water: WaterOption = "auto",
-        turn: TurnOption = 0,
-        estimator: EstimatorOption = "onnx",
-        hands: HandsOption = MEDIAPIPE_HANDS,
-        frame_rate: FrameRateOption = None,
-        frame_size: FrameSizeOption = None,
-        landmark: LandmarkOption = None,
-    ) -> ClipReading:
-        keypoints = keypoint_options(frame_rate, frame_size, landmark)
-        return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+    The command gets what `build` makes of them as the argument `name`.
+    """
+    options = signature(build, eval_str=True).parameters
 
-    options = signature(read_options, eval_str=True).parameters
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @wraps(command)
+        def run(**given: Any) -> None:
+            built = build(**{each: given.pop(each) for each in options})
+            command(**given, **{name: built})
 
-    @wraps(command)
-    def run(**given: Any) -> None:
-        reading = read_options(**{name: given.pop(name) for name in options})
-        command(**given, reading=reading)
+        known = signature(command, eval_str=True)
+        own = [each for each in known.parameters.values() if each.name != name]
+        asked = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in (*own, *options.values())]
+        run.__signature__ = known.replace(parameters=asked)  # type: ignore[attr-defined]
+        run.__annotations__ = {each.name: each.annotation for each in asked}
+        return run
 
-    known = signature(command, eval_str=True)
-    own = [each for name, each in known.parameters.items() if name != "reading"]
-    asked = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own] + [*options.values()]
-    run.__signature__ = known.replace(parameters=asked)  # type: ignore[attr-defined]
-    run.__annotations__ = {each.name: each.annotation for each in asked}
-    return run
+    return decorate
+
+
+def _build_reading(
+    *,
+    water: WaterOption = "auto",
+    turn: TurnOption = 0,
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
+) -> ClipReading:
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+
+
+reads_clips = takes_options("reading", _build_reading)
+"""Decorates a command with the options for reading clips, which it gets as ``reading``."""
 
 
 def recognize_clip(

@@ -19,7 +19,7 @@ from app.cli.clip_argument import (
     TurnOption,
     keypoint_options,
 )
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.clip_sources import ReadOptions
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
@@ -136,7 +136,7 @@ def evaluate(
     else:
         typer.echo("\n".join(result.to_text() for result in results), nl=False)
     for place, problem in problems.items():
-        people.print(f"{place}: {problem}", markup=False)
+        tell(f"{place}: {problem}")
     if picture is not None:
         _draw(picture, results)
 
@@ -194,4 +194,4 @@ def _draw(picture: Path, results: list[Evaluation]) -> None:
         target = picture.with_name(name)
         title = f"Profile {result.profile}, {result.asked}"
         target.write_text(confusion_svg(result.matrix, title), encoding="utf-8")
-        people.print(f"{target}: {title}", markup=False)
+        tell(f"{target}: {title}")

@@ -10,7 +10,6 @@ import signal
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Final
@@ -20,26 +19,22 @@ from rich import box
 from rich.table import Table
 
 from app.cli.robots.channels import Channels, Handler, open_ros2_topics
-from app.cli.terminal import describe_error, people
-from app.recognition.errors import EstimatorError, OsgError, VehicleError, explain_missing_package
+from app.cli.robots.robot_options import RobotOptions
+from app.cli.terminal import describe_error, people, tell
+from app.recognition.errors import OsgError, VehicleError, explain_missing_package
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.video import Turn
 from app.robot import (
-    ActiveLanguage,
     Event,
     LandmarkListener,
     Runtime,
     Source,
     TakeRecognized,
-    create_listener,
     open_source,
 )
 from app.robot.commands.answers import Answer
 from app.robot.language_watcher import LanguageWatcher
-from app.robot.publishing.publisher import Network, open_publisher
+from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.live import LiveSource
 from app.robot.stage_profile import STAGES, StageProfile, StageProfiler, open_energy_meter
@@ -53,40 +48,6 @@ RETRY_SECONDS: Final = 10.0
 
 WAIT_STEP: Final = 0.1
 """Seconds after which a waiting robot looks for a signal or an upload."""
-
-
-@dataclass(frozen=True)
-class RobotOptions:
-    """Options of the command; `ros2` holds the arguments of ROS 2, None without it."""
-
-    language: Path
-    source: str
-    turn: Turn
-    profile: str | None
-    without_salutes: bool
-    water: WaterCorrection
-    estimator: str
-    hands: str
-    ros2: Sequence[str] | None
-    publish: Network | None
-    mavlink: str | None
-    vehicle: Path | None
-    upload: bool
-
-    def open_listener(self, first: ActiveLanguage) -> LandmarkListener:
-        """Create the listener for the first language."""
-        sees_hands = self.hands != NO_HANDS
-        if first.trigger.kind == "salute" and not (self.without_salutes or sees_hands):
-            raise EstimatorError(
-                f"--hands {self.hands} finds no hand and so no salute: choose other hands, give "
-                "the language another trigger, or add --without-salutes"
-            )
-        return create_listener(first, without_salutes=self.without_salutes, hands=sees_hands)
-
-    def find_vehicle_table(self) -> Path | None:
-        """Return the vehicle table; None where there is none, or none was uploaded yet."""
-        missing = self.vehicle is None or (self.upload and not self.vehicle.exists())
-        return None if missing else self.vehicle
 
 
 class Control:
@@ -153,9 +114,16 @@ class Control:
 
 
 def run_with_uploads(
-    options: RobotOptions, channels: Channels, control: Control, page: StatusPage
+    run: Callable[[Callable[[], None]], bool], control: Control, page: StatusPage
 ) -> bool:
     """Run until the source ends or a signal comes; what keeps a run from starting is tried again.
+
+    Parameters
+    ----------
+    run
+        `run_robot` of some options; its argument is to be called when all is open.
+    control, page
+        Who stops the run, and where its waiting is shown.
 
     Returns
     -------
@@ -166,12 +134,12 @@ def run_with_uploads(
     while not control.stopped:
         control.changed = False
         try:
-            recognised = run_robot(options, channels, control, lambda: page.wait_for(""))
+            recognised = run(lambda: page.wait_for(""))
         except (OsgError, OSError) as error:
             reason = describe_error(error)
             page.wait_for(reason)
             if reason != told:
-                people.print(f"waiting: {reason}", markup=False, highlight=False, soft_wrap=True)
+                tell(f"waiting: {reason}")
             told = reason
             control.wait(RETRY_SECONDS)
             continue
@@ -185,6 +153,7 @@ def run_robot(
     options: RobotOptions,
     channels: Channels,
     control: Control,
+    ros_arguments: Sequence[str],
     begin: Callable[[], None] = lambda: None,
 ) -> bool:
     """Open everything, and pass the events to the channels until the source ends.
@@ -193,6 +162,8 @@ def run_robot(
     ----------
     options, channels, control
         What to run, where to report, and who stops it.
+    ros_arguments
+        Arguments of ROS 2.
     begin
         Called when all is open.
 
@@ -209,8 +180,8 @@ def run_robot(
         opened.enter_context(closing(finder))
         handlers: list[Handler] = []
         observer: Observer | None = None
-        if options.ros2 is not None:
-            topics = opened.enter_context(open_ros2_topics(options.ros2))
+        if options.ros2:
+            topics = opened.enter_context(open_ros2_topics(ros_arguments))
             handlers.append(lambda event: topics.publish_event(event, listener.language))
             observer = topics.publish_frame
         if options.publish:
@@ -277,8 +248,8 @@ def try_answers(options: RobotOptions) -> None:
         raise VehicleError(f"{options.vehicle} has no [answers]; see docs/robots/mavlink.md")
     missing: list[str] = []
 
-    def tell(text: str) -> None:
-        people.print(text, markup=False, highlight=False, soft_wrap=True)
+    def note(text: str) -> None:
+        tell(text)
         missing.extend([text] if text.startswith(NOT_SHOWN) else [])
 
     stops: list[bool] = []
@@ -292,8 +263,8 @@ def try_answers(options: RobotOptions) -> None:
             options.vehicle,
             listener,
             None,
-            tell,
-            lambda answer, pulses, text: tell(f"{pulses} {text}"),
+            note,
+            lambda answer, pulses, text: note(f"{pulses} {text}"),
             without_salutes=options.without_salutes,
         )
         opened.enter_context(closing(bridge))
@@ -308,8 +279,6 @@ def try_answers(options: RobotOptions) -> None:
 
 def profile_until_stopped(options: RobotOptions) -> None:
     """Print the costs of the stages when the source ends or a signal stops it."""
-    from app.cli.robots.run import show_stages
-
     with ExitStack() as opened:
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
@@ -319,7 +288,12 @@ def profile_until_stopped(options: RobotOptions) -> None:
         body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))
         stops: list[bool] = []
         opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
-        show_stages(source, body, whole, listener, water=options.water, is_over=lambda: bool(stops))
+        if meter := open_energy_meter():
+            opened.enter_context(closing(meter))
+        profiler = StageProfiler(body, whole, listener, water=options.water, meter=meter)
+        profile = profiler.run(source, is_over=lambda: bool(stops))
+    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
+    people.print(build_profile_table(profile))
 
 
 @contextmanager
@@ -345,10 +319,6 @@ def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-
-
-if TYPE_CHECKING:
-    from app.robot.mavlink.bridge import MavlinkBridge
 
 
 def open_bridge(
@@ -419,25 +389,6 @@ def open_bridge(
         without_salutes=without_salutes,
         memory=table_file.with_name(f"{table_file.name}.before"),
     )
-
-
-def show_stages(
-    source: Source,
-    body: PoseEstimator,
-    whole: PoseEstimator,
-    listener: LandmarkListener,
-    *,
-    water: WaterCorrection,
-    is_over: Callable[[], bool],
-) -> None:
-    """Profile a source and print the result; see `StageProfiler.run`."""
-    with ExitStack() as opened:
-        if meter := open_energy_meter():
-            opened.enter_context(closing(meter))
-        profiler = StageProfiler(body, whole, listener, water=water, meter=meter)
-        profile = profiler.run(source, is_over)
-    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
-    people.print(build_profile_table(profile))
 
 
 def build_profile_table(profile: StageProfile) -> Table:
