@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.recognition.decision.rejection import MOST_REFUSED, MOST_REFUSED_AT_ALL
-from app.recognition.errors import LanguageError, OsgError
+from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
@@ -139,7 +139,10 @@ class Language:
                 "another trigger first",
                 "/trigger",
             )
-        _check_tuning(self.profile, self.tuning)
+        with point_to("/profile"):
+            voters = find_profile(self.profile).voters
+        with point_to("/tuning/weights"):
+            self.tuning.weights_of([voter.name for voter in voters])
         object.__setattr__(self, "created", _utc_second(self.created))
 
     @property
@@ -330,17 +333,6 @@ def require_distinct_labels(labels: Sequence[str]) -> None:
 def _check_text(text: Any, most: int, pointer: str) -> None:
     if not isinstance(text, str) or len(text) > most or not is_printable(text):
         raise LanguageError(f"must be at most {most} printable characters, got {text!r}", pointer)
-
-
-def _check_tuning(profile: str, tuning: Tuning) -> None:
-    try:
-        voters = find_profile(profile).voters
-    except OsgError as error:
-        raise LanguageError(str(error), "/profile") from error
-    try:
-        tuning.weights_of([voter.name for voter in voters])
-    except OsgError as error:
-        raise LanguageError(str(error), "/tuning/weights") from error
 
 
 def _utc_second(moment: datetime | None) -> datetime:

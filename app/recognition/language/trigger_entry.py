@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, Field
 
-from app.recognition.errors import LanguageError, TriggerError
+from app.recognition.errors import point_to
 from app.recognition.text.described import STRICT
 from app.recognition.triggers.arm_pose import ArmPose
 from app.recognition.triggers.trigger import SALUTE, Trigger, TriggerKind
@@ -74,13 +74,11 @@ def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
     """
     if entry is None:
         return SALUTE
-    try:
+    with point_to("/trigger"):
         poses = (entry.start, entry.stop)
         start, stop = (pose and ArmPose.of_joints(pose.model_dump()) for pose in poses)
         read: dict[str, Any] = vars(entry) | {"start": start, "stop": stop}
         return Trigger(**read)
-    except TriggerError as error:
-        raise LanguageError(str(error), "/trigger") from error
 
 
 def _pose_to_entry(pose: ArmPose) -> ArmPoseEntry:
