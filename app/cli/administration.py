@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 
 from app.cli.terminal import progress_bar, tell
-from app.recognition.errors import OsgError
+from app.recognition.errors import OsgError, explain_missing_package
 
 if TYPE_CHECKING:
     from app.settings import Settings
@@ -32,13 +32,8 @@ def settings_of(given: Path | None) -> Settings:
         When only a robot's packages are installed.
 
     """
-    try:
+    with explain_missing_package("a studio's data folder", "studio"):
         from app.settings import Settings
-    except ModuleNotFoundError as error:
-        raise OsgError(
-            f"the studio's packages are not installed ({error.name} is missing), and only the "
-            "studio has a data folder"
-        ) from error
     # These commands listen nowhere, so they need no token, which one of them adds.
     here = "127.0.0.1"
     return Settings(host=here) if given is None else Settings(host=here, data_dir=given)
