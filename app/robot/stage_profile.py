@@ -52,11 +52,9 @@ class EnergyMeter(Protocol):
 
     def read_joules(self) -> float:
         """Return the energy used since the meter was created."""
-        ...
 
     def close(self) -> None:
         """Stop counting."""
-        ...
 
 
 class RaplMeter:

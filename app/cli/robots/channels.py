@@ -267,11 +267,9 @@ class Topics(Protocol):
 
     def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
         """Publish the landmarks of a frame."""
-        ...
 
     def publish_event(self, event: Event, language: ActiveLanguage) -> None:
         """Publish an event of the active language."""
-        ...
 
 
 def open_ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:
