@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import warnings
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from app.keypoint_files.keypoint_people import Person, table_of_people
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -68,16 +68,13 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
     if not any(everybody):
         raise KeypointFileError(f"{path}: nobody is seen in any of {len(labelled)} frames")
     times = Times(frames, counted=True)
-    table = table_of_people(everybody, times, path, options, names=names)
+    facts = Facts(frame_size=_size(labels), notes=())
     if tracks:
-        table = replace(
-            table,
-            notes=_notes(len(tracks), f"track {track.name!r} stands out most and is followed"),
-            people=np.array([_count_tracks(frame) for frame in labelled]),
-        )
-    more = len(labels.videos) > 1
-    notes = (f"the file holds {len(labels.videos)} videos; the first is read",) if more else ()
-    return replace(table, frame_size=_size(labels), notes=table.notes + notes)
+        facts["notes"] = _tell_track(len(tracks), track.name)
+        facts["people"] = np.array([_count_tracks(frame) for frame in labelled])
+    if len(labels.videos) > 1:
+        facts["notes"] += (f"the file holds {len(labels.videos)} videos; the first is read",)
+    return table_of_people(everybody, times, path, options, names=names, **facts)
 
 
 def _labels(path: Path, limits: VideoLimits) -> Any:
@@ -126,7 +123,7 @@ def _table_without_scores(file: Any) -> KeypointTable:
         names=names,
         xy=mask_unseen(xy[chosen], None, 0.0),
         times=Times(np.arange(xy.shape[1], dtype=np.float64), counted=True),
-        notes=_notes(len(xy), f"track {name!r} stands out most and is followed"),
+        notes=_tell_track(len(xy), name),
         people=np.asarray(np.isfinite(xy).all(axis=3)).any(axis=2).sum(axis=0, dtype=np.int64),
     )
 
@@ -191,5 +188,6 @@ def _size(labels: Any) -> tuple[int, int] | None:
     return int(shape[2]), int(shape[1])
 
 
-def _notes(count: int, what: str) -> tuple[str, ...]:
-    return (f"of {count} people {what}",) if count > 1 else ()
+def _tell_track(count: int, name: str) -> tuple[str, ...]:
+    followed = f"of {count} people track {name!r} stands out most and is followed"
+    return (followed,) if count > 1 else ()
