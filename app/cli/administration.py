@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import typer
 
@@ -152,18 +151,14 @@ tokens_command = typer.Typer(help="Named tokens of a studio: add, list, remove."
 Name = Annotated[str, typer.Argument(help="Who uses it, as in the audit log.")]
 
 
-class RoleOption(str, Enum):
-    """What a token allows; each includes the ones before it."""
-
-    read = "read"
-    edit = "edit"
-    admin = "admin"
+RoleOption = Literal["read", "edit", "admin"]
+"""What a token allows; each includes the ones before it."""
 
 
 @tokens_command.command("add")
 def add_token(
     name: Name,
-    role: Annotated[RoleOption, typer.Option(help="What the token allows.")] = RoleOption.edit,
+    role: Annotated[RoleOption, typer.Option(help="What the token allows.")] = "edit",
     quota_bytes: Annotated[
         int | None, typer.Option(min=1, help="Bytes of clips that this name may keep.")
     ] = None,
@@ -183,12 +178,10 @@ def add_token(
         )
     tokens = TokenFile(settings.tokens, settings.tokens_seen)
     given = [("--quota-bytes", quota_bytes), ("--quota-clips", quota_clips)]
-    words = [name, "--role", role.value, *(f"{key} {value}" for key, value in given if value)]
+    words = [name, "--role", role, *(f"{key} {value}" for key, value in given if value)]
     try:
         with audit_of(settings) as note:
-            secret = tokens.add(
-                name, Role(role.value), quota_bytes=quota_bytes, quota_clips=quota_clips
-            )
+            secret = tokens.add(name, Role(role), quota_bytes=quota_bytes, quota_clips=quota_clips)
             note("tokens add", " ".join(words))
     except OsgError:
         raise
@@ -198,7 +191,7 @@ def add_token(
             "points, @, _ or -"
         ) from error
     typer.echo(secret)
-    tell(f"{name} may {role.value}; the token is not kept, only its digest in {settings.tokens}")
+    tell(f"{name} may {role}; the token is not kept, only its digest in {settings.tokens}")
 
 
 @tokens_command.command("list")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -29,17 +28,11 @@ from app.evaluation.one_shot import one_shot, recognize_takes
 from app.evaluation.protocols import recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.simulation.variation import Person
 from app.recognition.triggers.trigger import SALUTE
 
 DEFAULT_VARIANTS = 50
 """Variants of each gesture; the paper shows each of its eight gestures as often."""
-
-
-class Person(str, Enum):
-    """Person whose takes the variants simulate."""
-
-    same = "same"
-    another = "another"
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +91,7 @@ def evaluate(
     ] = DEFAULT_VARIANTS,
     person: Annotated[
         Person, typer.Option(help="With a language file: person whose takes are simulated.")
-    ] = Person.same,
+    ] = "same",
     seed: Annotated[int, typer.Option(min=0, help="Random seed of the variants.")] = 0,
     frame_rate: FrameRateOption = None,
     frame_size: FrameSizeOption = None,
@@ -151,11 +144,11 @@ def _evaluate_variants(
                 count,
                 profile=profile,
                 seed=seed,
-                person=person.value,
+                person=person,
                 progress=advance,
             )
         yield Evaluation(
-            profile, f"{count} variants of each gesture, {person.value} person, seed {seed}", matrix
+            profile, f"{count} variants of each gesture, {person} person, seed {seed}", matrix
         )
 
 
