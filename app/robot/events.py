@@ -310,6 +310,10 @@ class TakeRejected(Event):
             object.__setattr__(self, name, None if answer is None else getattr(answer, name))
 
 
+TakeEvent = TakeRecognized | TakeRejected
+"""What came of a take."""
+
+
 @dataclass(frozen=True)
 class PhraseHeard(Event):
     """What came of a gesture, or of a pause, in a language with phrases.
