@@ -16,7 +16,7 @@ from typing import Annotated, Any, Final, Literal, get_type_hints
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 
 from app.recognition.phrases.parser import PhraseEventKind
-from app.recognition.text.described import DESCRIBED
+from app.recognition.text.described import DESCRIBED, read_descriptions
 from app.robot.events import JSON_TYPE, Event, PhraseHeard, Revision, Seconds, Sha256, Share
 
 
@@ -88,11 +88,13 @@ class PhraseHeardMessage(Message):
 
 def _derive_message(event: type[Event]) -> type[Message]:
     """Create the message model of an event from the dataclass's annotations and docstring."""
-    annotations = get_type_hints(event, include_extras=True)
+    annotations, described = get_type_hints(event, include_extras=True), read_descriptions(event)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", event.__name__).lower()
     keys: dict[str, Any] = {"event": (Literal[name], name)}
     for each in fields(event):
         json_type = each.metadata.get(JSON_TYPE, annotations[each.name])
+        if each.name in described:
+            json_type = Annotated[json_type, Field(description=described[each.name])]
         if json_type is not None and each.name != "time":
             keys[each.name] = (json_type, ... if each.default is MISSING else each.default)
     return create_model(
