@@ -266,10 +266,8 @@ def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
         if each.result.pair is not None:
             shown = ask_which(each.result.pair)
         text = f"{shown}  {each.result.confidence:.2f}"
-        events.append(
-            _Event(each.start, "/label", foxglove_overlay.label("", stamp_of(each.start)))
-        )
-        events.append(_Event(each.end, "/label", foxglove_overlay.label(text, stamp_of(each.end))))
+        for time, drawn in ((each.start, ""), (each.end, text)):
+            events.append(_Event(time, "/label", foxglove_overlay.label(drawn, stamp_of(time))))
     yield from sorted(events, key=lambda event: event.time)
 
 

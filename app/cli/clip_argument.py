@@ -15,7 +15,7 @@ import typer
 
 from app.bags import bag_and_topic
 from app.cli.terminal import progress_bar, tell
-from app.clip_sources import ClipSource, ReadOptions, source_of
+from app.clip_sources import ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
 from app.recognition import Language, Recognition, Recognizer, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
@@ -252,39 +252,19 @@ def read_clip(
     options = how.options(named)
     source = source_of(path, options.topic)
     if source.shows_pictures(path, options):
-        read = _read_pictures(source, path, options, how, language)
-    else:
-        read = _read_keypoints(source, path, options, language)
+        with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
+            if language is not None:
+                require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
+            with progress_bar(path.name) as advance:
+                read = source.record(path, options, estimator=estimator, progress=advance)
+    else:  # recorded keypoints, of which the landmarks are only known after reading
+        read = source.record(path, options)
+        if language is not None:
+            name = f"{path}@{options.topic}" if options.topic else str(path)
+            require_landmarks(language, read.landmarks, name)
     for warning in read.recording.list_warnings(how.trigger):
         tell(f"{clip}: {warning}")
-    return replace(read, trigger=how.trigger)
-
-
-def _read_keypoints(
-    source: ClipSource, path: Path, options: ReadOptions, language: Language | None
-) -> ReadClip:
-    """Read recorded keypoints; their landmarks are only known after reading."""
-    recorded = source.record(path, options)
-    if language is not None:
-        name = f"{path}@{options.topic}" if options.topic else str(path)
-        require_landmarks(language, recorded.landmarks, name)
-    return ReadClip(recorded.recording, recorded.has_hands)
-
-
-def _read_pictures(
-    source: ClipSource,
-    path: Path,
-    options: ReadOptions,
-    how: ClipReading,
-    language: Language | None,
-) -> ReadClip:
-    """Find landmarks in pictures, after a check of those that the estimator can find."""
-    with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
-        if language is not None:
-            require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
-        with progress_bar(path.name) as advance:
-            recorded = source.record(path, options, estimator=estimator, progress=advance)
-        return ReadClip(recorded.recording, recorded.has_hands)
+    return ReadClip(read.recording, read.has_hands, how.trigger)
 
 
 WaterOption = Annotated[

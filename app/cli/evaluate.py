@@ -169,16 +169,11 @@ def _evaluate_takes(
             for place, reason in result.unusable.items()
         }
         several_people = len({take.person for take in takes}) > 1
-        own = "same person" if several_people else "any person"
-        yield Evaluation(
-            profile, f"{own}, {result.languages} languages of one take", result.same_person
-        )
+        matrices = {"same person" if several_people else "any person": result.same_person}
         if several_people:
-            yield Evaluation(
-                profile,
-                f"other people, {result.languages} languages of one take",
-                result.other_people,
-            )
+            matrices["other people"] = result.other_people
+        for who, matrix in matrices.items():
+            yield Evaluation(profile, f"{who}, {result.languages} languages of one take", matrix)
 
 
 def _draw(picture: Path, results: list[Evaluation]) -> None:

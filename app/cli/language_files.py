@@ -47,10 +47,7 @@ def slate(
         raise OsgError(f"a slate is written as .pdf or .svg, not as {output.name!r}")
     page = lay_out(Language.load(language), () if vehicle is None else list_answers(vehicle))
     content = to_pdf(page) if kind == ".pdf" else to_svg(page).encode("utf-8")
-    try:
-        output.write_bytes(content)
-    except OSError as error:
-        raise OsgError(f"cannot write {output}: {error.strerror}") from error
+    output.write_bytes(content)
     tell(f"wrote {output}")
 
 

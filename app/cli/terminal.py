@@ -57,16 +57,8 @@ def show_explanation(explanation: Explanation) -> None:
     people.print(Text(explanation.sentence))
     for line in explanation.details:
         people.print(Text(f"  {line}"))
-    table = Table(
-        "what to change",
-        "confidence",
-        "margin",
-        "known takes",
-        title=f"with which {explanation.expected!r} would be recognised",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    title = f"with which {explanation.expected!r} would be recognised"
+    table = _create_table(title, "what to change", "confidence", "margin", "known takes")
     for found in explanation.counterfactuals:
         effect = found.effect
         table.add_row(
@@ -87,11 +79,8 @@ def build_vote_table(result: Recognition) -> Table:
     A star marks a vote, a point a vote with weight 0. Gestures are rows because a language has
     many, and the paper's seven voters fit into eighty columns.
     """
-    table = Table(
-        title="distance to every gesture, by voter; * its vote, . a vote without weight",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
+    table = _create_table(
+        "distance to every gesture, by voter; * its vote, . a vote without weight"
     )
     table.add_column("gesture", vertical="bottom")
     for voter in result.voters:
@@ -103,6 +92,11 @@ def build_vote_table(result: Recognition) -> Table:
         ]
         table.add_row(Text(label), *cells)
     return table
+
+
+def _create_table(title: str, *heads: str) -> Table:
+    gaps = (0, 1, 0, 0)
+    return Table(*heads, title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=gaps)
 
 
 def _mark_vote(result: Recognition, voter: str, label: str) -> str:

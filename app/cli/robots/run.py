@@ -194,13 +194,7 @@ def run_robot(
             from app.cli.robots.run import open_bridge
 
             bridge = open_bridge(
-                options.mavlink,
-                table,
-                listener,
-                frames,
-                channels.report_vehicle,
-                channels.report_answer,
-                without_salutes=options.without_salutes,
+                options, table, listener, frames, channels.report_vehicle, channels.report_answer
             )
             channels.vehicle = opened.enter_context(closing(bridge)).publish
         runtime = Runtime(
@@ -239,7 +233,6 @@ def try_answers(options: RobotOptions) -> None:
         When the table has no answers, or one could not be shown.
 
     """
-    assert options.mavlink is not None
     assert options.vehicle is not None
     from app.robot.mavlink.answers import NOT_SHOWN
     from app.robot.mavlink.table import read_vehicle_table
@@ -252,21 +245,16 @@ def try_answers(options: RobotOptions) -> None:
         tell(text)
         missing.extend([text] if text.startswith(NOT_SHOWN) else [])
 
+    def note_answer(answer: Answer, pulses: int, text: str) -> None:
+        note(f"{pulses} {text}")
+
     stops: list[bool] = []
     with ExitStack() as opened:
         # First in, last out: a signal ends it in order while the bridge opens or closes too.
         opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
-        bridge = open_bridge(
-            options.mavlink,
-            options.vehicle,
-            listener,
-            None,
-            note,
-            lambda answer, pulses, text: note(f"{pulses} {text}"),
-            without_salutes=options.without_salutes,
-        )
+        bridge = open_bridge(options, options.vehicle, listener, None, note, note_answer)
         opened.enter_context(closing(bridge))
         for answer in Answer:
             if not stops:
@@ -322,21 +310,19 @@ def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
 
 
 def open_bridge(
-    address: str,
+    options: RobotOptions,
     table_file: Path,
     listener: LandmarkListener,
     source: Source | None,
     tell: Callable[[str], None],
     tell_answer: Callable[[Answer, int, str], None],
-    *,
-    without_salutes: bool,
 ) -> MavlinkBridge:
     """Open the bridge to a vehicle.
 
     Parameters
     ----------
-    address
-        Address of the vehicle.
+    options
+        The vehicle's address, and whether gestures are spotted without triggers.
     table_file
         Vehicle table.
     listener, source
@@ -344,8 +330,6 @@ def open_bridge(
     tell, tell_answer
         Called with every line about the vehicle, and with every answer to the diver, its pulses and
         its words; from any thread.
-    without_salutes
-        Whether gestures are spotted without triggers, whatever the language's.
 
     Raises
     ------
@@ -368,7 +352,7 @@ def open_bridge(
             f"{table_file}: {', '.join(unknown)} is not in the language {language.name!r}, which "
             f"has {', '.join(language.labels)}; correct the table or choose its language"
         )
-    spots = without_salutes or listener.language.trigger.spots
+    spots = options.without_salutes or listener.language.trigger.spots
     if spots and (reason := table.find_unguarded(language)):
         raise VehicleError(
             f"without salutes a movement would confirm itself, and {reason}: command the vehicle "
@@ -377,7 +361,8 @@ def open_bridge(
     key = read_signing_key(table, table_file)
     named = table.vehicle.key_file
     time_file = None if named is None else table_file.parent / f"{named}.time"
-    link = open_link(address, table.vehicle.system, table.vehicle.component, key, time_file)
+    vehicle, address = table.vehicle, options.mavlink or ""
+    link = open_link(address, vehicle.system, vehicle.component, key, time_file)
     now = source.now if isinstance(source, LiveSource) else None
     return MavlinkBridge(
         table,
@@ -386,7 +371,7 @@ def open_bridge(
         tell,
         now,
         tell_answer,
-        without_salutes=without_salutes,
+        without_salutes=options.without_salutes,
         memory=table_file.with_name(f"{table_file.name}.before"),
     )
 

@@ -7,7 +7,7 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -96,10 +96,6 @@ class Recording:
 
         The file appears under its name only when it is complete and on the disk.
         """
-        with replace_file(Path(path), PRIVATE) as file:
-            self._write(file)
-
-    def _write(self, file: BinaryIO) -> None:
         found = [hand for frame in self.hands for hand in frame]
         arrays: dict[str, Any] = {
             "version": np.array(FILE_VERSION),
@@ -121,7 +117,8 @@ class Recording:
             arrays["world"] = self.poses.world.astype(np.float32)  # micrometres are enough
         if self.people is not None:
             arrays["people"] = self.people
-        np.savez_compressed(file, allow_pickle=False, **arrays)
+        with replace_file(Path(path), PRIVATE) as file:
+            np.savez_compressed(file, allow_pickle=False, **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Recording:
