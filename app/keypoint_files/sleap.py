@@ -21,7 +21,7 @@ from app.keypoint_files.keypoint_table import (
     mask_unseen,
 )
 from app.keypoint_files.self_contained import require_self_contained
-from app.recognition.errors import KeypointFileError, OsgError
+from app.recognition.errors import KeypointFileError, OsgError, explain_missing_package
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
@@ -83,13 +83,8 @@ def _labels(path: Path, limits: VideoLimits) -> Any:
     An analysis without scores, as SLEAP wrote it before 1.1.4, is read here into a table.
     """
     try:
-        library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
-    except ImportError as error:
-        raise KeypointFileError(
-            f"{path} needs the library sleap-io ({error}); run "
-            f"`pip install 'osg-studio[keypoints]'`"
-        ) from error
-    try:
+        with explain_missing_package(str(path), "keypoints", KeypointFileError):
+            library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
         require_self_contained(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about videos that are missing but not needed
