@@ -7,13 +7,13 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from app.bags.bag_kind import METADATA, split_parts
 from app.bags.session_reader import TOPICS as SESSION_TOPICS
 from app.bags.session_reader import SessionReader, is_session
 from app.bags.staging import stage
-from app.recognition.errors import BagError, OsgError, TopicError
+from app.recognition.errors import BagError, OsgError, TopicError, explain_missing_package
 
 DEFINITIONS = {
     # The published implementation's port to ROS 2.
@@ -71,7 +71,8 @@ DEPTH_ENCODINGS = ("16UC1", "32FC1", "compressedDepth")
 MOST_TOPICS_NAMED = 8
 """Most topics named in a one-line message; a robot records fifty."""
 
-INSTALL = 'install what reads it with: pip install "osg-studio[studio]" (on a robot: [robot])'
+NEEDED: Final = ("studio", BagError, " (on a robot: [robot])")
+"""What `explain_missing_package` says where the packages that read recordings are missing."""
 
 
 @dataclass(frozen=True)
@@ -291,12 +292,8 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
 
     """
     place = Path(path)
-    try:
+    with explain_missing_package(f"the dive recording {place.name}", *NEEDED):
         from rosbags.rosbag2 import Reader
-    except ModuleNotFoundError as error:
-        raise BagError(
-            f"{place.name} is a dive recording and {error.name} is not installed; {INSTALL}"
-        ) from error
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):

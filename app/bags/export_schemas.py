@@ -53,47 +53,40 @@ PAIRS = many(record("foxglove.KeyValuePair", key=TEXT, value=TEXT))
 
 VIDEO = record("foxglove.CompressedVideo", timestamp=TIME, frame_id=TEXT, data=BYTES, format=TEXT)
 
+
+def list_annotations(title: str, **fields: Schema) -> Schema:
+    """Return the schema of a list of annotations, each with its time and further facts."""
+    return many(record(title, timestamp=TIME, **fields, metadata=PAIRS))
+
+
 ANNOTATIONS = record(
     "foxglove.ImageAnnotations",
-    circles=many(
-        record(
-            "foxglove.CircleAnnotation",
-            timestamp=TIME,
-            position=POINT,
-            diameter=NUMBER,
-            thickness=NUMBER,
-            fill_color=COLOUR,
-            outline_color=COLOUR,
-            metadata=PAIRS,
-        )
+    circles=list_annotations(
+        "foxglove.CircleAnnotation",
+        position=POINT,
+        diameter=NUMBER,
+        thickness=NUMBER,
+        fill_color=COLOUR,
+        outline_color=COLOUR,
     ),
-    points=many(
-        record(
-            "foxglove.PointsAnnotation",
-            timestamp=TIME,
-            type=one_of(UNKNOWN=0, POINTS=1, LINE_LOOP=2, LINE_STRIP=3, LINE_LIST=4),
-            points=many(POINT),
-            outline_color=COLOUR,
-            outline_colors=many(COLOUR),
-            fill_color=COLOUR,
-            thickness=NUMBER,
-            metadata=PAIRS,
-        )
+    points=list_annotations(
+        "foxglove.PointsAnnotation",
+        type=one_of(UNKNOWN=0, POINTS=1, LINE_LOOP=2, LINE_STRIP=3, LINE_LIST=4),
+        points=many(POINT),
+        outline_color=COLOUR,
+        outline_colors=many(COLOUR),
+        fill_color=COLOUR,
+        thickness=NUMBER,
     ),
-    texts=many(
-        record(
-            "foxglove.TextAnnotation",
-            timestamp=TIME,
-            position=POINT,
-            text=TEXT,
-            font_size=NUMBER,
-            text_color=COLOUR,
-            background_color=COLOUR,
-            metadata=PAIRS,
-        )
+    texts=list_annotations(
+        "foxglove.TextAnnotation",
+        position=POINT,
+        text=TEXT,
+        font_size=NUMBER,
+        text_color=COLOUR,
+        background_color=COLOUR,
     ),
 )
-
 LOG = record(
     "foxglove.Log",
     timestamp=TIME,

@@ -17,10 +17,10 @@ import numpy as np
 
 from app import __version__
 from app.bags import export_schemas, foxglove_overlay
-from app.bags.bag import INSTALL
+from app.bags.bag import NEEDED
 from app.bags.video_writer import packets
 from app.recognition.decision.result import Recognition
-from app.recognition.errors import BagError
+from app.recognition.errors import explain_missing_package
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Take, TakeMachine, takes_in
@@ -122,10 +122,8 @@ def write_bag(
         When the video cannot be read.
 
     """
-    try:
+    with explain_missing_package("writing MCAP", *NEEDED):
         from mcap.writer import CompressionType, Writer
-    except ModuleNotFoundError as error:
-        raise BagError(f"writing MCAP needs {error.name}; {INSTALL}") from error
     with target.open("wb") as file:
         writer = Writer(file, compression=CompressionType.ZSTD)
         writer.start(profile="", library=f"osg-studio {__version__}")
@@ -268,10 +266,8 @@ def _labels(recognitions: Sequence[NamedRecognition]) -> Iterator[_Event]:
         if each.result.pair is not None:
             shown = ask_which(each.result.pair)
         text = f"{shown}  {each.result.confidence:.2f}"
-        events.append(
-            _Event(each.start, "/label", foxglove_overlay.label("", stamp_of(each.start)))
-        )
-        events.append(_Event(each.end, "/label", foxglove_overlay.label(text, stamp_of(each.end))))
+        for time, drawn in ((each.start, ""), (each.end, text)):
+            events.append(_Event(time, "/label", foxglove_overlay.label(drawn, stamp_of(time))))
     yield from sorted(events, key=lambda event: event.time)
 
 

@@ -120,14 +120,11 @@ def record_and_copy(
 
 
 @contextmanager
-def copying(frames: FrameSource, video: Path | None) -> Iterator[Callable[[VideoFrame], None]]:
-    """Give a function that copies a frame to a video for players; without a `video` to nowhere.
+def copying(frames: FrameSource, video: Path) -> Iterator[Callable[[VideoFrame], None]]:
+    """Give a function that copies a frame to a video for players.
 
     An odd last row or column is left out, because the usual codecs store only even sizes.
     """
-    if video is None:
-        yield lambda frame: None
-        return
     width, height = frames.info.width // 2 * 2, frames.info.height // 2 * 2
     with VideoFile(video, width, height) as file:
         yield lambda frame: file.add(np.ascontiguousarray(frame.image[:height, :width]), frame.time)

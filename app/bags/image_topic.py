@@ -14,7 +14,6 @@ from app.bags.image_messages import PacketDecoder, raw_image
 from app.bags.message_clock import MessageClock
 from app.recognition.errors import BagError, VideoError
 from app.recognition.poses.frame import Image
-from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video import Turn, VideoFrame, VideoInfo
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -62,8 +61,7 @@ class BagFrames(Iterator[VideoFrame]):
         self._resized = 0
         self._reason = ""
         self._broken = ""
-        self._clock = FrameClock()
-        self._messages = MessageClock()
+        self._clock = MessageClock()
         self._count = 0
         self._pictures = (
             (stamp, np.ascontiguousarray(np.rot90(image, -turn // 90)))
@@ -101,16 +99,7 @@ class BagFrames(Iterator[VideoFrame]):
                 f"{self._resized} of {self._count} pictures had another size than the first and "
                 f"were scaled to {self.info.width} x {self.info.height}"
             )
-        if self._messages.by_header is False:
-            found.append(
-                f"messages of {name} say not when they were taken; time is when they were received"
-            )
-        if self._clock.repaired:
-            found.append(
-                f"{self._clock.repaired} of {self._count} messages had no timestamp, or one not "
-                "later than that of the message before; their time is estimated"
-            )
-        return (*found, *tell_jumps([*self._messages.jumps, *self._clock.jumps]))
+        return (*found, *self._clock.list_warnings(name, self._count))
 
     def __next__(self) -> VideoFrame:
         """Read the next frame.
@@ -125,7 +114,7 @@ class BagFrames(Iterator[VideoFrame]):
         if picture is None:
             picture = next(self._pictures)
         stamp, image = picture
-        time = self._clock.seconds(None if stamp is None else stamp / 1e9)
+        time = self._clock.seconds(stamp)
         self._limits.require_seconds(time)
         self._limits.require_frames(self._count + 1)
         self._count += 1
@@ -146,7 +135,7 @@ class BagFrames(Iterator[VideoFrame]):
         self, message: Message, decoder: PacketDecoder
     ) -> Iterator[tuple[int | None, Image]]:
         content: Any = message.content
-        stamp = self._messages.after_first(message)
+        stamp = self._clock.after_first(message)
         try:
             if self._topic.type == RAW:
                 yield stamp, _crop_to_even(raw_image(content, self._limits))

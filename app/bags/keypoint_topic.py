@@ -17,7 +17,6 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import SKELETON_2D, find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.timestamps import FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
 ASSUMED_SIZE = (1280, 720)
@@ -82,7 +81,7 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
             "right_wrist; is it a topic of a body?"
         )
     return _recording(
-        gathered, salute_track(bag, topic, bool(gathered.messages.by_header)), bag, topic
+        gathered, salute_track(bag, topic, bool(gathered.clock.by_header)), bag, topic
     )
 
 
@@ -112,17 +111,15 @@ class _Gathered:
     posed: list[Posed] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
     stamps: list[int] = field(default_factory=list)
-    clock: FrameClock = field(default_factory=FrameClock)
-    messages: MessageClock = field(default_factory=MessageClock)
+    clock: MessageClock = field(default_factory=MessageClock)
     broken: str = ""
 
     def add(self, message: Message, posed: Posed, limits: VideoLimits) -> None:
-        after = self.messages.after_first(message)
-        seconds = self.clock.seconds(None if after is None else after / 1e9)
+        seconds = self.clock.seconds(self.clock.after_first(message))
         limits.require_seconds(seconds)
         self.posed.append(posed)
         self.seconds.append(seconds)
-        self.stamps.append(self.messages.stamp(message))
+        self.stamps.append(self.clock.stamp(message))
 
 
 def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic) -> Recording:
@@ -155,21 +152,11 @@ def _recording(gathered: _Gathered, salute: SaluteTrack, bag: Bag, topic: Topic)
 
 
 def _warnings(gathered: _Gathered, topic: Topic) -> list[str]:
-    frames, clock = len(gathered.posed), gathered.clock
+    frames = len(gathered.posed)
     found = [f"there is no picture: the skeleton is drawn from the keypoints of {topic.name}"]
     if gathered.broken:
         found.append(f"{frames} of {topic.messages} messages were read, then: {gathered.broken}")
-    if not gathered.messages.by_header:
-        found.append(
-            f"messages of {topic.name} say not when the picture was taken; time is when they were "
-            "received"
-        )
-    if clock.repaired:
-        found.append(
-            f"{clock.repaired} of {frames} messages had no timestamp, or one not later than that "
-            "of the message before; their time is estimated"
-        )
-    found += tell_jumps([*gathered.messages.jumps, *clock.jumps])
+    found += gathered.clock.list_warnings(topic.name, frames)
     if nobody := sum(not posed.given for posed in gathered.posed):
         found.append(f"no person in {nobody} of {frames} messages")
     given = frozenset[str]().union(*(posed.given for posed in gathered.posed))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from app.bags.bag import Message
-from app.recognition.recording.timestamps import DISCONTINUITY
+from app.recognition.recording.timestamps import DISCONTINUITY, FrameClock, tell_jumps
 
 
 @dataclass
@@ -29,6 +29,7 @@ class MessageClock:
     jumps: list[float] = field(default_factory=list)
     _last: tuple[int, int] | None = field(default=None, init=False)
     _first: int = field(default=0, init=False)
+    _frames: FrameClock = field(default_factory=FrameClock, init=False)
 
     def stamp(self, message: Message) -> int:
         """Return the stamp of a message in nanoseconds as it is, 0 without one."""
@@ -51,3 +52,22 @@ class MessageClock:
                 self._first += jump
         self._last = stamp, message.received
         return stamp - self._first
+
+    def seconds(self, after_first: int | None) -> float:
+        """Return the seconds of the next frame, given its nanoseconds after the first stamp."""
+        return self._frames.seconds(None if after_first is None else after_first / 1e9)
+
+    def list_warnings(self, topic: str, frames: int) -> list[str]:
+        """Return sentences about the times of the frames read so far."""
+        found = []
+        if self.by_header is False:
+            found.append(
+                f"messages of {topic} say not when the picture was taken; time is when they were "
+                "received"
+            )
+        if self._frames.repaired:
+            found.append(
+                f"{self._frames.repaired} of {frames} messages had no timestamp, or one not later "
+                "than that of the message before; their time is estimated"
+            )
+        return [*found, *tell_jumps([*self.jumps, *self._frames.jumps])]

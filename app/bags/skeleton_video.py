@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import nullcontext
 from pathlib import Path
 
 import cv2
@@ -94,10 +94,7 @@ def show_recording(
     size = even_size(poses.frame_size)
     VideoLimits().require_pixels(*size)
     xy, confidence = _whole_body(poses)
-    with ExitStack() as open_files:
-        file = None
-        if video is not None:
-            file = open_files.enter_context(VideoFile(video, *size))
+    with nullcontext() if video is None else VideoFile(video, *size) as file:
         for index, time in enumerate(poses.time.tolist()):
             image = skeleton_picture(xy[index], size)
             if file is not None:

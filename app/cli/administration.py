@@ -5,14 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
 import typer
 
-from app.cli.terminal import people, progress_bar
-from app.recognition.errors import OsgError
+from app.cli.terminal import progress_bar, tell
+from app.recognition.errors import OsgError, explain_missing_package
 
 if TYPE_CHECKING:
     from app.settings import Settings
@@ -32,13 +31,8 @@ def settings_of(given: Path | None) -> Settings:
         When only a robot's packages are installed.
 
     """
-    try:
+    with explain_missing_package("a studio's data folder", "studio"):
         from app.settings import Settings
-    except ModuleNotFoundError as error:
-        raise OsgError(
-            f"the studio's packages are not installed ({error.name} is missing), and only the "
-            "studio has a data folder"
-        ) from error
     # These commands listen nowhere, so they need no token, which one of them adds.
     here = "127.0.0.1"
     return Settings(host=here) if given is None else Settings(host=here, data_dir=given)
@@ -133,7 +127,7 @@ def backup(
         clips = write_backup(settings.data_dir, file.absolute(), **_places(settings))
         with audit_of(settings) as note:
             note("backup", str(file.absolute()))
-    people.print(f"{clips} clips and all languages are in {file}", markup=False, highlight=False)
+    tell(f"{clips} clips and all languages are in {file}")
 
 
 def restore(
@@ -149,7 +143,7 @@ def restore(
         with audit_of(settings) as note:
             note("restore", str(file.absolute()))
     place = "the database of OSG_DATABASE_URL" if settings.database_url else settings.data_dir
-    people.print(f"{clips} clips and all languages are in {place}", markup=False, highlight=False)
+    tell(f"{clips} clips and all languages are in {place}")
 
 
 tokens_command = typer.Typer(help="Named tokens of a studio: add, list, remove.")
@@ -157,18 +151,14 @@ tokens_command = typer.Typer(help="Named tokens of a studio: add, list, remove."
 Name = Annotated[str, typer.Argument(help="Who uses it, as in the audit log.")]
 
 
-class RoleOption(str, Enum):
-    """What a token allows; each includes the ones before it."""
-
-    read = "read"
-    edit = "edit"
-    admin = "admin"
+RoleOption = Literal["read", "edit", "admin"]
+"""What a token allows; each includes the ones before it."""
 
 
 @tokens_command.command("add")
 def add_token(
     name: Name,
-    role: Annotated[RoleOption, typer.Option(help="What the token allows.")] = RoleOption.edit,
+    role: Annotated[RoleOption, typer.Option(help="What the token allows.")] = "edit",
     quota_bytes: Annotated[
         int | None, typer.Option(min=1, help="Bytes of clips that this name may keep.")
     ] = None,
@@ -188,12 +178,10 @@ def add_token(
         )
     tokens = TokenFile(settings.tokens, settings.tokens_seen)
     given = [("--quota-bytes", quota_bytes), ("--quota-clips", quota_clips)]
-    words = [name, "--role", role.value, *(f"{key} {value}" for key, value in given if value)]
+    words = [name, "--role", role, *(f"{key} {value}" for key, value in given if value)]
     try:
         with audit_of(settings) as note:
-            secret = tokens.add(
-                name, Role(role.value), quota_bytes=quota_bytes, quota_clips=quota_clips
-            )
+            secret = tokens.add(name, Role(role), quota_bytes=quota_bytes, quota_clips=quota_clips)
             note("tokens add", " ".join(words))
     except OsgError:
         raise
@@ -203,11 +191,7 @@ def add_token(
             "points, @, _ or -"
         ) from error
     typer.echo(secret)
-    people.print(
-        f"{name} may {role.value}; the token is not kept, only its digest in {settings.tokens}",
-        markup=False,
-        highlight=False,
-    )
+    tell(f"{name} may {role}; the token is not kept, only its digest in {settings.tokens}")
 
 
 @tokens_command.command("list")
@@ -237,13 +221,9 @@ def remove_token(name: Name, data_dir: DataDir = None) -> None:
         except NotFound as error:
             raise OsgError(f"{error}; osg-studio tokens list shows them") from error
         note("tokens remove", name)
-    people.print(f"{name} is not let in any more", markup=False, highlight=False)
+    tell(f"{name} is not let in any more")
     if not left and settings.token is None:
-        people.print(
-            "that was the last token, so nobody is let in now; add one: osg-studio tokens add",
-            markup=False,
-            highlight=False,
-        )
+        tell("that was the last token, so nobody is let in now; add one: osg-studio tokens add")
 
 
 models_command = typer.Typer(
@@ -280,7 +260,7 @@ def install_models_command(
         install_models(
             progress=lambda stage, done, total: advance(done, total, stage), source=source
         )
-    people.print(f"all models are in {models_dir()}")
+    tell(f"all models are in {models_dir()}")
 
 
 @models_command.command("export")
@@ -291,4 +271,4 @@ def export_models_command(
     from app.recognition.models import export_models
 
     export_models(directory)
-    people.print(f"on the robot: osg-studio models install --source {directory}")
+    tell(f"on the robot: osg-studio models install --source {directory}")

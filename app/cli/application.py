@@ -30,7 +30,7 @@ from app.cli.recognize import recognize
 from app.cli.robots.robot import robot, split_ros_arguments
 from app.cli.terminal import describe_error
 from app.cli.trigger import trigger
-from app.recognition.errors import OsgError
+from app.recognition.errors import OsgError, explain_missing_package
 from app.system.confinement import hide_memory
 
 BAD_INPUT = 2
@@ -81,14 +81,9 @@ def serve(
     ] = False,
 ) -> None:
     """Start the studio and open it in the browser."""
-    try:
+    with explain_missing_package("the studio", "studio", instead=", on Python 3.11 or newer"):
         from app.server import run
         from app.settings import Settings
-    except ModuleNotFoundError as error:
-        raise OsgError(
-            f"the studio's packages are not installed ({error.name} is missing); "
-            'install them, on Python 3.11 or newer, with: pip install "osg-studio[studio]"'
-        ) from error
     given: dict[str, Any] = {"host": host, "port": port, "data_dir": data_dir, "token": token}
     try:
         settings = Settings(**{name: value for name, value in given.items() if value is not None})

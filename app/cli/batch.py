@@ -11,13 +11,14 @@ from typing import Any, Final
 
 from app import __version__
 from app.cli.clip_argument import ClipReading, recognize_clip
-from app.cli.terminal import batch_bar, describe_error, people
+from app.cli.terminal import batch_bar, describe_error, tell
 from app.clip_sources import CHAPTERS, SOURCES, VIDEO, is_copy, is_take, source_of
 from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, write_csv
 from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError, explain_missing_package
 from app.recognition.language.file import seal
 from app.recognition.spotting import Spotter
+from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.wording import list_some
 
 MOST_NAMED: Final = 10
@@ -55,7 +56,7 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
         names = [path.relative_to(folder).as_posix() for path in left if _why_left(path) == reason]
         if names:
             text = f"left out, {reason}: {list_some(names, MOST_NAMED)}"
-            people.print(text, markup=False, highlight=False, soft_wrap=True)
+            tell(text)
 
 
 def _why_left(path: Path) -> str:
@@ -185,9 +186,7 @@ def write_table(path: Path, rows: Sequence[Row]) -> None:
     content = (
         _to_parquet(rows) if path.suffix.lower() == PARQUET else write_csv(rows).encode("utf-8")
     )
-    unfinished = path.with_name(f".{path.name}.part")
-    unfinished.write_bytes(content)
-    unfinished.replace(path)
+    write_atomically(path, content)
 
 
 def _to_parquet(rows: Sequence[Row]) -> bytes:
@@ -255,13 +254,13 @@ class FolderBatch:
         journal = Journal(self._journal_file, self._settings())
         if journal.restarted:
             text = f"{self._journal_file}: of another language or settings; begun anew"
-            people.print(text, markup=False, soft_wrap=True)
+            tell(text)
         states = {clip: describe_state(clip) for clip in clips}
         done = {clip: journal.find(self._name(clip), states[clip]) for clip in clips}
         left = {clip: measure_bytes(clip) for clip in clips if done[clip] is None}
         tell_left_out(self.folder, (*clips, *self.excluded, self.table, self._journal_file))
         if len(left) < len(clips):
-            people.print(f"{len(clips) - len(left)} of {len(clips)} clips are done already")
+            tell(f"{len(clips) - len(left)} of {len(clips)} clips are done already")
         with batch_bar(len(left), sum(left.values())) as advance:
             for clip, size in left.items():
                 rows = done[clip] = self._recognize(clip)
@@ -270,11 +269,7 @@ class FolderBatch:
         table = [row for rows in done.values() for row in rows or ()]
         write_table(self.table, table)
         recognised = sum(row["label"] is not None for row in table)
-        people.print(
-            f"{self.table}: {len(clips)} clips, {recognised} gestures recognised",
-            markup=False,
-            soft_wrap=True,
-        )
+        tell(f"{self.table}: {len(clips)} clips, {recognised} gestures recognised")
         return recognised
 
     @property

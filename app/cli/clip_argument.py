@@ -14,8 +14,8 @@ from typing import Annotated, Any
 import typer
 
 from app.bags import bag_and_topic
-from app.cli.terminal import people, progress_bar
-from app.clip_sources import ClipSource, ReadOptions, source_of
+from app.cli.terminal import progress_bar, tell
+from app.clip_sources import ReadOptions, source_of
 from app.keypoint_files import KeypointOptions
 from app.recognition import Language, Recognition, Recognizer, Recording, Take, takes_in
 from app.recognition.errors import GestureError, KeypointFileError
@@ -252,39 +252,19 @@ def read_clip(
     options = how.options(named)
     source = source_of(path, options.topic)
     if source.shows_pictures(path, options):
-        read = _read_pictures(source, path, options, how, language)
-    else:
-        read = _read_keypoints(source, path, options, language)
-    for warning in read.recording.list_warnings(how.trigger):
-        people.print(f"{clip}: {warning}", markup=False)
-    return replace(read, trigger=how.trigger)
-
-
-def _read_keypoints(
-    source: ClipSource, path: Path, options: ReadOptions, language: Language | None
-) -> ReadClip:
-    """Read recorded keypoints; their landmarks are only known after reading."""
-    recorded = source.record(path, options)
-    if language is not None:
-        name = f"{path}@{options.topic}" if options.topic else str(path)
-        require_landmarks(language, recorded.landmarks, name)
-    return ReadClip(recorded.recording, recorded.has_hands)
-
-
-def _read_pictures(
-    source: ClipSource,
-    path: Path,
-    options: ReadOptions,
-    how: ClipReading,
-    language: Language | None,
-) -> ReadClip:
-    """Find landmarks in pictures, after a check of those that the estimator can find."""
-    with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
+        with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
+            if language is not None:
+                require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
+            with progress_bar(path.name) as advance:
+                read = source.record(path, options, estimator=estimator, progress=advance)
+    else:  # recorded keypoints, of which the landmarks are only known after reading
+        read = source.record(path, options)
         if language is not None:
-            require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
-        with progress_bar(path.name) as advance:
-            recorded = source.record(path, options, estimator=estimator, progress=advance)
-        return ReadClip(recorded.recording, recorded.has_hands)
+            name = f"{path}@{options.topic}" if options.topic else str(path)
+            require_landmarks(language, read.landmarks, name)
+    for warning in read.recording.list_warnings(how.trigger):
+        tell(f"{clip}: {warning}")
+    return ReadClip(read.recording, read.has_hands, how.trigger)
 
 
 WaterOption = Annotated[
@@ -309,35 +289,47 @@ HandsOption = Annotated[
 ]
 
 
-def reads_clips(command: Callable[..., None]) -> Callable[..., None]:
-    """Decorate a command with the options for reading clips, which it gets as ``reading``."""
+def takes_options(
+    name: str, build: Callable[..., object]
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Decorate a command with the options that are the parameters of `build`.
 
-    def read_options(
-        *,
-        water: WaterOption = "auto",
-        turn: TurnOption = 0,
-        estimator: EstimatorOption = "onnx",
-        hands: HandsOption = MEDIAPIPE_HANDS,
-        frame_rate: FrameRateOption = None,
-        frame_size: FrameSizeOption = None,
-        landmark: LandmarkOption = None,
-    ) -> ClipReading:
-        keypoints = keypoint_options(frame_rate, frame_size, landmark)
-        return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+    The command gets what `build` makes of them as the argument `name`.
+    """
+    options = signature(build, eval_str=True).parameters
 
-    options = signature(read_options, eval_str=True).parameters
+    def decorate(command: Callable[..., None]) -> Callable[..., None]:
+        @wraps(command)
+        def run(**given: Any) -> None:
+            built = build(**{each: given.pop(each) for each in options})
+            command(**given, **{name: built})
 
-    @wraps(command)
-    def run(**given: Any) -> None:
-        reading = read_options(**{name: given.pop(name) for name in options})
-        command(**given, reading=reading)
+        known = signature(command, eval_str=True)
+        own = [each for each in known.parameters.values() if each.name != name]
+        asked = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in (*own, *options.values())]
+        run.__signature__ = known.replace(parameters=asked)  # type: ignore[attr-defined]
+        run.__annotations__ = {each.name: each.annotation for each in asked}
+        return run
 
-    known = signature(command, eval_str=True)
-    own = [each for name, each in known.parameters.items() if name != "reading"]
-    asked = [each.replace(kind=Parameter.KEYWORD_ONLY) for each in own] + [*options.values()]
-    run.__signature__ = known.replace(parameters=asked)  # type: ignore[attr-defined]
-    run.__annotations__ = {each.name: each.annotation for each in asked}
-    return run
+    return decorate
+
+
+def _build_reading(
+    *,
+    water: WaterOption = "auto",
+    turn: TurnOption = 0,
+    estimator: EstimatorOption = "onnx",
+    hands: HandsOption = MEDIAPIPE_HANDS,
+    frame_rate: FrameRateOption = None,
+    frame_size: FrameSizeOption = None,
+    landmark: LandmarkOption = None,
+) -> ClipReading:
+    keypoints = keypoint_options(frame_rate, frame_size, landmark)
+    return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+
+
+reads_clips = takes_options("reading", _build_reading)
+"""Decorates a command with the options for reading clips, which it gets as ``reading``."""
 
 
 def recognize_clip(

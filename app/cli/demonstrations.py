@@ -18,7 +18,7 @@ from app.cli.clip_argument import (
     read_clip,
     reads_clips,
 )
-from app.cli.terminal import people
+from app.cli.terminal import tell
 from app.recognition import Gesture, GestureError, Language, Recording, Take
 from app.recognition.explanation.demonstration_faults import find_demonstration_faults
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -71,7 +71,7 @@ def define(
     gestures = [define_gesture(shown, reading, diver=diver) for shown in given]
     language = Language(compose(name), gestures, author=author, trigger=held)
     language.save(output)
-    people.print(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
+    tell(f"{output}: {len(gestures)} gestures, {output.stat().st_size / 1000:.0f} kB")
 
 
 @demonstrations_command.command("list")
@@ -140,10 +140,7 @@ def _without(gesture: Gesture, number: int) -> Gesture:
 
 def _save(language: Language, output: Path) -> None:
     language.save(output)
-    people.print(
-        f"{output}: revision {language.revision}, {output.stat().st_size / 1000:.0f} kB",
-        markup=False,
-    )
+    tell(f"{output}: revision {language.revision}, {output.stat().st_size / 1000:.0f} kB")
 
 
 @dataclass(frozen=True)
@@ -211,13 +208,12 @@ def define_gesture(
         else:
             gesture = gesture.with_demonstration(poses, diver)
         shown_last = gesture.single_demonstrations()[-1]
-        people.print(
+        tell(
             f"{gesture.label}: {len(poses)} poses over {poses.duration:.2f} s, "
-            f"{describe_shown(shown_last)}",
-            markup=False,
+            f"{describe_shown(shown_last)}"
         )
         for fault in faults:
-            people.print(fault.describe(gesture.label), f"It {fault.words}.", markup=False)
+            tell(f"{fault.describe(gesture.label)} It {fault.words}.")
     assert gesture is not None  # an argument names one clip at least
     return gesture
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -19,7 +18,7 @@ from app.cli.clip_argument import (
     TurnOption,
     keypoint_options,
 )
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.clip_sources import ReadOptions
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
@@ -29,17 +28,11 @@ from app.evaluation.one_shot import one_shot, recognize_takes
 from app.evaluation.protocols import recognize_variants
 from app.recognition import Language
 from app.recognition.gestures.profile import PROFILES
+from app.recognition.simulation.variation import Person
 from app.recognition.triggers.trigger import SALUTE
 
 DEFAULT_VARIANTS = 50
 """Variants of each gesture; the paper shows each of its eight gestures as often."""
-
-
-class Person(str, Enum):
-    """Person whose takes the variants simulate."""
-
-    same = "same"
-    another = "another"
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +91,7 @@ def evaluate(
     ] = DEFAULT_VARIANTS,
     person: Annotated[
         Person, typer.Option(help="With a language file: person whose takes are simulated.")
-    ] = Person.same,
+    ] = "same",
     seed: Annotated[int, typer.Option(min=0, help="Random seed of the variants.")] = 0,
     frame_rate: FrameRateOption = None,
     frame_size: FrameSizeOption = None,
@@ -136,7 +129,7 @@ def evaluate(
     else:
         typer.echo("\n".join(result.to_text() for result in results), nl=False)
     for place, problem in problems.items():
-        people.print(f"{place}: {problem}", markup=False)
+        tell(f"{place}: {problem}")
     if picture is not None:
         _draw(picture, results)
 
@@ -151,11 +144,11 @@ def _evaluate_variants(
                 count,
                 profile=profile,
                 seed=seed,
-                person=person.value,
+                person=person,
                 progress=advance,
             )
         yield Evaluation(
-            profile, f"{count} variants of each gesture, {person.value} person, seed {seed}", matrix
+            profile, f"{count} variants of each gesture, {person} person, seed {seed}", matrix
         )
 
 
@@ -176,16 +169,11 @@ def _evaluate_takes(
             for place, reason in result.unusable.items()
         }
         several_people = len({take.person for take in takes}) > 1
-        own = "same person" if several_people else "any person"
-        yield Evaluation(
-            profile, f"{own}, {result.languages} languages of one take", result.same_person
-        )
+        matrices = {"same person" if several_people else "any person": result.same_person}
         if several_people:
-            yield Evaluation(
-                profile,
-                f"other people, {result.languages} languages of one take",
-                result.other_people,
-            )
+            matrices["other people"] = result.other_people
+        for who, matrix in matrices.items():
+            yield Evaluation(profile, f"{who}, {result.languages} languages of one take", matrix)
 
 
 def _draw(picture: Path, results: list[Evaluation]) -> None:
@@ -194,4 +182,4 @@ def _draw(picture: Path, results: list[Evaluation]) -> None:
         target = picture.with_name(name)
         title = f"Profile {result.profile}, {result.asked}"
         target.write_text(confusion_svg(result.matrix, title), encoding="utf-8")
-        people.print(f"{target}: {title}", markup=False)
+        tell(f"{target}: {title}")

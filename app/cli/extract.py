@@ -15,7 +15,7 @@ from app.bags.staging import is_bag_archive
 from app.cli.administration import settings_of
 from app.cli.batch import tell_left_out
 from app.cli.clip_argument import TurnOption
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.clip_sources import CHAPTERS, SOURCES, ReadOptions
 from app.evaluation.kept_recordings import RECORDING_ENDING, recordings_dir
 from app.recognition.errors import OsgError
@@ -111,7 +111,7 @@ def _tell(folder: Path, ended: Sequence[Extracted], output: Path | None) -> None
     for each in ended:
         if each.recording is None:
             failed += 1
-            people.print(f"{each.clip}: {each.problem}", markup=False, highlight=False)
+            tell(f"{each.clip}: {each.problem}")
             continue
         place = each.recording
         if output is not None:
@@ -121,9 +121,7 @@ def _tell(folder: Path, ended: Sequence[Extracted], output: Path | None) -> None
             shutil.copyfile(each.recording, place)
         typer.echo(f"{each.clip}\t{place}")
     new = sum(each.new for each in ended)
-    people.print(
-        f"{new} clips extracted, {len(ended) - new - failed} known from before, {failed} failed"
-    )
+    tell(f"{new} clips extracted, {len(ended) - new - failed} known from before, {failed} failed")
     if failed:
         raise typer.Exit(SOME_FAILED)
 

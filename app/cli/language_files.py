@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.terminal import people
+from app.cli.terminal import tell
 from app.recognition import Language
 from app.recognition.errors import OsgError, explain_missing_package
 from app.recognition.language.export_format import FileFormat
@@ -24,7 +24,7 @@ def code(
 ) -> None:
     """Print the code of a language file: the studio and the robot that has it show the same."""
     active = ActiveLanguage.load(language)
-    people.print(f"{active.name}, revision {active.revision}", markup=False)
+    tell(f"{active.name}, revision {active.revision}")
     typer.echo(short_code(active.sha256))
 
 
@@ -47,11 +47,8 @@ def slate(
         raise OsgError(f"a slate is written as .pdf or .svg, not as {output.name!r}")
     page = lay_out(Language.load(language), () if vehicle is None else list_answers(vehicle))
     content = to_pdf(page) if kind == ".pdf" else to_svg(page).encode("utf-8")
-    try:
-        output.write_bytes(content)
-    except OSError as error:
-        raise OsgError(f"cannot write {output}: {error.strerror}") from error
-    people.print(f"wrote {output}", markup=False)
+    output.write_bytes(content)
+    tell(f"wrote {output}")
 
 
 def list_answers(vehicle: Path) -> list[tuple[int, str]]:
@@ -84,7 +81,7 @@ def samples(
     (folder / "clips").mkdir(parents=True)
     for file in (*sorted(source.glob("*.json")), *sorted((source / "clips").glob("*.mp4"))):
         shutil.copyfile(file, folder / file.relative_to(source))
-    people.print(f"{folder}: sample languages, and their clips in {folder / 'clips'}", markup=False)
+    tell(f"{folder}: sample languages, and their clips in {folder / 'clips'}")
 
 
 def convert(
@@ -106,21 +103,20 @@ def convert(
         proteus = target.suffix == FileFormat.PROTEUS.suffix
         file_format = FileFormat.PROTEUS if proteus else FileFormat.OSG_STUDIO
     if any(gesture.trajectory is None for gesture in language.gestures):
-        people.print(f"{source}: no trajectories, only images: osg-reference files have none")
+        tell(f"{source}: no trajectories, only images: osg-reference files have none")
     several = [gesture.label for gesture in language.gestures if gesture.further]
     if several and file_format is FileFormat.OSG_REFERENCE:
-        people.print(
+        tell(
             f"{target}: {file_format.value} keeps only the first demonstration of "
-            f"{', '.join(several)}",
-            markup=False,
+            f"{', '.join(several)}"
         )
     if language.trigger != SALUTE and file_format is not FileFormat.OSG_STUDIO:
-        people.print(f"{target}: {file_format.value} knows no trigger; tell it on the slate")
+        tell(f"{target}: {file_format.value} knows no trigger; tell it on the slate")
     if file_format is FileFormat.OSG_STUDIO:
         language.save(target)
     else:
         target.write_text(file_format.write(language), encoding="utf-8")
-    people.print(f"{target}: {len(language.gestures)} gestures as {file_format.value}")
+    tell(f"{target}: {len(language.gestures)} gestures as {file_format.value}")
 
 
 def read_language(source: Path) -> Language:

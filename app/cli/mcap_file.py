@@ -11,7 +11,7 @@ from rich.filesize import decimal
 from app.bags import bag_and_topic
 from app.bags.export_writer import NamedRecognition, write_bag
 from app.cli.clip_argument import ClipReading
-from app.cli.terminal import people, progress_bar
+from app.cli.terminal import progress_bar, tell
 from app.clip_sources import source_of
 from app.recognition import Language, Recognition, Recording, Take
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -61,7 +61,7 @@ def save_bag(
                 progress=advance,
             )
         partial.replace(target)
-    people.print(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove", markup=False)
+    tell(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove")
 
 
 def name_recognitions(

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.terminal import people
+from app.cli.terminal import tell
 from app.recognition import Language, LanguageError
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
@@ -46,7 +46,7 @@ def phrase(
         if as_json:
             typer.echo(json.dumps(event.to_dict(), allow_nan=False))
         elif event.mission is None:
-            people.print(event.text, markup=False)
+            tell(event.text)
         else:
             typer.echo(event.mission.spoken)
     if not any(event.mission for event in events):

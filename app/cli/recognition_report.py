@@ -12,6 +12,7 @@ from app.recognition import Recognition, Take
 from app.recognition.decision.result import RecognitionEntry
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.gestures.profile import ProfileName
+from app.recognition.text.described import DESCRIBED
 
 Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
 
@@ -19,13 +20,14 @@ Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's fir
 class TakeEntry(RecognitionEntry):
     """A take and its recognition. G gestures and V voters are in the order of their lists."""
 
+    model_config = DESCRIBED
+
     start: Seconds
     end: Seconds
-    closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
-    explanation: Annotated[
-        dict[str, Any] | None,
-        Field(description="Why, and what would change it; only with --expected."),
-    ] = None
+    closed: bool
+    """Whether a salute, or the other trigger, ended it."""
+    explanation: dict[str, Any] | None = None
+    """Why, and what would change it; only with --expected."""
 
 
 class RecognitionReport(BaseModel):
@@ -34,11 +36,14 @@ class RecognitionReport(BaseModel):
     Programs that read a report ignore keys that they do not know.
     """
 
-    model_config = ConfigDict(extra="allow")
+    model_config = ConfigDict(**DESCRIBED, extra="allow")
 
-    clip: Annotated[str, Field(description="The file, as it was given.")]
-    language: Annotated[str, Field(description="The language's name.")]
-    profile: Annotated[ProfileName, Field(description="The set of voters.")]
+    clip: str
+    """The file, as it was given."""
+    language: str
+    """The language's name."""
+    profile: ProfileName
+    """The set of voters."""
     takes: list[TakeEntry]
 
 

@@ -20,7 +20,7 @@ from app.cli.clip_argument import (
 )
 from app.cli.mcap_file import name_recognitions, save_bag
 from app.cli.recognition_report import build_report
-from app.cli.terminal import people, show_explanation, show_recognition
+from app.cli.terminal import show_explanation, show_recognition, tell
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import RecognitionContext
@@ -98,7 +98,7 @@ def recognize(
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results or not results[-1][0].closed:
             for told in tell_chapters(path.name):
-                people.print(told)
+                tell(told)
         if not results:
             explain_absence(path, recording, recognizer, without_salutes=spots)
         recognised = sum(result.label is not None for _, result in results)
@@ -138,17 +138,17 @@ def explain_absence(
     """Print why a clip has no take, and what to do."""
     seconds = f"{recording.poses.duration:.1f} s"
     if without_salutes:
-        people.print(
+        tell(
             f"{path}: no gesture of {recognizer.language.name!r} found in {seconds}; "
             f"pause before and after a gesture, or give the range: {path}@START-END"
         )
     elif recognizer.language.trigger == SALUTE:
         why = explain_missing_salutes(recording.poses, recording.salute, recording.hands)
         reason = next(why, f"no salute found in {seconds}")
-        people.print(f"{path}: no take: {reason}; or give the range: {path}@START-END")
+        tell(f"{path}: no take: {reason}; or give the range: {path}@START-END")
     else:
         words = recognizer.language.trigger.words
-        people.print(
+        tell(
             f"{path}: no take {words} found in {seconds}; hold "
             f"the pose for at least {HOLD_SECONDS:g} s, or give the range: {path}@START-END"
         )

@@ -23,26 +23,28 @@ people = Console(stderr=True)
 """Console for text for people; stdout is for data."""
 
 
+def tell(text: str) -> None:
+    """Write a line for people as it is: a path has no markup, and is not broken in two."""
+    people.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
 def show_recognition(take: Take, result: Recognition, trigger: Trigger) -> None:
     """Print the label or the question on stdout, the votes on stderr; `trigger` ends the takes."""
     answer = result.label if result.pair is None else ask_which(result.pair)
     typer.echo(f"{take.start:.2f}\t{take.end:.2f}\t{answer}\t{result.confidence:.2f}")
     if not take.closed:
-        people.print(
+        tell(
             f"the take from {take.start:.2f} s has no second {trigger.noun}: the gesture may be "
             f"incomplete; give its range by hand, CLIP@{take.start:.2f}-{take.end:.2f}"
         )
     for finding in result.findings:
-        people.print(f"the take from {take.start:.2f} s: {finding}")
+        tell(f"the take from {take.start:.2f} s: {finding}")
     if result.disagreed:
-        people.print(f"the take from {take.start:.2f} s: the two ways of comparing disagree")
+        tell(f"the take from {take.start:.2f} s: the two ways of comparing disagree")
     if len(result.between) > 2:
-        people.print(
-            f"the take from {take.start:.2f} s lies between {join_words(result.between)}",
-            markup=False,
-        )
+        tell(f"the take from {take.start:.2f} s lies between {join_words(result.between)}")
     if result.fault:
-        people.print(f"the take from {take.start:.2f} s cannot be recognised: {result.fault}")
+        tell(f"the take from {take.start:.2f} s cannot be recognised: {result.fault}")
     table = build_vote_table(result)
     # In a narrow terminal lines wrap; rich would crop them and lose distances.
     unlimited = people.options.update(max_width=10_000)
@@ -55,16 +57,8 @@ def show_explanation(explanation: Explanation) -> None:
     people.print(Text(explanation.sentence))
     for line in explanation.details:
         people.print(Text(f"  {line}"))
-    table = Table(
-        "what to change",
-        "confidence",
-        "margin",
-        "known takes",
-        title=f"with which {explanation.expected!r} would be recognised",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
-    )
+    title = f"with which {explanation.expected!r} would be recognised"
+    table = _create_table(title, "what to change", "confidence", "margin", "known takes")
     for found in explanation.counterfactuals:
         effect = found.effect
         table.add_row(
@@ -85,11 +79,8 @@ def build_vote_table(result: Recognition) -> Table:
     A star marks a vote, a point a vote with weight 0. Gestures are rows because a language has
     many, and the paper's seven voters fit into eighty columns.
     """
-    table = Table(
-        title="distance to every gesture, by voter; * its vote, . a vote without weight",
-        title_justify="left",
-        box=box.SIMPLE_HEAD,
-        padding=(0, 1, 0, 0),
+    table = _create_table(
+        "distance to every gesture, by voter; * its vote, . a vote without weight"
     )
     table.add_column("gesture", vertical="bottom")
     for voter in result.voters:
@@ -101,6 +92,11 @@ def build_vote_table(result: Recognition) -> Table:
         ]
         table.add_row(Text(label), *cells)
     return table
+
+
+def _create_table(title: str, *heads: str) -> Table:
+    gaps = (0, 1, 0, 0)
+    return Table(*heads, title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=gaps)
 
 
 def _mark_vote(result: Recognition, voter: str, label: str) -> str:
@@ -159,7 +155,7 @@ def batch_bar(clips: int, size: int) -> Iterator[Callable[[int, str], None]]:
             nonlocal number
             number += 1
             bar.update(task, advance=done, description=f"{number} of {clips} clips")
-            people.print(f"{number}/{clips} {line}", markup=False, highlight=False, soft_wrap=True)
+            tell(f"{number}/{clips} {line}")
 
         try:
             yield advance

@@ -14,7 +14,7 @@ from app.cli.clip_argument import (
     read_clip,
     reads_clips,
 )
-from app.cli.terminal import people
+from app.cli.terminal import tell
 from app.recognition import Language
 from app.recognition.errors import OsgError, TriggerError
 from app.recognition.triggers.arm_pose import ArmPose
@@ -76,7 +76,7 @@ def trigger(
     changed = replace(loaded, trigger=chosen, revision=loaded.revision + language.exists())
     target = output or language
     changed.save(target)
-    people.print(f"{target}: {chosen.words}", markup=False)
+    tell(f"{target}: {chosen.words}")
 
 
 def read_pose(text: str, reading: ClipReading) -> ArmPose:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from functools import lru_cache
 from math import exp, lgamma, log, log1p
 
@@ -10,6 +11,9 @@ LIMIT = 0.05
 
 CONFIDENCE = 0.95
 """Confidence of the bound, one-sided as in the rule of three (Hanley and Lippman-Hand 1983)."""
+
+MOST_TAKES = 1_000_000
+"""Most takes counted, far more than anybody shows."""
 
 STEPS = 50
 """Number of bisections of [0, 1]: more precise than any number that is shown."""
@@ -35,17 +39,15 @@ def bound_error_rate(errors: int, takes: int, confidence: float = CONFIDENCE) ->
 
 @lru_cache(1024)
 def count_takes_needed(errors: int, limit: float = LIMIT, confidence: float = CONFIDENCE) -> int:
-    """Return the least number of takes that, with these errors, show a rate below `limit`."""
-    low, high = errors, errors + 1
-    while bound_error_rate(errors, high, confidence) >= limit:
-        low, high = high, 2 * high
-    while high - low > 1:
-        middle = (low + high) // 2
-        if bound_error_rate(errors, middle, confidence) < limit:
-            high = middle
-        else:
-            low = middle
-    return high
+    """Return the least number of takes that, with these errors, show a rate below `limit`.
+
+    At most `MOST_TAKES`.
+    """
+
+    def suffice(takes: int) -> bool:
+        return bound_error_rate(errors, takes, confidence) < limit
+
+    return bisect_left(range(MOST_TAKES), True, lo=errors, key=suffice)
 
 
 def _at_most(errors: int, takes: int, rate: float) -> float:

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
 from typing import Any
 
-CONFIDENCE_95 = 1.96
-"""Half width, in standard deviations, of the interval with 95 % of a normal distribution."""
+from app.recognition.health.rate import Rate
 
 
 @dataclass(frozen=True)
@@ -31,12 +29,7 @@ class Share:
 
     def interval(self) -> tuple[float, float] | None:
         """Return Wilson's 95 % interval (Wilson 1927), or None without queries."""
-        if (share := self.value) is None:
-            return None
-        n, z = self.asked, CONFIDENCE_95
-        middle = (share + z * z / (2 * n)) / (1 + z * z / n)
-        half = z * sqrt(share * (1 - share) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-        return max(0.0, middle - half), min(1.0, middle + half)
+        return Rate(self.correct, self.asked).interval if self.asked else None
 
     def __add__(self, other: Share) -> Share:
         return Share(self.correct + other.correct, self.asked + other.asked)

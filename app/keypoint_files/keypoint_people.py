@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import Final
 
 import numpy as np
+from typing_extensions import Unpack
 
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -149,6 +151,7 @@ def table_of(
     times: Times,
     path: Path,
     hands: tuple[tuple[Hand, ...], ...] | None = None,
+    **facts: Unpack[Facts],
 ) -> KeypointTable:
     """Create the table of one person.
 
@@ -164,6 +167,8 @@ def table_of(
         The file, for messages.
     hands
         Hands of each frame; None: those of the set, if it has some.
+    facts
+        What else the table tells.
 
     Raises
     ------
@@ -184,6 +189,7 @@ def table_of(
         confidence=confidence,
         times=times,
         hands=hands,
+        **facts,
     )
 
 
@@ -206,6 +212,7 @@ def table_of_people(
     options: KeypointOptions,
     called: str = "",
     names: Sequence[str] = (),
+    **facts: Unpack[Facts],
 ) -> KeypointTable:
     """Create the table of the person who salutes, or stands out most.
 
@@ -217,6 +224,8 @@ def table_of_people(
         Times of the frames.
     path, options, called, names
         See `name_points`.
+    facts
+        What else the table tells; notes about the choice of the person come before its notes.
 
     Raises
     ------
@@ -232,18 +241,15 @@ def table_of_people(
         )
     kind = name_points([*map(str, range(sizes[0]))], path, options, called, names)
     beside = bool(kind.hands) or any(one.hands for persons in everybody for one in persons)
-    nobody, choice = Person(np.full((sizes[0], 3), np.nan)), None
+    nobody = Person(np.full((sizes[0], 3), np.nan))
     if max(map(len, everybody)) > 1:
         everybody, choice = _choose_person(everybody, kind, times, options)
+        facts["notes"] = choice.notes + facts.get("notes", ())
+        facts.setdefault("people", choice.count)
     followed = [persons[0] if persons else nobody for persons in everybody]
-    table = table_of(
-        kind,
-        np.stack([one.points for one in followed]),
-        times,
-        path,
-        tuple(one.find_hands(kind) for one in followed) if beside else None,
-    )
-    return table if choice is None else replace(table, notes=choice.notes, people=choice.count)
+    points = np.stack([one.points for one in followed])
+    hands = tuple(one.find_hands(kind) for one in followed) if beside else None
+    return table_of(kind, points, times, path, hands, **facts)
 
 
 def _choose_person(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
+from typing import TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -128,6 +129,15 @@ class Times:
                 f"time does not go on at frame {at + 1} of the file, which is at "
                 f"{self.values[at]:g}; sort the frames, and keep one recording in a file"
             )
+
+
+class Facts(TypedDict, total=False):
+    """What a file tells beside its keypoints; see `KeypointTable`."""
+
+    frame_size: tuple[int, int] | None
+    frame_rate: float | None
+    notes: tuple[str, ...]
+    people: npt.NDArray[np.int64] | None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -16,7 +16,6 @@ import json
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -36,6 +35,7 @@ from app.keypoint_files.keypoint_people import (
 )
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -104,8 +104,8 @@ def read_mediapipe_json(path: Path, options: KeypointOptions, limits: VideoLimit
         for both in zip(parsed, hands, strict=True)
     ]
     given = titles if is_numbered(names) else names
-    table = table_of_people(people, times, path, options, called, given)
-    return replace(table, frame_size=about.frame_size, frame_rate=about.frame_rate)
+    facts = Facts(frame_size=about.frame_size, frame_rate=about.frame_rate)
+    return table_of_people(people, times, path, options, called, given, **facts)
 
 
 def _load(path: Path) -> Any:

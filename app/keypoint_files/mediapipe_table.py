@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -29,6 +28,7 @@ from app.keypoint_files.column_names import (
 from app.keypoint_files.keypoint_people import name_points, table_of
 from app.keypoint_files.keypoint_table import (
     MOST_PEOPLE,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -126,40 +126,30 @@ def _wide(
         if columns.who is not None:
             people.append(line[columns.who].strip() if columns.who < len(line) else "")
     points, moments = _points(rows, len(places)), np.array(times)
-    chosen = None
+    facts = Facts()
     if len(set(people)) > 1:
-        chosen = _choose_person(points[:, : len(names)], moments, people, path)
-        limits.require_frames(len(chosen.times))
-        moments = chosen.times
-        points = np.where(chosen.rows[:, None, None] < 0, np.nan, points[chosen.rows])
-    table = table_of(
+        chosen, moments, facts = _choose_person(points[:, : len(names)], moments, people, path)
+        limits.require_frames(len(moments))
+        points = np.where(chosen[:, None, None] < 0, np.nan, points[chosen])
+    return table_of(
         _kind(names, path, options),
         points[:, : len(names)],
         times_of(moments, columns.unit),
         path,
         hands_of(points[:, len(names) :], sides),
+        **facts,
     )
-    return replace(
-        table,
-        notes=() if chosen is None else chosen.notes,
-        people=None if chosen is None else chosen.people,
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Chosen:
-    """The rows ``(T,)`` of one person, -1 where there is none, at the ``(T,)`` times of all."""
-
-    rows: npt.NDArray[np.int64]
-    times: FloatArray
-    people: npt.NDArray[np.int64]
-    notes: tuple[str, ...]
 
 
 def _choose_person(
     points: FloatArray, moments: FloatArray, people: Sequence[str], path: Path
-) -> _Chosen:
+) -> tuple[npt.NDArray[np.int64], FloatArray, Facts]:
     """Choose the most prominent of several people, each in rows of their own.
+
+    Returns
+    -------
+    The rows ``(T,)`` of that person, -1 where there is none, the ``(T,)`` times of all, and what
+    is told of them.
 
     Raises
     ------
@@ -187,12 +177,8 @@ def _choose_person(
     followed = np.full(len(times), -1)
     followed[at[ordered[name]]] = ordered[name]
     seen = np.asarray(np.isfinite(xy).all(axis=2)).any(axis=1)
-    return _Chosen(
-        rows=followed,
-        times=times,
-        people=np.bincount(at[seen], minlength=len(times)),
-        notes=(f"of {len(ordered)} people track {name!r} stands out most and is followed",),
-    )
+    notes = (f"of {len(ordered)} people track {name!r} stands out most and is followed",)
+    return followed, times, Facts(people=np.bincount(at[seen], minlength=len(times)), notes=notes)
 
 
 def _long(

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Final
 
@@ -19,6 +19,7 @@ from app.keypoint_files.keypoint_people import Person, table_of_people
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
@@ -100,11 +101,9 @@ def _read(file: IO[bytes], path: Path, limits: VideoLimits) -> KeypointTable:
     everybody = [[_person(one, len(body.names), tuple(hands)) for one in frame] for frame in seen]
     times = Times(np.arange(frames, dtype=np.float64), counted=True)
     options = KeypointOptions(frame_rate=float(rate) if np.isfinite(rate) and rate > 0 else None)
-    return replace(
-        table_of_people(everybody, times, path, options, names=body.names),
-        frame_size=(width, height) if width and height else None,
-        frame_rate=options.frame_rate,
-    )
+    size = (width, height) if width and height else None
+    facts = Facts(frame_size=size, frame_rate=options.frame_rate)
+    return table_of_people(everybody, times, path, options, names=body.names, **facts)
 
 
 def _person(points: FloatArray, size: int, sides: tuple[Side, ...]) -> Person:

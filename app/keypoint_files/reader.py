@@ -14,7 +14,6 @@ import numpy.typing as npt
 from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
 from app.keypoint_files.registry import find_reader
 from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
-from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
@@ -94,8 +93,9 @@ def read_keypoints(
         frame_size=size,
     )
     hands = table.hands or ((),) * len(poses)
-    hands = tuple(tuple(_scale(hand, scale) for hand in frame) for frame in hands)
-    people = _count_one(poses) if table.people is None else table.people
+    hands = tuple(tuple(replace(hand, xy=hand.xy * scale) for hand in each) for each in hands)
+    one = np.asarray(poses.seen.any(axis=1), dtype=np.int64)
+    people = one if table.people is None else table.people
     recording = Recording(
         poses=poses,
         hands=hands,
@@ -193,15 +193,6 @@ def _frame_size(table: KeypointTable, options: KeypointOptions, path: Path) -> t
     known = table.xy[np.isfinite(table.xy).all(axis=2)]
     width, height = np.maximum(np.ceil(known.max(axis=0)), 1).astype(int).tolist()
     return width, height
-
-
-def _scale(hand: Hand, scale: FloatArray) -> Hand:
-    return replace(hand, xy=hand.xy * scale)
-
-
-def _count_one(poses: PoseSequence) -> npt.NDArray[np.int64]:
-    """Return ``(T,)`` 1 where the one person of a file is seen, else 0."""
-    return np.asarray(poses.seen.any(axis=1), dtype=np.int64)
 
 
 def _gaps(poses: PoseSequence, people: npt.NDArray[np.int64]) -> tuple[str, ...]:

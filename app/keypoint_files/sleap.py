@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 import warnings
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,13 +14,14 @@ from app.keypoint_files.keypoint_people import Person, table_of_people
 from app.keypoint_files.keypoint_table import (
     MALFORMED,
     MOST_PEOPLE,
+    Facts,
     KeypointOptions,
     KeypointTable,
     Times,
     mask_unseen,
 )
 from app.keypoint_files.self_contained import require_self_contained
-from app.recognition.errors import KeypointFileError, OsgError
+from app.recognition.errors import KeypointFileError, OsgError, explain_missing_package
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.people import prominence_over
 from app.recognition.recording.video_limits import VideoLimits
@@ -68,16 +68,13 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
     if not any(everybody):
         raise KeypointFileError(f"{path}: nobody is seen in any of {len(labelled)} frames")
     times = Times(frames, counted=True)
-    table = table_of_people(everybody, times, path, options, names=names)
+    facts = Facts(frame_size=_size(labels), notes=())
     if tracks:
-        table = replace(
-            table,
-            notes=_notes(len(tracks), f"track {track.name!r} stands out most and is followed"),
-            people=np.array([_count_tracks(frame) for frame in labelled]),
-        )
-    more = len(labels.videos) > 1
-    notes = (f"the file holds {len(labels.videos)} videos; the first is read",) if more else ()
-    return replace(table, frame_size=_size(labels), notes=table.notes + notes)
+        facts["notes"] = _tell_track(len(tracks), track.name)
+        facts["people"] = np.array([_count_tracks(frame) for frame in labelled])
+    if len(labels.videos) > 1:
+        facts["notes"] += (f"the file holds {len(labels.videos)} videos; the first is read",)
+    return table_of_people(everybody, times, path, options, names=names, **facts)
 
 
 def _labels(path: Path, limits: VideoLimits) -> Any:
@@ -86,13 +83,8 @@ def _labels(path: Path, limits: VideoLimits) -> Any:
     An analysis without scores, as SLEAP wrote it before 1.1.4, is read here into a table.
     """
     try:
-        library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
-    except ImportError as error:
-        raise KeypointFileError(
-            f"{path} needs the library sleap-io ({error}); run "
-            f"`pip install 'osg-studio[keypoints]'`"
-        ) from error
-    try:
+        with explain_missing_package(str(path), "keypoints", KeypointFileError):
+            library, h5py = (importlib.import_module(name) for name in ("sleap_io", "h5py"))
         require_self_contained(path)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # about videos that are missing but not needed
@@ -126,7 +118,7 @@ def _table_without_scores(file: Any) -> KeypointTable:
         names=names,
         xy=mask_unseen(xy[chosen], None, 0.0),
         times=Times(np.arange(xy.shape[1], dtype=np.float64), counted=True),
-        notes=_notes(len(xy), f"track {name!r} stands out most and is followed"),
+        notes=_tell_track(len(xy), name),
         people=np.asarray(np.isfinite(xy).all(axis=3)).any(axis=2).sum(axis=0, dtype=np.int64),
     )
 
@@ -191,5 +183,6 @@ def _size(labels: Any) -> tuple[int, int] | None:
     return int(shape[2]), int(shape[1])
 
 
-def _notes(count: int, what: str) -> tuple[str, ...]:
-    return (f"of {count} people {what}",) if count > 1 else ()
+def _tell_track(count: int, name: str) -> tuple[str, ...]:
+    followed = f"of {count} people track {name!r} stands out most and is followed"
+    return (followed,) if count > 1 else ()

@@ -117,6 +117,15 @@ class VehicleError(OsgError):
 
 
 @contextmanager
+def point_to(pointer: str) -> Iterator[None]:
+    """Raise an error of a part of a language as a `LanguageError` with the part's JSON pointer."""
+    try:
+        yield
+    except OsgError as error:
+        raise LanguageError(str(error), pointer) from error
+
+
+@contextmanager
 def explain_missing_package(
     what: str, extra: str, kind: type[OsgError] = OsgError, instead: str = ""
 ) -> Iterator[None]:

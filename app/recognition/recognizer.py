@@ -43,34 +43,27 @@ class Vote(Protocol):
     @property
     def landmarks(self) -> tuple[str, ...]:
         """The salient landmarks of all gestures, in alphabetical order."""
-        ...
 
     @property
     def needed(self) -> tuple[str, ...]:
         """The salient landmarks of which a query must move at least one."""
-        ...
 
     @property
     def weights(self) -> Mapping[str, float]:
         """Each voter's weight in the decision, summing to 1."""
-        ...
 
     @property
     def shape_twins(self) -> frozenset[tuple[int, int]]:
         """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
-        ...
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with every gesture, voter by voter."""
-        ...
 
     def decide(self, compared: ScoreTable) -> Recognition:
         """Decide for one gesture or none; one of the scores must be finite."""
-        ...
 
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return which properties of a gesture count; None for a gesture without movement."""
-        ...
 
 
 class Recognizer:

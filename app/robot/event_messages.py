@@ -16,6 +16,7 @@ from typing import Annotated, Any, Final, Literal, get_type_hints
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 
 from app.recognition.phrases.parser import PhraseEventKind
+from app.recognition.text.described import DESCRIBED, read_descriptions
 from app.robot.events import JSON_TYPE, Event, PhraseHeard, Revision, Seconds, Sha256, Share
 
 
@@ -31,49 +32,48 @@ class Message(BaseModel):
 class MeaningMessage(BaseModel):
     """One phrase of a message."""
 
-    model_config = ConfigDict(frozen=True, from_attributes=True)
+    model_config = ConfigDict(**DESCRIBED, from_attributes=True)
 
-    phrase: Annotated[str, Field(description="Its name.")]
-    slots: Annotated[dict[str, Any], Field(description="The values shown, by slot.")]
-    command: Annotated[
-        str | dict[str, Any] | None,
-        Field(description="What the language's author wants the robot to do, values put in."),
-    ]
-    spoken: Annotated[str, Field(description="To say back to the diver.")]
+    phrase: str
+    """Its name."""
+    slots: dict[str, Any]
+    """The values shown, by slot."""
+    command: str | dict[str, Any] | None
+    """What the language's author wants the robot to do, values put in."""
+    spoken: str
+    """To say back to the diver."""
 
 
 # Not derived: the event holds the core's `PhraseEvent`, whose keys the JSON puts beside its own.
 class PhraseHeardMessage(Message):
     """What came of a gesture, or of a pause, in a language with phrases."""
 
+    model_config = DESCRIBED
+
     event: Literal["phrase_heard"] = "phrase_heard"
-    kind: Annotated[
-        PhraseEventKind,
-        Field(
-            description="complete: obey the mission. continues: more is needed or may come. "
-            "repeat: a gesture was not recognised, or a pair is asked. ambiguous, cancelled, "
-            "timed_out, unexpected: the message is dropped. outside: none has begun."
-        ),
-    ]
-    start: Annotated[float, Field(description="Seconds, of the message's first gesture.")]
-    end: Annotated[float, Field(description="Seconds, of its last gesture.")]
-    gestures: Annotated[tuple[str, ...], Field(description="Of the message so far.")]
-    label: Annotated[str | None, Field(description="Of this gesture.")]
-    pair: Annotated[
-        tuple[str, str] | None,
-        Field(
-            description="The two gestures between which this one lies; null: no two. The diver is "
-            "asked to show the gesture after `gestures` again."
-        ),
-    ] = None
-    expected: Annotated[tuple[str, ...], Field(description="What may come next.")]
-    mission: Annotated[
-        tuple[MeaningMessage, ...] | None, Field(description="What to do; only when complete.")
-    ]
-    text: Annotated[str, Field(description="In words, for the diver.")]
-    confidence: Annotated[
-        Share, Field(description="Of the message's least sure gesture; 0: none was recognised.")
-    ] = 0.0
+    kind: PhraseEventKind
+    """complete: obey the mission. continues: more is needed or may come. repeat: a gesture was not
+    recognised, or a pair is asked. ambiguous, cancelled, timed_out, unexpected: the message is
+    dropped. outside: none has begun."""
+    start: float
+    """Seconds, of the message's first gesture."""
+    end: float
+    """Seconds, of its last gesture."""
+    gestures: tuple[str, ...]
+    """Of the message so far."""
+    label: str | None
+    """Of this gesture."""
+    pair: tuple[str, str] | None = None
+    """The two gestures between which this one lies; null: no two. The diver is asked to show the
+    gesture after `gestures` again."""
+    expected: tuple[str, ...]
+    """What may come next."""
+    mission: tuple[MeaningMessage, ...] | None
+    """What to do; only when complete."""
+    text: str
+    """In words, for the diver."""
+    confidence: Share = 0.0
+    """Of the message's least sure gesture; 0: none was recognised."""
     sha256: Sha256
     revision: Revision
 
@@ -88,11 +88,13 @@ class PhraseHeardMessage(Message):
 
 def _derive_message(event: type[Event]) -> type[Message]:
     """Create the message model of an event from the dataclass's annotations and docstring."""
-    annotations = get_type_hints(event, include_extras=True)
+    annotations, described = get_type_hints(event, include_extras=True), read_descriptions(event)
     name = re.sub(r"(?<!^)(?=[A-Z])", "_", event.__name__).lower()
     keys: dict[str, Any] = {"event": (Literal[name], name)}
     for each in fields(event):
         json_type = each.metadata.get(JSON_TYPE, annotations[each.name])
+        if each.name in described:
+            json_type = Annotated[json_type, Field(description=described[each.name])]
         if json_type is not None and each.name != "time":
             keys[each.name] = (json_type, ... if each.default is MISSING else each.default)
     return create_model(

@@ -1,7 +1,8 @@
 """Robot events: one frozen dataclass for each kind of event that the runtime emits, in order.
 
 The fields are also the keys of the JSON line of an event: `app.robot.event_messages` derives the
-JSON models and the published JSON Schema from the annotations and the first line of each docstring.
+JSON models and the published JSON Schema from annotations, the docstrings below the fields, and the
+first line of each class's docstring.
 Every `time` is in seconds of the source's clock, of the frame after which the event was known.
 """
 
@@ -61,13 +62,14 @@ class Event:
 class SourceOpened(Event):
     """Frames are about to be looked at; the first line."""
 
-    source: Annotated[str, Field(description="Its name, without passwords.")]
-    live: Annotated[bool, Field(description="Whether frames may be dropped.")]
-    frame_size: Annotated[tuple[int, int], Field(description="Width and height in pixels.")]
-    began: Annotated[
-        datetime | None,
-        Field(description="When the source's clock was 0, in UTC; null for a recording."),
-    ]
+    source: str
+    """Its name, without passwords."""
+    live: bool
+    """Whether frames may be dropped."""
+    frame_size: tuple[int, int]
+    """Width and height in pixels."""
+    began: datetime | None
+    """When the source's clock was 0, in UTC; null for a recording."""
 
 
 @dataclass(frozen=True)
@@ -91,17 +93,22 @@ class SourceLost(Event):
 class SourceRestored(Event):
     """A lost camera gives frames again."""
 
-    missing: Annotated[float, Field(description="Seconds without a frame.")]
-    attempts: Annotated[int, Field(ge=1, description="How often opening was tried.")]
+    missing: float
+    """Seconds without a frame."""
+    attempts: Annotated[int, Field(ge=1)]
+    """How often opening was tried."""
 
 
 @dataclass(frozen=True)
 class SourceEnded(Event):
     """The recording is over, or the robot was stopped; after it only a vehicle may report."""
 
-    frames: Annotated[Count, Field(description="Looked at.")]
-    dropped: Annotated[Count, Field(description="Left out because newer ones had come.")]
-    stopped: Annotated[bool, Field(description="By a signal, before the source was over.")]
+    frames: Count
+    """Looked at."""
+    dropped: Count
+    """Left out because newer ones had come."""
+    stopped: bool
+    """By a signal, before the source was over."""
 
 
 @dataclass(frozen=True)
@@ -111,9 +118,11 @@ class FramesDropped(Event):
     Emitted at most once in `app.robot.runtime.REPORT_SECONDS`.
     """
 
-    seconds: Annotated[float, Field(description="Since when is counted.")]
+    seconds: float
+    """Since when is counted."""
     dropped: Count
-    frames: Annotated[Count, Field(description="Looked at in this time.")]
+    frames: Count
+    """Looked at in this time."""
 
 
 @dataclass(frozen=True)
@@ -123,9 +132,12 @@ class Heartbeat(Event):
     A supervisor that reads none for longer starts the robot again.
     """
 
-    frames: Annotated[Count, Field(description="Looked at since the beginning.")]
-    dropped: Annotated[Count, Field(description="Left out since the beginning.")]
-    lost: Annotated[bool, Field(description="Whether the source gives no frames at present.")]
+    frames: Count
+    """Looked at since the beginning."""
+    dropped: Count
+    """Left out since the beginning."""
+    lost: bool
+    """Whether the source gives no frames at present."""
 
 
 @dataclass(frozen=True)
@@ -140,8 +152,10 @@ class FrameRateChanged(Event):
     Emitted when that changes, for the rate in `app.robot.runtime.RATE_SECONDS`.
     """
 
-    frames_per_second: Annotated[float, Field(ge=0, description="Frames looked at in a second.")]
-    sufficient: Annotated[bool, Field(description="Whether gestures can be recognised.")]
+    frames_per_second: Annotated[float, Field(ge=0)]
+    """Frames looked at in a second."""
+    sufficient: bool
+    """Whether gestures can be recognised."""
 
     @property
     def words(self) -> str:
@@ -154,9 +168,8 @@ class FrameRateChanged(Event):
 class OutputFailed(Event):
     """A log cannot be written any more; everything else goes on."""
 
-    output: Annotated[
-        Literal["stdout", "stderr"], Field(description="What is not written any more.")
-    ]
+    output: Literal["stdout", "stderr"]
+    """What is not written any more."""
     reason: Reason
 
 
@@ -164,37 +177,31 @@ class OutputFailed(Event):
 class VehicleReported(Event):
     """A line about the vehicle: what was asked of it, and what it did."""
 
-    text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
+    text: str
+    """In words, for the diver and the pilot."""
 
 
 @dataclass(frozen=True)
 class AnswerGiven(Event):
     """The robot answers the diver, by the pulses that the vehicle table lets him see."""
 
-    answer: Annotated[
-        Answer,
-        Field(
-            description="listening: a gesture, or the next one of a message, is awaited. repeat: "
-            "the same again confirms. one_of_two: showing the one that was meant confirms it. "
-            "done: the vehicle has done it, or it is cancelled. refused: not understood, refused "
-            "or failed."
-        ),
-    ]
-    pulses: Annotated[int, Field(ge=1, description="Blinks of the lights, nods of the camera.")]
-    text: Annotated[str, Field(description="In words, for the diver and the pilot.")]
+    answer: Answer
+    """listening: a gesture, or the next one of a message, is awaited. repeat: the same again
+    confirms. one_of_two: showing the one that was meant confirms it. done: the vehicle has done
+    it, or it is cancelled. refused: not understood, refused or failed."""
+    pulses: Annotated[int, Field(ge=1)]
+    """Blinks of the lights, nods of the camera."""
+    text: str
+    """In words, for the diver and the pilot."""
 
 
 @dataclass(frozen=True)
 class StateChanged(Event):
     """Another state of the salutes."""
 
-    state: Annotated[
-        TakeState,
-        Field(
-            description="idle: a salute, or without salutes a gesture, is awaited; recording: a "
-            "take goes on; done: the salute that ended it is still held."
-        ),
-    ]
+    state: TakeState
+    """idle: a salute, or without salutes a gesture, is awaited; recording: a take goes on;
+    done: the salute that ended it is still held."""
 
 
 @dataclass(frozen=True)
@@ -204,13 +211,14 @@ class LanguageChanged(Event):
     name: str
     sha256: Sha256
     revision: Revision
-    gestures: Annotated[tuple[str, ...], Field(description="The labels.")]
-    profile: Annotated[str, Field(description="The voters that recognise it.")]
-    tuning: Annotated[str, Field(description='What differs from that, in words: "recognised ...".')]
-    code: Annotated[
-        str,
-        Field(description="Short code of `sha256`, which the studio shows too."),
-    ] = field(init=False, default="")
+    gestures: tuple[str, ...]
+    """The labels."""
+    profile: str
+    """The voters that recognise it."""
+    tuning: str
+    """What differs from that, in words: "recognised ..."."""
+    code: str = field(init=False, default="")
+    """Short code of `sha256`, which the studio shows too."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "code", short_code(self.sha256))
@@ -287,7 +295,8 @@ class TakeRejected(Event):
 
     start: Seconds
     end: Seconds
-    closed: Annotated[bool, Field(description="Whether a salute, or the other trigger, ended it.")]
+    closed: bool
+    """Whether a salute, or the other trigger, ended it."""
     reason: Reason
     label: None = field(init=False, default=None)
     nearest: str | None = field(init=False)
@@ -295,19 +304,19 @@ class TakeRejected(Event):
     margin: Margin = field(init=False)
     sha256: Sha256
     revision: Revision
-    pair: Annotated[
-        tuple[str, str] | None,
-        Field(
-            description="The two gestures between which the take lies, nearest first; null: it "
-            "lies between no two. The diver is asked to show it again."
-        ),
-    ] = None
+    pair: tuple[str, str] | None = None
+    """The two gestures between which the take lies, nearest first; null: it lies between no
+    two. The diver is asked to show it again."""
     recognition: Recognition | None = field(default=None, metadata={JSON_TYPE: None})
 
     def __post_init__(self) -> None:
         answer = self.recognition
         for name in ("nearest", "confidence", "margin"):
             object.__setattr__(self, name, None if answer is None else getattr(answer, name))
+
+
+TakeEvent = TakeRecognized | TakeRejected
+"""What came of a take."""
 
 
 @dataclass(frozen=True)

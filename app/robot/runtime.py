@@ -15,21 +15,8 @@ from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.salute import best_salute
+from app.robot import events
 from app.robot.active_language import ActiveLanguage
-from app.robot.events import (
-    Event,
-    FrameRateChanged,
-    FramesDropped,
-    Heartbeat,
-    LanguageChanged,
-    LanguageRefused,
-    RecognitionReady,
-    SourceEnded,
-    SourceLost,
-    SourceOpened,
-    SourceRestored,
-    SourceWarned,
-)
 from app.robot.listeners.trigger_listener import LandmarkListener
 from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
@@ -131,7 +118,7 @@ class Runtime:
         """Stop after the current frame; any thread and any signal handler may call this."""
         self._stopped = True
 
-    def __iter__(self) -> Iterator[Event]:
+    def __iter__(self) -> Iterator[events.Event]:
         """Process the frames and yield events, in order.
 
         Raises
@@ -156,20 +143,20 @@ class Runtime:
                 break
         yield from self._listener.finish()
         yield from self._rate.finish()
-        yield SourceEnded(self._time, self._drops.frames, self._drops.dropped, self._stopped)
+        yield events.SourceEnded(self._time, self._drops.frames, self._drops.dropped, self._stopped)
 
-    def _build_source_opened(self) -> SourceOpened:
+    def _build_source_opened(self) -> events.SourceOpened:
         source = self._source
-        return SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
+        return events.SourceOpened(0.0, source.name, source.live, source.frame_size, source.began)
 
-    def _process_frame(self, frame: Frame) -> Iterator[Event]:
+    def _process_frame(self, frame: Frame) -> Iterator[events.Event]:
         found = self._sight.estimate(frame.image, frame.time)
         if self._observer is not None:
             self._observer(frame, found)
         self._people.by_salute = self._listener.language.trigger.kind == "salute"
         followed = self._people.follow(frame.time, found)
         if followed.change:
-            yield SourceWarned(frame.time, followed.change)
+            yield events.SourceWarned(frame.time, followed.change)
         if followed.restarts:
             yield from self._listener.abandon(frame.time, followed.change)
         height, width = frame.image.shape[:2]
@@ -179,12 +166,12 @@ class Runtime:
             )
             yield from self._listener.feed(moment, best_salute(person.hands))
         if not self._drops.frames:
-            yield RecognitionReady(frame.time)
+            yield events.RecognitionReady(frame.time)
         yield from self._drops.count(frame)
         yield from self._rate.count(frame.time)
         yield from self._spare()
 
-    def _spare(self) -> Iterator[SourceWarned]:
+    def _spare(self) -> Iterator[events.SourceWarned]:
         """Let the estimator do less for each frame of a camera that this machine cannot follow."""
         rate = self._rate.frames_per_second
         if rate is None or not self._source.live or not isinstance(self._estimator, Sparing):
@@ -201,32 +188,32 @@ class Runtime:
         else:
             return
         self._estimator.spare(spares=self._spares)
-        yield SourceWarned(self._time, reason)
+        yield events.SourceWarned(self._time, reason)
 
-    def _handle_notice(self, notice: Notice) -> Iterator[Event]:
+    def _handle_notice(self, notice: Notice) -> Iterator[events.Event]:
         match notice:
-            case SourceLost(time, reason):
+            case events.SourceLost(time, reason):
                 self._lost = True
                 self._rate.restart()
                 yield notice
                 yield from self._listener.abandon(time, f"the source was lost: {reason}")
-            case SourceRestored():
+            case events.SourceRestored():
                 self._lost = False
                 self._sight.reset()
                 self._people.reset()
                 yield notice
-            case SourceWarned():
+            case events.SourceWarned():
                 yield notice
             case NoFrame():
                 pass
 
-    def _beat(self) -> Iterator[Heartbeat]:
+    def _beat(self) -> Iterator[events.Heartbeat]:
         """Yield a heartbeat of a live source when it is due, also while it is lost."""
         if self._source.live and self._time - self._beaten >= HEARTBEAT_SECONDS:
             self._beaten = self._time
-            yield Heartbeat(self._time, self._drops.frames, self._drops.dropped, self._lost)
+            yield events.Heartbeat(self._time, self._drops.frames, self._drops.dropped, self._lost)
 
-    def _update_language(self) -> Iterator[Event]:
+    def _update_language(self) -> Iterator[events.Event]:
         """Activate a new language, if there is one; it also recognises an open take."""
         change = self._changes()
         if isinstance(change, ActiveLanguage):
@@ -239,7 +226,7 @@ class Runtime:
                 yield build_language_changed(self._time, change)
         if isinstance(change, OsgError):
             kept = self._listener.language
-            yield LanguageRefused(self._time, str(change), kept.sha256, kept.revision)
+            yield events.LanguageRefused(self._time, str(change), kept.sha256, kept.revision)
 
     @staticmethod
     def _require(active: ActiveLanguage, estimator: PoseEstimator) -> None:
@@ -265,7 +252,7 @@ class DropCounter:
         self._since = 0.0
         self._reported = (0, 0)
 
-    def count(self, frame: Frame) -> Iterator[FramesDropped]:
+    def count(self, frame: Frame) -> Iterator[events.FramesDropped]:
         """Count a frame; yield an event when frames were dropped in the last interval."""
         self.frames += 1
         self.dropped += frame.dropped
@@ -275,7 +262,7 @@ class DropCounter:
             return
         self._since, self._reported = frame.time, (self.frames, self.dropped)
         if dropped:
-            yield FramesDropped(frame.time, seconds, dropped, frames)
+            yield events.FramesDropped(frame.time, seconds, dropped, frames)
 
 
 class RateWatch:
@@ -299,7 +286,7 @@ class RateWatch:
         self._sufficient = True
         self._judged = False
 
-    def count(self, time: float) -> Iterator[FrameRateChanged]:
+    def count(self, time: float) -> Iterator[events.FrameRateChanged]:
         """Count a frame; yield an event when the rate has become too low, or enough again."""
         if self._is_first or self._began is None:
             self._began = None if self._is_first else time
@@ -315,24 +302,24 @@ class RateWatch:
         """Measure anew, after a gap that has another cause."""
         self._began, self._frames = None, 0
 
-    def finish(self) -> Iterator[FrameRateChanged]:
+    def finish(self) -> Iterator[events.FrameRateChanged]:
         """Judge a source that was too short for a measurement, if it lasted a second."""
         if not self._judged and self._began is not None and self._last - self._began >= 1:
             yield from self._judge(self._last)
 
-    def _judge(self, time: float) -> Iterator[FrameRateChanged]:
+    def _judge(self, time: float) -> Iterator[events.FrameRateChanged]:
         assert self._began is not None
         self._judged = True
         rate = self.frames_per_second = round(self._frames / (time - self._began), 1)
         if (rate >= LEAST_RATE) != self._sufficient:
             self._sufficient = not self._sufficient
-            yield FrameRateChanged(time, rate, self._sufficient)
+            yield events.FrameRateChanged(time, rate, self._sufficient)
 
 
-def build_language_changed(time: float, language: ActiveLanguage) -> LanguageChanged:
+def build_language_changed(time: float, language: ActiveLanguage) -> events.LanguageChanged:
     """Build the event of a language that is active from now on."""
     recognizer = language.recognizer
-    return LanguageChanged(
+    return events.LanguageChanged(
         time=time,
         name=language.name,
         sha256=language.sha256,

@@ -24,7 +24,7 @@ from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.salute import best_salute
-from app.robot.events import TakeRecognized, TakeRejected
+from app.robot.events import TakeEvent
 from app.robot.listeners.trigger_listener import LandmarkListener
 from app.robot.sources.source import Frame, Source
 
@@ -52,11 +52,9 @@ class EnergyMeter(Protocol):
 
     def read_joules(self) -> float:
         """Return the energy used since the meter was created."""
-        ...
 
     def close(self) -> None:
         """Stop counting."""
-        ...
 
 
 class RaplMeter:
@@ -335,7 +333,7 @@ class StageProfiler:
         moment = build_frame_sequence(found, frame.time, (width, height))
         events = self._listener.feed(moment, score)
         recognition = self._lap()
-        self._takes = sum(isinstance(event, TakeRecognized | TakeRejected) for event in events)
+        self._takes = sum(isinstance(event, TakeEvent) for event in events)
         return {
             "pose": body,
             "hands": whole - body,

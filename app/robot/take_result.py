@@ -8,12 +8,10 @@ from typing import Any
 from app.recognition import PoseError, Recognition, Take
 from app.recognition.text.wording import ask_which, join_words
 from app.robot.active_language import ActiveLanguage
-from app.robot.events import TakeRecognized, TakeRejected
+from app.robot.events import TakeEvent, TakeRecognized, TakeRejected
 
 
-def judge_take(
-    language: ActiveLanguage, take: Take, time: float, unclosed: str
-) -> TakeRecognized | TakeRejected:
+def judge_take(language: ActiveLanguage, take: Take, time: float, unclosed: str) -> TakeEvent:
     """Recognise a take and build its event.
 
     Parameters
@@ -40,7 +38,7 @@ def judge_take(
 
 def judge_recognition(
     language: ActiveLanguage, recognition: Recognition, time: float, start: float, end: float
-) -> TakeRecognized | TakeRejected:
+) -> TakeEvent:
     """Build the event of a recognition from `start` to `end`: recognised, a pair, or rejected."""
     about: dict[str, Any] = {"time": time, "start": start, "end": end, "recognition": recognition}
     if recognition.label is None:
@@ -89,7 +87,7 @@ def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str
     )
 
 
-def list_message_fields(event: TakeRecognized | TakeRejected, language: str) -> dict[str, Any]:
+def list_message_fields(event: TakeEvent, language: str) -> dict[str, Any]:
     """Return the fields of a ``GestureRecognition`` message, in ROS 2 and over DDS.
 
     All but its header and its times, whose types differ; `language` is the language's name.

@@ -318,5 +318,20 @@ def png(image: npt.NDArray[np.uint8]) -> bytes:
     return encoded.tobytes()
 
 
+def shrink(image: npt.NDArray[np.uint8], most_width: int) -> npt.NDArray[np.uint8]:
+    """Return an image no wider than allowed."""
+    height, width = image.shape[:2]
+    if width <= most_width:
+        return image
+    size = (most_width, max(1, round(height * most_width / width)))
+    return np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def encode_jpeg(image: npt.NDArray[np.uint8], quality: int) -> bytes:
+    """Return an image ``(H, W, 3)`` RGB as JPEG."""
+    bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
+    return cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, quality])[1].tobytes()
+
+
 def _block(content: str) -> str:
     return f"<div class='osg'>{content}</div>"

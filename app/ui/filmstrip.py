@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from app.recognition.errors import VideoError
 from app.recognition.recording.video import read_frames
+from app.ui.charts import encode_jpeg, shrink
 
 Image = npt.NDArray[np.uint8]
 
@@ -113,12 +114,7 @@ class Filmstrip:
         return index >= self._first and (index - self._first) % self._stride == 0
 
     def _add(self, index: int, image: Image) -> None:
-        height, width = image.shape[:2]
-        if width > MAX_WIDTH:
-            size = (MAX_WIDTH, max(1, round(height * MAX_WIDTH / width)))
-            image = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_AREA), np.uint8)
-        bgr = cv2.cvtColor(image, cv2.COLOR_RGB2BGR)
-        encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()
+        encoded = encode_jpeg(shrink(image, MAX_WIDTH), JPEG_QUALITY)
         with self._lock:
             self._indices.append(index)
             self._encoded.append(encoded)

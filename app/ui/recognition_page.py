@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from html import escape
 from typing import Any, Final
 
-import cv2
 import numpy as np
 import numpy.typing as npt
 
@@ -148,16 +147,9 @@ def _pictures(view: WorkspaceView, kept: range) -> Iterator[tuple[str, list[int]
             if frame.index >= kept.stop:
                 return
             if frame.index in kept:
-                yield _picture(frame.image)
-
-
-def _picture(image: npt.NDArray[np.uint8]) -> tuple[str, list[int]]:
-    height, width = image.shape[:2]
-    size = [min(width, MAX_WIDTH), max(1, round(height * min(1.0, MAX_WIDTH / width)))]
-    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA)
-    bgr = cv2.cvtColor(small, cv2.COLOR_RGB2BGR)
-    encoded = cv2.imencode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()
-    return "data:image/jpeg;base64," + base64.b64encode(encoded).decode("ascii"), size
+                small = charts.shrink(frame.image, MAX_WIDTH)
+                encoded = base64.b64encode(charts.encode_jpeg(small, JPEG_QUALITY)).decode("ascii")
+                yield "data:image/jpeg;base64," + encoded, [small.shape[1], small.shape[0]]
 
 
 def _fractions(

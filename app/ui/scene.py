@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, Literal
 
 import cv2
 import numpy as np
@@ -24,6 +24,9 @@ it."""
 
 DIM = 0.5
 """Brightness of the part of a trail that is still to come."""
+
+VIDEO_QUALITY = 80
+"""JPEG quality of the clip's frames."""
 
 
 class SpaceTimeCube:
@@ -142,45 +145,26 @@ class SpaceTimeCube:
         self._server.flush()
 
     def _draw_cube(self, cube: CubeGeometry) -> None:
-        scene, theme = self._server.scene, self._theme
-        edges = scene.add_line_segments(
-            "/cube/edges", cube.edges(), theme.line, thickness=1.0, thickness_units="screen"
-        )
+        theme = self._theme
+        edges = self._add_lines("/cube/edges", cube.edges(), theme.line)
         x, y = cube.aspect / 2, 0.5
         ticks = cube.ticks()
         marks = [((-x, y, cube.depth_at(t)), (-x - 0.025, y, cube.depth_at(t))) for t in ticks]
-        lines = scene.add_line_segments(
-            "/cube/ticks",
-            np.array(marks, np.float32),
-            theme.line,
-            thickness=1.0,
-            thickness_units="screen",
-        )
+        lines = self._add_lines("/cube/ticks", np.array(marks, np.float32), theme.line)
         self._cube_only: list[viser.SceneNodeHandle] = [edges, lines]
         for second in ticks[:: max(1, len(ticks) // 4)]:
             text = text_image(f"{second:g} s", theme.ink)
             height = 0.048
             width = height * text.shape[1] / text.shape[0]
-            label = scene.add_image(
-                f"/cube/seconds/{second:g}",
-                text,
-                width,
-                height,
-                format="png",
-                position=(-x - 0.04 - width / 2, y, cube.depth_at(second)),
-                cast_shadow=False,
-                receive_shadow=False,
-            )
-            self._cube_only.append(label)
+            place = (-x - 0.04 - width / 2, y, cube.depth_at(second))
+            name = f"/cube/seconds/{second:g}"
+            self._cube_only.append(self._add_image(name, text, (width, height), place))
 
     def _draw_trails(self, cube: CubeGeometry) -> None:
         scene = self._server.scene
         quiet = cube.other_trails(self._salient)
         if len(quiet):
-            others = scene.add_line_segments(
-                "/trails/others", quiet, self._theme.quiet, thickness=1.0, thickness_units="screen"
-            )
-            self._cube_only.append(others)
+            self._cube_only.append(self._add_lines("/trails/others", quiet, self._theme.quiet))
         self._past, self._ahead = {}, {}
         for name in self._salient:
             whole = cube.trail(name)
@@ -213,60 +197,21 @@ class SpaceTimeCube:
         return np.stack([colours[:-1], colours[1:]], axis=1)
 
     def _draw_wall(self, cube: CubeGeometry, wall: Wall) -> None:
-        scene, theme = self._server.scene, self._theme
         z = cube.back + WALL_GAP
-        plane = scene.add_image(
-            "/wall/plane",
-            np.full((2, 2, 3), theme.wall, np.uint8),
-            cube.aspect,
-            1.0,
-            format="png",
-            position=(0.0, 0.0, z + 0.004),
-            cast_shadow=False,
-            receive_shadow=False,
-        )
-        ink = np.empty((*wall.image.shape, 4), np.uint8)
-        ink[..., :3] = theme.ink
-        ink[..., 3] = wall.image
-        image = scene.add_image(
-            "/wall/image",
-            ink,
-            wall.side,
-            wall.side,
-            format="png",
-            position=(*wall.centre, z),
-            cast_shadow=False,
-            receive_shadow=False,
-        )
-        self._cube_only += [plane, image]
+        paper = np.full((2, 2, 3), self._theme.wall, np.uint8)
+        plane = self._add_image("/wall/plane", paper, (cube.aspect, 1.0), (0.0, 0.0, z + 0.004))
+        ink = tint(wall.image, self._theme.ink)
+        side = (wall.side, wall.side)
+        self._cube_only += [plane, self._add_image("/wall/image", ink, side, (*wall.centre, z))]
 
     def _draw_moving_parts(self, cube: CubeGeometry) -> None:
-        scene, theme = self._server.scene, self._theme
-        self._video = scene.add_image(
-            "/video",
-            np.full((2, 2, 3), theme.wall, np.uint8),
-            cube.aspect,
-            1.0,
-            format="jpeg",
-            jpeg_quality=80,
-            cast_shadow=False,
-            receive_shadow=False,
-        )
-        self._rim = scene.add_line_segments(
-            "/rim",
-            cube.rectangle(0.0),
-            theme.rim,
-            thickness=1.6,
-            thickness_units="screen",
-        )
-        self._bones = scene.add_line_segments(
-            "/skeleton/bones",
-            cube.bones(cube.points[0]),
-            theme.bone,
-            thickness=2.4,
-            thickness_units="screen",
-        )
-        self._joints = scene.add_point_cloud(
+        theme = self._theme
+        blank = np.full((2, 2, 3), theme.wall, np.uint8)
+        self._video = self._add_image("/video", blank, (cube.aspect, 1.0), (0.0, 0.0, 0.0), "jpeg")
+        self._rim = self._add_lines("/rim", cube.rectangle(0.0), theme.rim, 1.6)
+        bones = cube.bones(cube.points[0])
+        self._bones = self._add_lines("/skeleton/bones", bones, theme.bone, 2.4)
+        self._joints = self._server.scene.add_point_cloud(
             "/skeleton/joints",
             cube.joints(cube.points[0]),
             theme.joint,
@@ -274,6 +219,32 @@ class SpaceTimeCube:
             point_shape="circle",
             point_shading="flat",
             precision="float32",
+        )
+
+    def _add_lines(
+        self, name: str, segments: Points, colour: Rgb, pixels: float = 1.0
+    ) -> viser.LineSegmentsHandle:
+        return self._server.scene.add_line_segments(
+            name, segments, colour, thickness=pixels, thickness_units="screen"
+        )
+
+    def _add_image(
+        self,
+        name: str,
+        image: npt.NDArray[np.uint8],
+        size: tuple[float, float],
+        position: tuple[float, float, float],
+        encoding: Literal["png", "jpeg"] = "png",
+    ) -> viser.ImageHandle:
+        return self._server.scene.add_image(
+            name,
+            image,
+            *size,
+            format=encoding,
+            jpeg_quality=VIDEO_QUALITY,
+            position=position,
+            cast_shadow=False,
+            receive_shadow=False,
         )
 
 
@@ -292,6 +263,11 @@ def text_image(text: str, colour: Rgb) -> npt.NDArray[np.uint8]:
     alpha = np.zeros((height + below + 2 * margin, width + 2 * margin), np.uint8)
     origin = (margin, height + margin)
     cv2.putText(alpha, text, origin, font, scale, 255, weight, cv2.LINE_AA)
+    return tint(alpha, colour)
+
+
+def tint(alpha: npt.NDArray[np.uint8], colour: Rgb) -> npt.NDArray[np.uint8]:
+    """Return an image ``(H, W, 4)`` RGBA of one colour with the opacity ``(H, W)``."""
     image = np.empty((*alpha.shape, 4), np.uint8)
     image[..., :3], image[..., 3] = colour, alpha
     return image

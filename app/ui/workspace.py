@@ -21,7 +21,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.holds import find_holds, keep_holds
 from app.recognition.preprocessing.salience import find_salient_landmarks
-from app.recognition.text.wording import humanize_all
+from app.recognition.text.wording import humanize
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.ui.back_wall import Wall
 from app.ui.camera import CUBE, FLAT, CameraPose, ease
@@ -384,7 +384,7 @@ def compared_images(
 
 
 def _take_caption(names: tuple[str, ...], sets: Collection[tuple[str, ...]]) -> str:
-    return "this take" if len(sets) == 1 else f"this take, {', '.join(humanize_all(names))}"
+    return "this take" if len(sets) == 1 else f"this take, {', '.join(map(humanize, names))}"
 
 
 def _drawn(poses: PoseSequence, names: tuple[str, ...]) -> npt.NDArray[np.uint8] | None:

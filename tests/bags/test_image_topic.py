@@ -62,7 +62,7 @@ def test_without_stamps_time_is_when_the_messages_were_received(tmp_path: Path) 
     ]
     frames, reader = frames_of(tmp_path, rows)
     assert [frame.time for frame in frames] == TIMES
-    assert "say not when they were taken" in reader.warnings[0]
+    assert "say not when the picture was taken" in reader.warnings[0]
 
 
 def test_a_clock_that_jumps_back_is_repaired_and_told(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def test_a_crash_has_a_code_of_its_own(
     def fail(*_: object, **__: object) -> None:
         raise IndexError("index -1 is out of bounds")
 
-    monkeypatch.setattr("app.cli.robots.run.create_listener", fail)
+    monkeypatch.setattr("app.cli.robots.robot_options.create_listener", fail)
     a_language().save(tmp_path / "language.json")
     ended = osg_studio("robot", "--language", tmp_path / "language.json", "--source", "none")
     assert ended.code == 3

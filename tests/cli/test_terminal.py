@@ -35,6 +35,14 @@ def test_an_explanation_is_a_sentence_and_what_would_help(
         assert found.change.words.split()[-1] in read
 
 
+def test_a_path_is_written_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    written = StringIO()
+    monkeypatch.setattr(terminal, "people", Console(file=written, width=40))
+    line = "dives/[red] team/a long name of a clip of the morning.mp4: no gesture"
+    terminal.tell(line)
+    assert written.getvalue() == f"{line}\n"
+
+
 def test_a_batch_shows_its_clips_bar_beside_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     written = StringIO()
     console = Console(file=written, force_terminal=True, width=100)

@@ -65,7 +65,7 @@ def test_without_the_library_the_extra_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "sleap_io", None)
     (tmp_path / "dive.slp").touch()
-    with pytest.raises(KeypointFileError, match=r"pip install 'osg-studio\[keypoints\]'"):
+    with pytest.raises(KeypointFileError, match=r'pip install "osg-studio\[keypoints\]"'):
         read_keypoints(tmp_path / "dive.slp", AT_30)
 
 

@@ -98,7 +98,7 @@ def view_faults(
 ) -> list[DemonstrationFaultView]:
     """Return the faults of a demonstration as the API shows them; see `faults_of_source`."""
     return [
-        DemonstrationFaultView(**fault.to_dict(), sentence=fault.describe(shown.label))
+        DemonstrationFaultView(**vars(fault), sentence=fault.describe(shown.label))
         for fault in faults_of_source(studio, source, shown, trigger)
     ]
 

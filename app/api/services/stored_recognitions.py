@@ -18,7 +18,7 @@ from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.running_studio import Studio
 from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
 from app.recognition.explanation.context import KnownTake, RecognitionContext
-from app.recognition.explanation.counterfactuals import Counterfactual
+from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
@@ -184,7 +184,8 @@ def locate_cuts(
             "clip_start": begin + values["start"],
             "clip_end": begin + values["end"],
         }
-        yield replace(found, change=replace(change, values={**values, **located}))
+        cut = Intervention(change.kind, change.size, {**values, **located})
+        yield replace(found, change=cut)
 
 
 def make_recognizer(

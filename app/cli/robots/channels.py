@@ -13,30 +13,11 @@ from typing import Final, Literal, Protocol, TextIO
 
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
-from app.robot import (
-    ActiveLanguage,
-    AnswerGiven,
-    Event,
-    Frame,
-    FrameRateChanged,
-    FramesDropped,
-    LanguageChanged,
-    LanguageRefused,
-    OutputFailed,
-    PhraseHeard,
-    RecognitionReady,
-    SourceLost,
-    SourceOpened,
-    SourceRestored,
-    SourceWarned,
-    TakeRecognized,
-    TakeRejected,
-    VehicleReported,
-)
+from app.robot import ActiveLanguage, Frame, events
 from app.robot.commands.answers import Answer
 from app.robot.event_messages import format_line
 
-Handler = Callable[[Event], None]
+Handler = Callable[[events.Event], None]
 """Called with every event."""
 
 STALL_SECONDS: Final = 1.0
@@ -95,7 +76,7 @@ class Channels:
         finally:
             self._handlers, self.vehicle = kept, None
 
-    def emit(self, event: Event) -> None:
+    def emit(self, event: events.Event) -> None:
         """Pass an event to all channels; any thread may call this.
 
         Raises
@@ -113,19 +94,19 @@ class Channels:
                 for handler in self._handlers:
                     handler(current)
             # Outside the lock: the vehicle's own thread reports through `emit`.
-            is_report = isinstance(current, VehicleReported | AnswerGiven)
+            is_report = isinstance(current, events.VehicleReported | events.AnswerGiven)
             if self.vehicle is not None and not is_report:
                 self.vehicle(current)
 
     def report_vehicle(self, text: str) -> None:
         """Pass a line about the vehicle to all channels."""
-        self.emit(VehicleReported(self._time, text))
+        self.emit(events.VehicleReported(self._time, text))
 
     def report_answer(self, answer: Answer, pulses: int, text: str) -> None:
         """Pass an answer to the diver to all channels."""
-        self.emit(AnswerGiven(self._time, answer, pulses, text))
+        self.emit(events.AnswerGiven(self._time, answer, pulses, text))
 
-    def _write(self, event: Event) -> list[OutputFailed]:
+    def _write(self, event: events.Event) -> list[events.OutputFailed]:
         """Write an event to the streams; return the failures."""
         failures = []
         for stream in list(self._streams):
@@ -142,7 +123,7 @@ class Channels:
                 self._streams.remove(stream)
                 self.failed = True
                 reason = error.strerror or str(error)
-                failures.append(OutputFailed(event.time, stream.name, reason))
+                failures.append(events.OutputFailed(event.time, stream.name, reason))
         return failures
 
 
@@ -166,7 +147,7 @@ class Stream:
         self,
         name: Literal["stdout", "stderr"],
         file: TextIO | None,
-        format_event: Callable[[Event], str],
+        format_event: Callable[[events.Event], str],
         *,
         waits: bool,
     ) -> None:
@@ -175,7 +156,7 @@ class Stream:
         self._format = format_event
         self._waits = waits or os.name != "posix"  # Windows tells of sockets alone
 
-    def write(self, event: Event) -> None:
+    def write(self, event: events.Event) -> None:
         """Write an event; raises `OSError` when that fails, or nobody reads."""
         if self._file is None or not (line := self._format(event)):
             return
@@ -207,32 +188,32 @@ class Stream:
         os.close(null)
 
 
-def describe_event(event: Event) -> str:
+def describe_event(event: events.Event) -> str:
     """Describe an event in one sentence; empty for events that need none."""
-    if isinstance(event, TakeRecognized | TakeRejected):
+    if isinstance(event, events.TakeEvent):
         return _describe_take(event)
-    if isinstance(event, PhraseHeard):
+    if isinstance(event, events.PhraseHeard):
         return event.phrase.text
-    if isinstance(event, VehicleReported):
+    if isinstance(event, events.VehicleReported):
         return f"vehicle: {event.text}"
-    if isinstance(event, OutputFailed):
+    if isinstance(event, events.OutputFailed):
         return f"{event.output} is not written any more: {event.reason}; recognition goes on"
-    if isinstance(event, LanguageChanged | LanguageRefused):
+    if isinstance(event, events.LanguageChanged | events.LanguageRefused):
         return _describe_language(event)
     return _describe_source(event)
 
 
-def _describe_take(event: TakeRecognized | TakeRejected) -> str:
+def _describe_take(event: events.TakeEvent) -> str:
     span = f"{event.start:.2f} - {event.end:.2f} s"
-    if isinstance(event, TakeRecognized):
+    if isinstance(event, events.TakeRecognized):
         return f"{span}: {event.label} ({event.confidence:.2f})"
     if event.pair is not None:
         return f"{span}: {event.reason}"
     return f"{span}: rejected, {event.reason}"
 
 
-def _describe_language(event: LanguageChanged | LanguageRefused) -> str:
-    if isinstance(event, LanguageRefused):
+def _describe_language(event: events.LanguageChanged | events.LanguageRefused) -> str:
+    if isinstance(event, events.LanguageRefused):
         return (
             f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
         )
@@ -242,21 +223,21 @@ def _describe_language(event: LanguageChanged | LanguageRefused) -> str:
     )
 
 
-def _describe_source(event: Event) -> str:
+def _describe_source(event: events.Event) -> str:
     match event:
-        case SourceOpened(source=source, frame_size=(width, height)):
+        case events.SourceOpened(source=source, frame_size=(width, height)):
             return f"watching {source}, {width} x {height} pixels"
-        case SourceWarned(reason=reason):
+        case events.SourceWarned(reason=reason):
             return reason
-        case SourceLost(reason=reason):
+        case events.SourceLost(reason=reason):
             return f"source lost: {reason}; it is opened again and again"
-        case SourceRestored(missing=missing):
+        case events.SourceRestored(missing=missing):
             return f"source restored after {missing:.1f} s"
-        case RecognitionReady(time=time):
+        case events.RecognitionReady(time=time):
             return f"ready for gestures, {time:.1f} s after the source was opened"
-        case FrameRateChanged():
+        case events.FrameRateChanged():
             return event.words
-        case FramesDropped(seconds=seconds, dropped=dropped, frames=frames):
+        case events.FramesDropped(seconds=seconds, dropped=dropped, frames=frames):
             return f"{dropped} of {dropped + frames} frames dropped in {seconds:.0f} s"
         case _:
             return ""
@@ -267,11 +248,9 @@ class Topics(Protocol):
 
     def publish_frame(self, frame: Frame, found: FrameLandmarks) -> None:
         """Publish the landmarks of a frame."""
-        ...
 
-    def publish_event(self, event: Event, language: ActiveLanguage) -> None:
+    def publish_event(self, event: events.Event, language: ActiveLanguage) -> None:
         """Publish an event of the active language."""
-        ...
 
 
 def open_ros2_topics(arguments: Sequence[str]) -> AbstractContextManager[Topics]:

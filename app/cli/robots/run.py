@@ -10,7 +10,6 @@ import signal
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Final
@@ -20,26 +19,22 @@ from rich import box
 from rich.table import Table
 
 from app.cli.robots.channels import Channels, Handler, open_ros2_topics
-from app.cli.terminal import describe_error, people
-from app.recognition.errors import EstimatorError, OsgError, VehicleError, explain_missing_package
+from app.cli.robots.robot_options import RobotOptions
+from app.cli.terminal import describe_error, people, tell
+from app.recognition.errors import OsgError, VehicleError, explain_missing_package
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.factory import NO_HANDS
-from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.video import Turn
 from app.robot import (
-    ActiveLanguage,
     Event,
     LandmarkListener,
     Runtime,
     Source,
     TakeRecognized,
-    create_listener,
     open_source,
 )
 from app.robot.commands.answers import Answer
 from app.robot.language_watcher import LanguageWatcher
-from app.robot.publishing.publisher import Network, open_publisher
+from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.live import LiveSource
 from app.robot.stage_profile import STAGES, StageProfile, StageProfiler, open_energy_meter
@@ -53,40 +48,6 @@ RETRY_SECONDS: Final = 10.0
 
 WAIT_STEP: Final = 0.1
 """Seconds after which a waiting robot looks for a signal or an upload."""
-
-
-@dataclass(frozen=True)
-class RobotOptions:
-    """Options of the command; `ros2` holds the arguments of ROS 2, None without it."""
-
-    language: Path
-    source: str
-    turn: Turn
-    profile: str | None
-    without_salutes: bool
-    water: WaterCorrection
-    estimator: str
-    hands: str
-    ros2: Sequence[str] | None
-    publish: Network | None
-    mavlink: str | None
-    vehicle: Path | None
-    upload: bool
-
-    def open_listener(self, first: ActiveLanguage) -> LandmarkListener:
-        """Create the listener for the first language."""
-        sees_hands = self.hands != NO_HANDS
-        if first.trigger.kind == "salute" and not (self.without_salutes or sees_hands):
-            raise EstimatorError(
-                f"--hands {self.hands} finds no hand and so no salute: choose other hands, give "
-                "the language another trigger, or add --without-salutes"
-            )
-        return create_listener(first, without_salutes=self.without_salutes, hands=sees_hands)
-
-    def find_vehicle_table(self) -> Path | None:
-        """Return the vehicle table; None where there is none, or none was uploaded yet."""
-        missing = self.vehicle is None or (self.upload and not self.vehicle.exists())
-        return None if missing else self.vehicle
 
 
 class Control:
@@ -153,9 +114,16 @@ class Control:
 
 
 def run_with_uploads(
-    options: RobotOptions, channels: Channels, control: Control, page: StatusPage
+    run: Callable[[Callable[[], None]], bool], control: Control, page: StatusPage
 ) -> bool:
     """Run until the source ends or a signal comes; what keeps a run from starting is tried again.
+
+    Parameters
+    ----------
+    run
+        `run_robot` of some options; its argument is to be called when all is open.
+    control, page
+        Who stops the run, and where its waiting is shown.
 
     Returns
     -------
@@ -166,12 +134,12 @@ def run_with_uploads(
     while not control.stopped:
         control.changed = False
         try:
-            recognised = run_robot(options, channels, control, lambda: page.wait_for(""))
+            recognised = run(lambda: page.wait_for(""))
         except (OsgError, OSError) as error:
             reason = describe_error(error)
             page.wait_for(reason)
             if reason != told:
-                people.print(f"waiting: {reason}", markup=False, highlight=False, soft_wrap=True)
+                tell(f"waiting: {reason}")
             told = reason
             control.wait(RETRY_SECONDS)
             continue
@@ -185,6 +153,7 @@ def run_robot(
     options: RobotOptions,
     channels: Channels,
     control: Control,
+    ros_arguments: Sequence[str],
     begin: Callable[[], None] = lambda: None,
 ) -> bool:
     """Open everything, and pass the events to the channels until the source ends.
@@ -193,6 +162,8 @@ def run_robot(
     ----------
     options, channels, control
         What to run, where to report, and who stops it.
+    ros_arguments
+        Arguments of ROS 2.
     begin
         Called when all is open.
 
@@ -209,8 +180,8 @@ def run_robot(
         opened.enter_context(closing(finder))
         handlers: list[Handler] = []
         observer: Observer | None = None
-        if options.ros2 is not None:
-            topics = opened.enter_context(open_ros2_topics(options.ros2))
+        if options.ros2:
+            topics = opened.enter_context(open_ros2_topics(ros_arguments))
             handlers.append(lambda event: topics.publish_event(event, listener.language))
             observer = topics.publish_frame
         if options.publish:
@@ -223,13 +194,7 @@ def run_robot(
             from app.cli.robots.run import open_bridge
 
             bridge = open_bridge(
-                options.mavlink,
-                table,
-                listener,
-                frames,
-                channels.report_vehicle,
-                channels.report_answer,
-                without_salutes=options.without_salutes,
+                options, table, listener, frames, channels.report_vehicle, channels.report_answer
             )
             channels.vehicle = opened.enter_context(closing(bridge)).publish
         runtime = Runtime(
@@ -268,7 +233,6 @@ def try_answers(options: RobotOptions) -> None:
         When the table has no answers, or one could not be shown.
 
     """
-    assert options.mavlink is not None
     assert options.vehicle is not None
     from app.robot.mavlink.answers import NOT_SHOWN
     from app.robot.mavlink.table import read_vehicle_table
@@ -277,9 +241,12 @@ def try_answers(options: RobotOptions) -> None:
         raise VehicleError(f"{options.vehicle} has no [answers]; see docs/robots/mavlink.md")
     missing: list[str] = []
 
-    def tell(text: str) -> None:
-        people.print(text, markup=False, highlight=False, soft_wrap=True)
+    def note(text: str) -> None:
+        tell(text)
         missing.extend([text] if text.startswith(NOT_SHOWN) else [])
+
+    def note_answer(answer: Answer, pulses: int, text: str) -> None:
+        note(f"{pulses} {text}")
 
     stops: list[bool] = []
     with ExitStack() as opened:
@@ -287,15 +254,7 @@ def try_answers(options: RobotOptions) -> None:
         opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
-        bridge = open_bridge(
-            options.mavlink,
-            options.vehicle,
-            listener,
-            None,
-            tell,
-            lambda answer, pulses, text: tell(f"{pulses} {text}"),
-            without_salutes=options.without_salutes,
-        )
+        bridge = open_bridge(options, options.vehicle, listener, None, note, note_answer)
         opened.enter_context(closing(bridge))
         for answer in Answer:
             if not stops:
@@ -308,8 +267,6 @@ def try_answers(options: RobotOptions) -> None:
 
 def profile_until_stopped(options: RobotOptions) -> None:
     """Print the costs of the stages when the source ends or a signal stops it."""
-    from app.cli.robots.run import show_stages
-
     with ExitStack() as opened:
         watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
         listener = options.open_listener(watcher.first)
@@ -319,7 +276,12 @@ def profile_until_stopped(options: RobotOptions) -> None:
         body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))
         stops: list[bool] = []
         opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
-        show_stages(source, body, whole, listener, water=options.water, is_over=lambda: bool(stops))
+        if meter := open_energy_meter():
+            opened.enter_context(closing(meter))
+        profiler = StageProfiler(body, whole, listener, water=options.water, meter=meter)
+        profile = profiler.run(source, is_over=lambda: bool(stops))
+    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
+    people.print(build_profile_table(profile))
 
 
 @contextmanager
@@ -347,26 +309,20 @@ def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iter
             signal.signal(number, handler)
 
 
-if TYPE_CHECKING:
-    from app.robot.mavlink.bridge import MavlinkBridge
-
-
 def open_bridge(
-    address: str,
+    options: RobotOptions,
     table_file: Path,
     listener: LandmarkListener,
     source: Source | None,
     tell: Callable[[str], None],
     tell_answer: Callable[[Answer, int, str], None],
-    *,
-    without_salutes: bool,
 ) -> MavlinkBridge:
     """Open the bridge to a vehicle.
 
     Parameters
     ----------
-    address
-        Address of the vehicle.
+    options
+        The vehicle's address, and whether gestures are spotted without triggers.
     table_file
         Vehicle table.
     listener, source
@@ -374,8 +330,6 @@ def open_bridge(
     tell, tell_answer
         Called with every line about the vehicle, and with every answer to the diver, its pulses and
         its words; from any thread.
-    without_salutes
-        Whether gestures are spotted without triggers, whatever the language's.
 
     Raises
     ------
@@ -398,7 +352,7 @@ def open_bridge(
             f"{table_file}: {', '.join(unknown)} is not in the language {language.name!r}, which "
             f"has {', '.join(language.labels)}; correct the table or choose its language"
         )
-    spots = without_salutes or listener.language.trigger.spots
+    spots = options.without_salutes or listener.language.trigger.spots
     if spots and (reason := table.find_unguarded(language)):
         raise VehicleError(
             f"without salutes a movement would confirm itself, and {reason}: command the vehicle "
@@ -407,7 +361,8 @@ def open_bridge(
     key = read_signing_key(table, table_file)
     named = table.vehicle.key_file
     time_file = None if named is None else table_file.parent / f"{named}.time"
-    link = open_link(address, table.vehicle.system, table.vehicle.component, key, time_file)
+    vehicle, address = table.vehicle, options.mavlink or ""
+    link = open_link(address, vehicle.system, vehicle.component, key, time_file)
     now = source.now if isinstance(source, LiveSource) else None
     return MavlinkBridge(
         table,
@@ -416,28 +371,9 @@ def open_bridge(
         tell,
         now,
         tell_answer,
-        without_salutes=without_salutes,
+        without_salutes=options.without_salutes,
         memory=table_file.with_name(f"{table_file.name}.before"),
     )
-
-
-def show_stages(
-    source: Source,
-    body: PoseEstimator,
-    whole: PoseEstimator,
-    listener: LandmarkListener,
-    *,
-    water: WaterCorrection,
-    is_over: Callable[[], bool],
-) -> None:
-    """Profile a source and print the result; see `StageProfiler.run`."""
-    with ExitStack() as opened:
-        if meter := open_energy_meter():
-            opened.enter_context(closing(meter))
-        profiler = StageProfiler(body, whole, listener, water=water, meter=meter)
-        profile = profiler.run(source, is_over)
-    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
-    people.print(build_profile_table(profile))
 
 
 def build_profile_table(profile: StageProfile) -> Table:

@@ -20,7 +20,7 @@ from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import WRITTEN
 from app.recognition.errors import OsgError
 from app.recognition.explanation.context import KnownTake, KnownTakes
-from app.recognition.explanation.demonstration_faults import SENTENCES, FaultKind
+from app.recognition.explanation.demonstration_faults import FaultKind
 from app.recognition.explanation.undoing import (
     Comparison,
     compare_with,
@@ -128,7 +128,7 @@ class Blame:
         of = f"The demonstration of {self.label!r}"
         match self.change:
             case "cut":
-                return f"{of} {SENTENCES[FaultKind.reaches_salute]}. Set its range."
+                return f"{of} {FaultKind.reaches_salute.told}. Set its range."
             case "leave_out":
                 return f"{of} is unlike its other ones. Leave it out."
             case _:
@@ -189,31 +189,37 @@ def _judge_demonstration(
     evidence = Evidence(unlike=apart / max(among, 1e-9), failing=failing / len(own), gain=MOST_GAIN)
     if evidence.weigh() < least:
         return
-    tried: list[Blame] = []
-    gains: list[float] = []
-    for change, changed, span in _list_changes(known.recognizer, gesture, number, takes, medoid):
+    tried = []
+    for change, changed, (start, end) in _list_changes(
+        known.recognizer, gesture, number, takes, medoid
+    ):
         left_out = own[medoid] if change == "show_again" else None
-        repaired, broken = _count_effect(known, changed, left_out)
-        gains.append((repaired - broken) / (len(own) - (left_out is not None)))
+        language = known.recognizer.language.with_changed(changed)
+        after = Recognizer(language, "full", tuning=known.recognizer.tuning)
+        repaired, broken = (
+            sum(index != left_out for index in rows) for rows in known.try_change(after)
+        )
+        gain = (repaired - broken) / (len(own) - (left_out is not None))
         tried.append(
             Blame(
                 label=gesture.label,
                 demonstration=number,
                 change=change,
-                start=None if span is None else span[0],
-                end=None if span is None else span[1],
+                start=start,
+                end=end,
                 takes=len(known.takes),
                 failing=failing,
                 repaired=repaired,
                 broken=broken,
-                evidence=evidence,
+                evidence=replace(evidence, gain=gain),
             )
         )
     if tried:
         first = tried[0]
         half = max(FEWEST_FAILING, failing / 2)
         chosen = first if not first.broken and first.repaired >= half else tried[-1]
-        yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
+        gain = max(each.evidence.gain for each in tried)
+        yield replace(chosen, evidence=replace(evidence, gain=gain))
 
 
 def _list_changes(
@@ -222,7 +228,7 @@ def _list_changes(
     number: int,
     takes: Sequence[KnownTake],
     medoid: int,
-) -> Iterator[tuple[BlamedChange, Gesture, tuple[float, float] | None]]:
+) -> Iterator[tuple[BlamedChange, Gesture, tuple[float | None, float | None]]]:
     """Yield the changes of one demonstration, the gesture after each, and the seconds it keeps.
 
     A cut comes first, if any helps.
@@ -234,13 +240,13 @@ def _list_changes(
         for take in takes
         if (each := compare_with(recognizer, take.query, recognizer.compare(take.query), at))
     ]
-    if comparisons and (span := find_better_range(comparisons)) is not None:
+    if comparisons and (span := find_better_range(comparisons)):
         with suppress(OsgError):
             yield "cut", gesture.with_cut(number, *span), span
     if gesture.further:
-        yield "leave_out", gesture.without_demonstration(number), None
+        yield "leave_out", gesture.without_demonstration(number), (None, None)
     elif (made := _show_again(shown, takes[medoid].query)) is not None:
-        yield "show_again", made, None
+        yield "show_again", made, (None, None)
 
 
 def _compare_takes(
@@ -278,15 +284,3 @@ def _show_again(shown: Gesture, take: Trajectory) -> Gesture | None:
     hands = shown.trajectory.moving_hands
     trajectory = replace(take.select(names), hands=(), then_hands=(), moving_hands=hands)
     return replace(shown, trajectory=trajectory).redraw()
-
-
-def _count_effect(known: KnownTakes, changed: Gesture, left_out: int | None) -> tuple[int, int]:
-    """Return how many known takes a changed gesture repairs and breaks."""
-    recognizer = known.recognizer
-    try:
-        language = recognizer.language.with_changed(changed)
-        effect = known.try_change(Recognizer(language, "full", tuning=recognizer.tuning))
-    except OsgError:
-        return 0, len(known.takes)
-    repaired, broken = (sum(index != left_out for index in rows) for rows in effect)
-    return repaired, broken

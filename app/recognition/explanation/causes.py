@@ -8,8 +8,8 @@ drawings show it. Without such evidence no cause is named, and the transcript te
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
 from typing import Final
@@ -24,14 +24,10 @@ from app.recognition.errors import PoseError
 from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.hand_differences import (
-    find_held_differences,
-    find_moving_hand_differences,
+    find_held_difference,
+    find_moving_hand_difference,
 )
-from app.recognition.explanation.undoing import (
-    Comparison,
-    Undone,
-    compare_with,
-)
+from app.recognition.explanation.undoing import Comparison, Undone, Where, compare_with
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import TURNED_AWAY, Trajectory
 from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
@@ -54,9 +50,6 @@ bring it as near, within `SAME`, the first one is named."""
 
 SAME: Final = 0.25
 """Step of novelty within which two changes are as good."""
-
-USUAL: Final = 0.45
-"""Novelty of a right take by another person: what no change is expected to remove."""
 
 LEAST_JUMPED: Final = 0.06
 """Least share of a take's frames in which keypoints leap away, or another body is read."""
@@ -99,6 +92,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "reversed": "The take goes through {label} backwards{also}. Begin at its other end.",
     "begun_late": "The beginning of {label} is missing. Start earlier, or set the range.",
     "ended_early": "The end of {label} is missing. Finish it, or set the range.",
+    "part_added": "A movement {where} {label} was added. Leave it out.",
     "part_missing": "A part of {label} is missing in the middle. Show all of it.",
     "upside_down": "The take shows {label} upside down{also}. Show all of it upright.",
     "other_arm": "The take shows {label} with the other arm{also}. Use the demonstrated one.",
@@ -111,12 +105,15 @@ SENTENCES: Final[Mapping[str, str]] = {
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",
     "not_seen": "The arm is not seen in {frames}. Film all of it.",
     "not_comparable": "A keypoint that {label} needs is not seen moving. Film the whole arm.",
-    "start": "A movement before {label} was added. Begin later, or set the range.",
-    "middle": "A movement in the middle of {label} was added. Leave it out.",
-    "end": "A movement after {label} was added. Stop earlier, or set the range.",
 }
-"""The cause and what the diver can do, at most fifteen words with labels of one word; of added
-parts by their place."""
+"""The cause and what the diver can do, at most fifteen words with labels of one word."""
+
+WHERE: Final[Mapping[Where, str]] = {
+    "start": "before",
+    "middle": "in the middle of",
+    "end": "after",
+}
+"""Where a part was added."""
 
 ALSO: Final[Mapping[str, str]] = {
     "": "",
@@ -153,7 +150,7 @@ class Cause:
     __pydantic_config__ = WRITTEN
 
     kind: CauseKind
-    share: float
+    share: float = 1.0
     sentence: str
     also: CauseKind | None = None
     start: float | None = None
@@ -196,7 +193,7 @@ def find_causes(
     at = recognizer.language.labels.index(expected)
     table = recognizer.compare(context.trace.query)
     gesture = table.find_nearest_demonstration(recognizer.language.gestures, at)
-    found = list(_list_seen(context, recognizer, table, gesture))
+    found = list(_list_seen(context, table, gesture))
     if near := _find_near_gesture(context, table, at, with_known=blame is not None):
         found.append(near)
     if bad := _find_bad_demonstration(context, table, at, blame or ()):
@@ -204,11 +201,11 @@ def find_causes(
     comparison = compare_with(recognizer, context.trace.query, table, at)
     if comparison is not None and (proven := prove_change(comparison, explained, following)):
         rival = float(np.fmin.reduce(np.delete(table.novelty, at), initial=np.inf))
-        if proven[1].novelty <= rival:
-            found.append(_name_change(comparison, *proven, expected, float(context.poses.time[0])))
+        if proven.novelty <= rival:
+            found.append(_name_change(comparison, proven, expected, float(context.poses.time[0])))
     if not found and not np.isfinite(table.scores[at]):
         sentence = SENTENCES["not_comparable"].format(label=repr(expected))
-        found.append(Cause(kind=CauseKind.not_seen, share=1.0, sentence=sentence))
+        found.append(Cause(kind=CauseKind.not_seen, sentence=sentence))
     return tuple(found)
 
 
@@ -225,13 +222,13 @@ def _find_bad_demonstration(
     else:
         return None
     kind = CauseKind.demonstration
-    return Cause(kind=kind, share=1.0, sentence=sentence, label=label, demonstration=number)
+    return Cause(kind=kind, sentence=sentence, label=label, demonstration=number)
 
 
 def prove_change(
     comparison: Comparison, explained: float = EXPLAINED, following: float = NEXT
-) -> tuple[float, Undone] | None:
-    """Return the one change that explains a take's distance, and the share of it that it removes.
+) -> Undone | None:
+    """Return the one change that explains a take's distance.
 
     None where none removes `explained` of it, where another kind removes more than `following` of
     that share, or where the drawings do not show it.
@@ -239,57 +236,45 @@ def prove_change(
     best: dict[tuple[str, str], Undone] = {}
     for undone in comparison.undo_all():
         key = undone.kind, undone.also
-        if key not in best or undone.novelty < best[key].novelty:
-            best[key] = undone
-    shares = {key: measure_share(comparison.base, each.novelty) for key, each in best.items()}
+        best[key] = min(best.get(key, undone), undone, key=lambda each: each.novelty)
 
-    def rank(key: tuple[str, str]) -> tuple[float, int, int]:
-        order = TURNS.index(key[0]) if key[0] in TURNS else len(TURNS)
-        return PAIR * bool(key[1]) - shares[key], int(best[key].novelty / SAME), order
+    def rank(each: Undone) -> tuple[float, int, int]:
+        order = TURNS.index(each.kind) if each.kind in TURNS else len(TURNS)
+        return PAIR * bool(each.also) - each.share, int(each.novelty / SAME), order
 
-    first = min(best, key=rank)
-    others = [
-        share
-        for (kind, also), share in shares.items()
-        # A circle that is drawn backwards is its mirror image too: of turns the nearest one counts.
-        if not also and kind not in first and not {kind, first[0]} <= {*TURNS}
-    ]
-    enough = shares[first] >= max(explained, max(others, default=0.0) / following)
-    return (shares[first], best[first]) if enough and comparison.is_drawn(best[first]) else None
+    first = min(best.values(), key=rank)
+    # A circle that is drawn backwards is its mirror image too: of turns the nearest one counts.
+    same = {first.kind, first.also, *(TURNS if first.kind in TURNS else ())}
+    others = [each.share for each in best.values() if not each.also and each.kind not in same]
+    enough = first.share >= max(explained, max(others, default=0.0) / following)
+    return first if enough and comparison.is_drawn(first) else None
 
 
-def measure_share(before: float, after: float) -> float:
-    """Return the share of a distance beyond `USUAL` that a change removes, in [0, 1]."""
-    if not math.isfinite(before):
-        return 1.0 if math.isfinite(after) else 0.0
-    beyond = before - USUAL
-    return min(1.0, max(0.0, 1.0 - max(0.0, after - USUAL) / beyond)) if beyond > 0 else 0.0
+def tell_change(undone: Undone, label: str) -> str:
+    """Return a proven change of a take, and what the diver can do, as a sentence each."""
+    where = WHERE[undone.part.where] if undone.part else ""
+    words = {"label": repr(label), "also": ALSO[undone.also], "where": where}
+    return SENTENCES[undone.kind].format(**words)
 
 
-def _name_change(
-    comparison: Comparison, share: float, undone: Undone, label: str, begins: float
-) -> Cause:
+def _name_change(comparison: Comparison, undone: Undone, label: str, begins: float) -> Cause:
     """Return a proven change as a cause."""
-    assert undone.part is not None or undone.kind != "part_added"
-    key = undone.part.where if undone.part and undone.kind == "part_added" else undone.kind
     start, end = comparison.locate(undone)
     return Cause(
         kind=CauseKind(undone.kind),
-        share=share,
-        sentence=SENTENCES[key].format(label=repr(label), also=ALSO[undone.also]),
+        share=undone.share,
+        sentence=tell_change(undone, label),
         also=CauseKind(undone.also) if undone.also else None,
         start=None if start is None else begins + start,
         end=None if end is None else begins + end,
     )
 
 
-def _list_seen(
-    context: RecognitionContext, recognizer: Recognizer, table: ScoreTable, gesture: Gesture
-) -> Iterator[Cause]:
+def _list_seen(context: RecognitionContext, table: ScoreTable, gesture: Gesture) -> Iterator[Cause]:
     """Yield what the keypoints and the hand themselves show, what most frames show first."""
     fault = context.result.fault_kind
     if fault == "unseen_hand":
-        yield Cause(kind=CauseKind.no_hand, share=1.0, sentence=SENTENCES["no_hand"])
+        yield Cause(kind=CauseKind.no_hand, sentence=SENTENCES["no_hand"])
         return
     found = sorted(_list_bad_frames(context, gesture), key=lambda each: -each[1].mean())
     for key, bad in found:
@@ -297,7 +282,6 @@ def _list_seen(
         frames = f"{np.count_nonzero(bad)} of {len(bad)} frames"
         yield Cause(
             kind=CauseKind.keypoints_jumped if key == "mixed" else CauseKind(key),
-            share=1.0,
             sentence=SENTENCES[key].format(frames=frames),
             start=float(times[0]),
             end=float(times[-1]),
@@ -306,15 +290,15 @@ def _list_seen(
         words = context.result.fault
         kind = CauseKind.keypoints_jumped if fault == "leaps" else CauseKind.not_seen
         sentence = f"{words[0].upper()}{words[1:]}. Film nearer, or in better light."
-        yield Cause(kind=kind, share=1.0, sentence=sentence)
+        yield Cause(kind=kind, sentence=sentence)
     here = context.trace.query.facing
     there = None if gesture.trajectory is None else gesture.trajectory.facing
     # Where left and right are mixed, nobody knows which way the diver faces.
     known = "mixed" not in dict(found)
     if known and here is not None and there is not None and abs(here - there) >= TURNED_AWAY:
         sentence = SENTENCES["turned_away"].format(degrees=abs(here - there))
-        yield Cause(kind=CauseKind.turned_away, share=1.0, sentence=sentence)
-    if shaped := _compare_hands(context, recognizer, table, gesture):
+        yield Cause(kind=CauseKind.turned_away, sentence=sentence)
+    if shaped := _compare_hands(context, table, gesture):
         yield shaped
 
 
@@ -339,33 +323,25 @@ def _list_bad_frames(
 
 
 def _compare_hands(
-    context: RecognitionContext, recognizer: Recognizer, table: ScoreTable, gesture: Gesture
+    context: RecognitionContext, table: ScoreTable, gesture: Gesture
 ) -> Cause | None:
     """Return how the hand differs, where it is the hand that is too far from the gesture's."""
-    query = context.trace.query
-    at = recognizer.language.labels.index(gesture.label)
-    if gesture.is_held:
-        found = find_held_differences(gesture.label, query.held_shapes, gesture.held_shapes)
-    elif gesture.trajectory is not None and _is_by_hand(table, at):
-        mirrored = bool(table.mirrored[at])
-        shown = gesture.trajectory.mirror() if mirrored else gesture.trajectory
-        found = find_moving_hand_differences(gesture.label, query.moving_hands, shown.moving_hands)
-    else:
-        return None
-    if not found:
-        return None
-    words = found[0].words
-    return Cause(
-        kind=CauseKind.no_hand if not found[0].share else CauseKind.other_hand_shape,
-        share=found[0].share or 1.0,
-        sentence=f"{words[0].upper()}{words[1:]}. Show the hand again.",
-    )
-
-
-def _is_by_hand(table: ScoreTable, at: int) -> bool:
-    """Return whether the hand alone is too far from a gesture's, and the movement is not."""
+    query, at = context.trace.query, context.language.labels.index(gesture.label)
     movement, hand = (float(row[at]) for row in table.novelty_by_view)
-    return is_rejected(hand) and not is_rejected(movement)
+    found = None
+    if gesture.is_held:
+        found = find_held_difference(gesture.label, query.held_shapes, gesture.held_shapes)
+    elif gesture.trajectory is not None and is_rejected(hand) and not is_rejected(movement):
+        shown = gesture.mirror().trajectory if table.mirrored[at] else gesture.trajectory
+        assert shown is not None
+        found = find_moving_hand_difference(gesture.label, query.moving_hands, shown.moving_hands)
+    if found is None:
+        return None
+    return Cause(
+        kind=CauseKind.other_hand_shape if found.share else CauseKind.no_hand,
+        share=found.share or 1.0,
+        sentence=f"{found.words[0].upper()}{found.words[1:]}. Show the hand again.",
+    )
 
 
 def _find_near_gesture(
@@ -383,23 +359,18 @@ def _find_near_gesture(
     pair = {labels[at], others[0]}
     known = zip(context.known, context.known_takes.readings, strict=True) if with_known else ()
     confused = sum(take.label != read and {take.label, read} == pair for take, read in known)
-    one, other = at, labels.index(others[0])
-    if confused < CONFUSED and not _are_alike(context.full_recognizer, one, other):
+    other = labels.index(others[0])
+    if confused < CONFUSED and not _are_alike(context.full_recognizer, at, other):
         return None
-    names = {"label": repr(labels[at]), "other": repr(others[0])}
-    sentence = SENTENCES["near_gesture"].format(**names)
-    return Cause(kind=CauseKind.near_gesture, share=1.0, sentence=sentence, label=others[0])
+    sentence = SENTENCES["near_gesture"].format(label=repr(labels[at]), other=repr(others[0]))
+    return Cause(kind=CauseKind.near_gesture, sentence=sentence, label=others[0])
 
 
 def _are_alike(recognizer: Recognizer, one: int, other: int) -> bool:
     """Return whether the demonstration of one of two gestures is nearly one of the other."""
-    for shown, compared in ((one, other), (other, one)):
-        trajectory = recognizer.language.gestures[shown].trajectory
-        if trajectory is None or recognizer.language.gestures[compared].trajectory is None:
-            return False
-        try:
-            if recognizer.compare(trajectory).novelty[compared] < ALIKE:
+    shown = [recognizer.language.gestures[each].trajectory for each in (one, other)]
+    for trajectory, compared in zip(shown, (other, one), strict=True):
+        with suppress(PoseError):
+            if trajectory is not None and recognizer.compare(trajectory).novelty[compared] < ALIKE:
                 return True
-        except PoseError:
-            return False
     return False

@@ -70,12 +70,10 @@ class KnownTakes:
         Repaired takes are read right by the changed recogniser only, broken ones by this one only.
         """
         after = KnownTakes(changed, self.takes).readings
-        rows = [
-            (was == take.label, now == take.label)
-            for take, was, now in zip(self.takes, self.readings, after, strict=True)
-        ]
-        repaired = [index for index, (was, now) in enumerate(rows) if now and not was]
-        return repaired, [index for index, (was, now) in enumerate(rows) if was and not now]
+        rows = list(zip(self.takes, self.readings, after, strict=True))
+        repaired = [at for at, (take, was, now) in enumerate(rows) if was != take.label == now]
+        broken = [at for at, (take, was, now) in enumerate(rows) if was == take.label != now]
+        return repaired, broken
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -115,16 +113,6 @@ class RecognitionContext:
     def language(self) -> Language:
         """The recogniser's language."""
         return self.recognizer.language
-
-    @property
-    def profile(self) -> str:
-        """The recogniser's profile."""
-        return self.recognizer.profile
-
-    @property
-    def tuning(self) -> Tuning:
-        """The recogniser's tuning."""
-        return self.recognizer.tuning
 
     @cached_property
     def trace(self) -> Trace:
@@ -169,18 +157,14 @@ class RecognitionContext:
         """Return the context with another stroke."""
         return replace(self, poses=poses, recorded=None)
 
-    def _with_recognizer(self, recognizer: Recognizer) -> RecognitionContext:
-        return replace(self, recognizer=recognizer, recorded=None)
-
     def with_tuning(self, tuning: Tuning) -> RecognitionContext:
         """Return the context with another tuning."""
-        return self._with_recognizer(Recognizer(self.language, self.profile, tuning=tuning))
+        return self._with_language(self.language, tuning)
 
     def with_gesture(self, changed: Gesture) -> RecognitionContext:
         """Return the context with another gesture for the one of the same label."""
-        gestures = [
-            changed if gesture.label == changed.label else gesture
-            for gesture in self.language.gestures
-        ]
-        language = replace(self.language, gestures=gestures)
-        return self._with_recognizer(Recognizer(language, self.profile, tuning=self.tuning))
+        return self._with_language(self.language.with_changed(changed), self.recognizer.tuning)
+
+    def _with_language(self, language: Language, tuning: Tuning) -> RecognitionContext:
+        recognizer = Recognizer(language, self.recognizer.profile, tuning=tuning)
+        return replace(self, recognizer=recognizer, recorded=None)

@@ -8,36 +8,25 @@ known takes at hand.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, Final, Literal
+from typing import Annotated, Any, Final, Literal, get_args
 
 import numpy as np
 from pydantic import InstanceOf, PlainSerializer
 
 from app.recognition.decision.distinctions import CLEARLY_SLOWER
+from app.recognition.decision.fused_vote import FusedVote
 from app.recognition.decision.result import Distance
 from app.recognition.errors import OsgError
+from app.recognition.explanation.blame import Blame
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
+from app.recognition.explanation.undoing import compare_with, find_better_range
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.recognition.gestures.profile import PROFILES
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import describe_repair
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.text.wording import humanize
-
-MOST = 6
-"""Most counterfactuals returned, few enough to read."""
-
-ORDER: Final = (
-    "demonstration_cut",
-    "keypoint_repair",
-    "trim",
-    "switch",
-    "further_demonstration",
-)
-"""Kinds of interventions, from those that undo a fault to that by which this take is right whatever
-it shows; each kind has its most useful one."""
 
 TRIM_STEP = 0.1
 """Step of trimming, as a share of the stroke."""
@@ -48,11 +37,6 @@ TRIM_STEPS = 4
 LEAST_KEPT = 0.8
 """Share of the stroke that a trim keeps; a shorter part of it is another gesture."""
 
-KeptRange = tuple[int, float, float]
-"""A demonstration, counted from 0, and the seconds of its own clock between which it is kept."""
-
-SwitchName = Literal["direction", "tempo", "mirror", "hand_shape"]
-
 Reach = Literal["take", "gesture", "language"]
 """Scope of an intervention: this take alone, one gesture, or recognition of the whole language."""
 
@@ -60,115 +44,79 @@ Reach = Literal["take", "gesture", "language"]
 InterventionKind = Literal[
     "demonstration_cut", "keypoint_repair", "trim", "switch", "further_demonstration"
 ]
+"""What is changed, from what undoes a fault to that by which this take is right whatever it shows;
+each kind has its most useful one."""
+
+ORDER: Final = get_args(InterventionKind)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
 class Intervention:
     """A change of the take, of a gesture or of the language that is tried.
 
-    Attributes
+    Parameters
     ----------
-    kind, reach
-        What is changed, and its scope.
+    kind
+        What is changed.
     size
-        In [0, 1]: share of its object that it changes; see the function that makes it.
-    words
-        The intervention as a clause after "it would have been recognised".
+        In [0, 1]: share of its object that it changes: of the stroke's, the demonstration's or the
+        repaired moments, of a switch's positions, of a gesture's demonstrations.
     values
-        What the kind needs to be applied elsewhere, in plain JSON types.
-    apply
-        Returns a context with this intervention; raises `OsgError` where it cannot be applied.
+        What the kind needs to be applied, in plain JSON types.
 
     """
 
-    kind: InterventionKind
-    reach: Reach
-    size: float
-    words: str
-    values: Mapping[str, Any]
-    apply: Callable[[RecognitionContext], RecognitionContext]
+    def __init__(self, kind: InterventionKind, size: float, values: Mapping[str, Any]) -> None:
+        self.kind, self.size, self.values = kind, size, values
+
+    @property
+    def reach(self) -> Reach:
+        """The scope of the change."""
+        if self.kind == "trim":
+            return "take"
+        return "language" if self.kind == "keypoint_repair" else "gesture"
+
+    @property
+    def words(self) -> str:
+        """The intervention as a clause after "it would have been recognised"."""
+        values = self.values
+        match self.kind:
+            case "trim":
+                how = "more of the clip," if values["longer"] else "the take trimmed to"
+                return "with {how} {start:.2f}-{end:.2f} s".format(**values, how=how)
+            case "demonstration_cut":
+                cut = "with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s"
+                return cut.format(**values)
+            case "switch":
+                switch = humanize(values["switch"])
+                return "with the switch {0} of {label!r} {position}".format(switch, **values)
+            case "keypoint_repair":
+                return describe_repair(values["on"])
+            case _:
+                return f"with this take as another demonstration of {values['label']!r}"
+
+    def apply(self, context: RecognitionContext) -> RecognitionContext:
+        """Return a context with this intervention; raises `OsgError` where it cannot be applied."""
+        values = self.values
+        if self.kind == "trim":
+            # The ends are times of frames; a rounding error must not drop these.
+            stroke = context.whole.between(values["start"] - 1e-6, values["end"] + 1e-6)
+            return context.with_poses(stroke)
+        if self.kind == "keypoint_repair":
+            tuning = replace(context.recognizer.tuning, keypoints_repaired=values["on"])
+            return context.with_tuning(tuning)
+        gesture = context.language.gesture(values["label"])
+        if self.kind == "demonstration_cut":
+            cut = values["demonstration"], values["start"], values["end"]
+            return context.with_gesture(gesture.with_cut(*cut))
+        if self.kind == "switch":
+            switches = replace(gesture.switches, **{values["switch"]: values["position"]})
+            return context.with_gesture(replace(gesture, switches=switches))
+        return context.with_gesture(gesture.with_demonstration(context.poses))
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types: the kind, the scope, and the values to apply."""
         told = {"kind": self.kind, "reach": self.reach, "size": self.size, **self.values}
         return {**told, "words": self.words}
-
-
-def cut_demonstration(
-    label: str, demonstration: int, start: float, end: float, *, size: float
-) -> Intervention:
-    """Keep another range of a demonstration; `size` is the share of its time that is cut off."""
-    return Intervention(
-        kind="demonstration_cut",
-        reach="gesture",
-        size=size,
-        words=f"with the demonstration of {label!r} cut to {start:.2f}-{end:.2f} s",
-        values={"label": label, "demonstration": demonstration, "start": start, "end": end},
-        apply=lambda context: context.with_gesture(
-            context.language.gesture(label).with_cut(demonstration, start, end)
-        ),
-    )
-
-
-def trim_take(start: float, end: float, *, size: float, longer: bool = False) -> Intervention:
-    """Keep another stretch of the clip; `size` is the share of the stroke added or removed.
-
-    `longer` is whether it holds more than the stroke.
-    """
-    span = f"{start:.2f}-{end:.2f} s"
-    return Intervention(
-        kind="trim",
-        reach="take",
-        size=size,
-        words=f"with more of the clip, {span}" if longer else f"with the take trimmed to {span}",
-        values={"start": start, "end": end, "longer": longer},
-        # The ends are times of frames; a rounding error must not drop these.
-        apply=lambda context: context.with_poses(context.whole.between(start - 1e-6, end + 1e-6)),
-    )
-
-
-def repair_keypoints(*, on: bool, size: float) -> Intervention:
-    """Repair keypoints or not; `size` is the share of moments that a repair changes."""
-    return Intervention(
-        kind="keypoint_repair",
-        reach="language",
-        size=size,
-        words=describe_repair(on),
-        values={"on": on},
-        apply=lambda context: context.with_tuning(replace(context.tuning, keypoints_repaired=on)),
-    )
-
-
-def set_switch(label: str, switch: SwitchName, position: Switch) -> Intervention:
-    """Set one of a gesture's switches to another position, a third of all that it can be."""
-
-    def apply(context: RecognitionContext) -> RecognitionContext:
-        gesture = context.language.gesture(label)
-        switches = replace(gesture.switches, **{switch: position})
-        return context.with_gesture(replace(gesture, switches=switches))
-
-    return Intervention(
-        kind="switch",
-        reach="gesture",
-        size=1 / 3,
-        words=f"with the switch {humanize(switch)} of {label!r} {position}",
-        values={"label": label, "switch": switch, "position": position},
-        apply=apply,
-    )
-
-
-def demonstrate_take(label: str, *, size: float) -> Intervention:
-    """Make the take one more demonstration of a gesture; `size` is its share of them."""
-    return Intervention(
-        kind="further_demonstration",
-        reach="gesture",
-        size=size,
-        words=f"with this take as another demonstration of {label!r}",
-        values={"label": label},
-        apply=lambda context: context.with_gesture(
-            context.language.gesture(label).with_demonstration(context.poses)
-        ),
-    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,26 +178,6 @@ class Counterfactual:
         return last, -gained, ORDER.index(kind), self.change.size, -self.margin
 
 
-@dataclass(frozen=True, kw_only=True)
-class Counterfactuals:
-    """The interventions that correct a recognition, in the order in which to try them.
-
-    Attributes
-    ----------
-    found
-        At most `MOST`, the best of each kind; by none does a gesture lose a demonstration.
-    tried
-        Number of interventions that were tried.
-
-    """
-
-    found: tuple[Counterfactual, ...]
-    tried: int
-
-
-NONE_NEEDED = Counterfactuals(found=(), tried=0)
-
-
 def measure_margin(scores: Sequence[float], expected: int) -> float:
     """Return the least other score minus the expected gesture's: positive when it is nearest.
 
@@ -261,8 +189,8 @@ def measure_margin(scores: Sequence[float], expected: int) -> float:
 
 
 def find_counterfactuals(
-    context: RecognitionContext, expected: str, cuts: Sequence[KeptRange] = ()
-) -> Counterfactuals:
+    context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
+) -> tuple[tuple[Counterfactual, ...], int]:
     """Find the interventions with which `expected` is recognised and no gesture is lost.
 
     Of each series of increasing interventions the first that succeeds is kept.
@@ -273,31 +201,33 @@ def find_counterfactuals(
         The context, in which another label was recognised, or none.
     expected
         A label of the language.
-    cuts
-        Better ranges of demonstrations at fault.
+    blame
+        Demonstrations of the gesture that are at fault for the known takes.
+    faulty
+        Whether the nearest demonstration is at fault for this take.
+
+    Returns
+    -------
+    The best of each kind, in the order in which to try them, and how many were tried.
 
     """
     shown = [
-        KnownTake(gesture.label, each.trajectory)
+        KnownTake(gesture.label, each)
         for gesture in context.language.gestures
-        for each in gesture.single_demonstrations()
-        if each.trajectory is not None
+        for each in gesture.trajectories
     ]
     demonstrations = KnownTakes(context.recognizer, shown)
     best: dict[str, Counterfactual] = {}
     tried = 0
-    for series in list_interventions(context, expected, cuts):
+    for series in list_interventions(context, expected, blame, faulty=faulty):
         for change in sorted(series, key=lambda each: each.size):
             tried += 1
-            found = _verify(context, change, expected, demonstrations)
-            if found is None:
-                continue
-            if change.kind not in best or found.rank < best[change.kind].rank:
-                best[change.kind] = found
-            break
+            if found := _verify(context, change, expected, demonstrations):
+                first = best.get(change.kind, found)
+                best[change.kind] = min(first, found, key=lambda each: each.rank)
+                break
     kept = [each for each in best.values() if each.effect is None or not each.effect.lost]
-    ordered = sorted(kept, key=lambda each: each.rank)
-    return Counterfactuals(found=tuple(ordered[:MOST]), tried=tried)
+    return tuple(sorted(kept, key=lambda each: each.rank)), tried
 
 
 def _verify(
@@ -332,12 +262,9 @@ def _verify(
     )
 
 
-Series = list[Intervention]
-
-
 def list_interventions(
-    context: RecognitionContext, expected: str, cuts: Sequence[KeptRange] = ()
-) -> Iterator[Series]:
+    context: RecognitionContext, expected: str, blame: Sequence[Blame] = (), *, faulty: bool = False
+) -> Iterator[list[Intervention]]:
     """Yield all interventions to try, in series of one kind and increasing size.
 
     Parameters
@@ -346,79 +273,80 @@ def list_interventions(
         A context in which `expected` was not recognised.
     expected
         A label of its language.
-    cuts
+    blame, faulty
         See `find_counterfactuals`.
 
     """
-    yield _cuts(context, expected, cuts)
+    yield list(_cuts(context, expected, blame, faulty=faulty))
     yield from _trims(context)
     yield from _repairs(context)
     yield from _gestures(context, expected)
 
 
-def _cuts(context: RecognitionContext, expected: str, cuts: Sequence[KeptRange]) -> Series:
-    """Cut the demonstrations that are at fault."""
-    shown = context.language.gesture(expected).trajectories
-    return [
-        cut_demonstration(
-            expected,
-            number,
-            start,
-            end,
-            size=min(1.0, max(0.0, 1.0 - (end - start) / float(shown[number].time[-1]))),
-        )
-        for number, start, end in cuts
-    ]
+def _cuts(
+    context: RecognitionContext, expected: str, blame: Sequence[Blame], *, faulty: bool
+) -> Iterator[Intervention]:
+    """Cut the demonstrations that are at fault, for the known takes and for this one."""
+    cuts = [(each.demonstration, each.start, each.end) for each in blame]
+    table, at = context.score_table, context.language.labels.index(expected)
+    comparison = compare_with(context.recognizer, context.trajectory, table, at) if faulty else None
+    if comparison and (better := find_better_range([comparison])):
+        cuts.append((table.nearest_demonstration(at), *better))
+    for number, start, end in cuts:
+        if start is not None and end is not None:
+            whole = float(context.language.gesture(expected).trajectories[number].time[-1])
+            size = min(1.0, max(0.0, 1.0 - (end - start) / whole))
+            values = {"label": expected, "demonstration": number, "start": start, "end": end}
+            yield Intervention("demonstration_cut", size, values)
 
 
-def _trims(context: RecognitionContext) -> Iterator[Series]:
+def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     """Move the start, the end, or both, within the take, and keep most of the stroke."""
-    time, whole = context.poses.time, context.whole.time
-    start, end = float(time[0]), float(time[-1])
-    duration = end - start
-    shifts = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * duration
-    spans: list[list[tuple[float, float]]] = [
-        [(start + shift, end) for shift in shifts],
-        [(start, end - shift) for shift in shifts],
-        [(start + shift, end - shift) for shift in shifts],
-        [(start - shift, end) for shift in shifts],
-        [(start, end + shift) for shift in shifts],
-        [(float(whole[0]), float(whole[-1]))],
-    ]
-    for series in spans:
-        inside = {(max(a, float(whole[0])), min(b, float(whole[-1]))) for a, b in series}
-        inside -= {(start, end)}
+    start, end, first, last = (
+        float(each)
+        for time in (context.poses.time, context.whole.time)
+        for each in (time[0], time[-1])
+    )
+    steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
+    ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
+    for spans in (
+        *([(start + a * by, end + b * by) for by in steps] for a, b in ways),
+        [(first, last)],
+    ):
+        inside = {(max(a, first), min(b, last)) for a, b in spans} - {(start, end)}
         yield [
-            trim_take(
-                a,
-                b,
-                size=min(1.0, (abs(a - start) + abs(b - end)) / duration),
-                longer=bool(a < start or b > end),
+            Intervention(
+                "trim",
+                min(1.0, (abs(a - start) + abs(b - end)) / (end - start)),
+                {"start": a, "end": b, "longer": bool(a < start or b > end)},
             )
             for a, b in inside
-            if duration > 0 and min(b, end) - max(a, start) >= LEAST_KEPT * duration - 1e-9
+            if min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
         ]
 
 
-def _repairs(context: RecognitionContext) -> Iterator[Series]:
+def _repairs(context: RecognitionContext) -> Iterator[list[Intervention]]:
     """Switch the repair of keypoints on or off, if it changes any."""
     share = float(repair_poses(context.poses).touched.mean())
     if share > 0:
-        yield [repair_keypoints(on=not context.recognizer.repairs, size=share)]
+        yield [Intervention("keypoint_repair", share, {"on": not context.recognizer.repairs})]
 
 
-def _gestures(context: RecognitionContext, expected: str) -> Iterator[Series]:
+def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Intervention]]:
     """Change the expected gesture, or the one that was recognised."""
     for label in dict.fromkeys((expected, context.result.nearest)):
         gesture = context.language.gesture(label)
-        if gesture.trajectory is not None and PROFILES[context.profile].compares_motion:
+        if gesture.trajectory is not None and isinstance(context.recognizer.vote, FusedVote):
             yield from _switches(context, label, expected=label == expected)
     shown = context.language.gesture(expected).single_demonstrations()
     if len(shown) < MAX_DEMONSTRATIONS:
-        yield [demonstrate_take(expected, size=1 / (len(shown) + 1))]
+        values = {"label": expected}
+        yield [Intervention("further_demonstration", 1 / (len(shown) + 1), values)]
 
 
-def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Iterator[Series]:
+def _switches(
+    context: RecognitionContext, label: str, *, expected: bool
+) -> Iterator[list[Intervention]]:
     """Relax the switches of the expected gesture, and tighten those of the recognised one.
 
     Only switches that affect this recognition: direction, tempo, mirror image or hand shape.
@@ -430,7 +358,7 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
     traversal = table.traversals[at]
     slower = table.distances[table.voters.index("tempo"), at] > CLEARLY_SLOWER
     strict: Switch = "off" if expected else "on"
-    positions: dict[SwitchName, tuple[Switch, bool]] = {
+    positions: dict[str, tuple[Switch, bool]] = {
         "direction": (strict, traversal is not None and traversal.backward != expected),
         "tempo": (strict, bool(slower)),
         "mirror": ("on" if expected else "off", bool(table.mirrored[at]) != expected),
@@ -438,4 +366,5 @@ def _switches(context: RecognitionContext, label: str, *, expected: bool) -> Ite
     }
     for switch, (position, matters) in positions.items():
         if matters and getattr(gesture.switches, switch) != position:
-            yield [set_switch(label, switch, position)]
+            values = {"label": label, "switch": switch, "position": position}
+            yield [Intervention("switch", 1 / 3, values)]

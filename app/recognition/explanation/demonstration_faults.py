@@ -11,11 +11,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 
-from app.recognition.errors import PoseError
 from app.recognition.poses.landmarks import WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.trajectory import Trajectory
@@ -27,6 +26,7 @@ from app.recognition.recording.clip_range import find_demonstration
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import FEW_HANDS, HOLD_SECONDS, find_held
 from app.recognition.recording.segmentation import Bracket, find_brackets, takes_in
+from app.recognition.recording.trimming import measure_extent
 from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
@@ -81,32 +81,27 @@ LEAST_FOLLOWED = 0.8
 
 
 class FaultKind(str, Enum):
-    """What is wrong with a demonstration, the gravest first."""
+    """What is wrong with a demonstration, the gravest first, and that as a clause about it."""
 
-    whole_clip = "whole_clip"
-    contains_salute = "contains_salute"
-    reaches_salute = "reaches_salute"
-    cut_short = "cut_short"
-    contains_rest = "contains_rest"
-    other_person = "other_person"
-    keypoints_jumped = "keypoints_jumped"
-    keypoints_missing = "keypoints_missing"
-    no_hand = "no_hand"
-    unlike_takes = "unlike_takes"
+    told: str
 
+    def __new__(cls, value: str, told: str) -> FaultKind:
+        """Return the kind of that value."""
+        made = str.__new__(cls, value)
+        made._value_, made.told = value, told
+        return made
 
-SENTENCES: Final = {
-    FaultKind.whole_clip: "is the whole clip, with its salutes",
-    FaultKind.contains_salute: "contains a salute",
-    FaultKind.reaches_salute: "still holds the way from the salute",
-    FaultKind.cut_short: "is cut short",
-    FaultKind.contains_rest: "contains rest before or after the gesture",
-    FaultKind.other_person: "shows another person's body for a while",
-    FaultKind.keypoints_jumped: "has keypoints that jump",
-    FaultKind.keypoints_missing: "has a keypoint that is often not seen",
-    FaultKind.no_hand: "shows no hand, but hands count",
-    FaultKind.unlike_takes: "is unlike its takes",
-}
+    whole_clip = "whole_clip", "is the whole clip, with its salutes"
+    contains_salute = "contains_salute", "contains a salute"
+    reaches_salute = "reaches_salute", "still holds the way from the salute"
+    cut_short = "cut_short", "is cut short"
+    contains_rest = "contains_rest", "contains rest before or after the gesture"
+    other_person = "other_person", "shows another person's body for a while"
+    keypoints_jumped = "keypoints_jumped", "has keypoints that jump"
+    keypoints_missing = "keypoints_missing", "has a keypoint that is often not seen"
+    no_hand = "no_hand", "shows no hand, but hands count"
+    unlike_takes = "unlike_takes", "is unlike its takes"
+
 
 REMEDIES: Final[dict[Remedy, str]] = {
     "set_range": "Set its range.",
@@ -134,17 +129,13 @@ class DemonstrationFault:
 
     kind: FaultKind
     words: str
-    remedy: Remedy
+    remedy: Remedy = "show_again"
     start: float | None = None
     end: float | None = None
 
     def describe(self, label: str) -> str:
         """Return fault and remedy in one sentence and a half, at most fifteen words."""
-        return f"The demonstration of {label!r} {SENTENCES[self.kind]}. {REMEDIES[self.remedy]}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types."""
-        return {**vars(self), "kind": self.kind.value}
+        return f"The demonstration of {label!r} {self.kind.told}. {REMEDIES[self.remedy]}"
 
 
 @dataclass(frozen=True)
@@ -300,87 +291,66 @@ def _find_ways(
 ) -> Iterator[DemonstrationFault]:
     """Yield a fault if a stroke reaches from one salute to the other, with a way at either end."""
     for bracket in brackets:
-        if bracket.closing is None:
+        ends = (start - bracket.start, bracket.end - end)
+        if bracket.closing is None or max(map(abs, ends)) > AT_SALUTE:
             continue
-        if start > bracket.start + AT_SALUTE or end < bracket.end - AT_SALUTE:
+        repair = repair_poses(poses.between(start, end))
+        if not repair.poses.seen.any() or repair.trajectory.unit != "torso_length":
             continue
-        if start < bracket.start - AT_SALUTE or end > bracket.end + AT_SALUTE:
-            continue
-        stroke = repair_poses(poses.between(start, end)).poses
-        first, last = _measure_way(stroke), _measure_way(stroke, backward=True)
-        if first is None or last is None or last - first < LEAST_REST:
-            continue
-        words = (
-            f"reaches from salute to salute: {first - start:.1f} s of the way from the first and "
-            f"{end - last:.1f} s of the way to the second are in it"
+        time = repair.trajectory.time
+        first = _measure_way(repair.trajectory.xy, time, repair.trajectory.landmarks)
+        last = _measure_way(
+            repair.trajectory.xy[::-1], time[-1] - time[::-1], repair.trajectory.landmarks
         )
-        yield _fault_of_range(FaultKind.reaches_salute, words, (first, last))
+        if first is None or last is None or time[-1] - last - first < LEAST_REST:
+            continue
+        better = repair.poses.time[0] + first, repair.poses.time[-1] - last
+        words = (
+            f"reaches from salute to salute: {better[0] - start:.1f} s of the way from the first "
+            f"and {end - better[1]:.1f} s of the way to the second are in it"
+        )
+        yield _fault_of_range(FaultKind.reaches_salute, words, better)
 
 
-def _measure_way(stroke: PoseSequence, *, backward: bool = False) -> float | None:
-    """Return when the way from the first salute ends, or, backward, that to the second begins.
+def _measure_way(xy: FloatArray, time: FloatArray, landmarks: Sequence[str]) -> float | None:
+    """Return after how many seconds the way from a salute ends; None where there is none.
 
-    The way is straight, and the hand stops or turns at its end. None where there is no such way.
+    The way of the wrist that moves more is straight, and the hand stops or turns at its end.
     """
-    path = _moving_wrist(stroke)
-    if path is None:
+    grid = np.arange(0.0, float(time[-1]), WINDOW_SECONDS / 4)
+    paths = _follow_wrists(xy, time, landmarks, grid)
+    if len(grid) < FEWEST_MOMENTS or not paths:
         return None
-    time, xy = stroke.time, path
-    if backward:
-        time, xy = (time[-1] - time)[::-1], xy[::-1]
-    grid = np.arange(0.0, float(time[-1] - time[0]), WINDOW_SECONDS / 4)
-    if len(grid) < FEWEST_MOMENTS:
+    path = max(paths, key=measure_extent)
+    speed = np.linalg.norm(np.gradient(path, axis=0), axis=1)
+    speed = np.convolve(np.pad(speed, 1, mode="edge"), np.ones(3) / 3, mode="valid")
+    far = np.linalg.norm(path - path[0], axis=1)
+    slow = (speed <= SLOWED * np.maximum.accumulate(speed)) & (far >= LEAST_WAY)
+    slow[1:-1] &= (speed[1:-1] <= speed[:-2]) & (speed[1:-1] <= speed[2:])
+    ends = np.flatnonzero(slow[2:-2] & (grid[2:-2] <= LONGEST_WAY)) + 2
+    if not len(ends):
         return None
-    even = np.stack([np.interp(grid, time - time[0], xy[:, axis]) for axis in (0, 1)], axis=1)
-    speed = _smooth(np.linalg.norm(np.gradient(even, axis=0), axis=1))
-    for at in range(2, len(grid) - 2):
-        if grid[at] > LONGEST_WAY:
-            return None
-        highest = float(speed[: at + 1].max())
-        slowest = speed[at] <= speed[at - 1] and speed[at] <= speed[at + 1]
-        if not slowest or speed[at] > SLOWED * highest:
-            continue
-        far = float(np.linalg.norm(even[at] - even[0]))
-        way = float(np.linalg.norm(np.diff(even[: at + 1], axis=0), axis=1).sum())
-        if far < LEAST_WAY:
-            continue
-        if far < STRAIGHT * way:
-            return None
-        moment = float(grid[at])
-        return float(stroke.time[-1]) - moment if backward else float(stroke.time[0]) + moment
-    return None
+    way = float(np.linalg.norm(np.diff(path[: ends[0] + 1], axis=0), axis=1).sum())
+    return None if far[ends[0]] < STRAIGHT * way else float(grid[ends[0]])
 
 
 FEWEST_MOMENTS = 8
 """Least moments, 0.05 s apart, of a stroke in which ways are sought."""
 
 
-def _smooth(values: FloatArray) -> FloatArray:
-    """Return the means of three neighbours, with the end values extended."""
-    padded = np.pad(values, 1, mode="edge")
-    return (padded[:-2] + padded[1:-1] + padded[2:]) / 3
-
-
-def _moving_wrist(stroke: PoseSequence) -> FloatArray | None:
-    """Return ``(T, 2)`` the path of the wrist that moves more, torso lengths, without gaps."""
-    try:
-        trajectory = Trajectory.from_poses(stroke)
-    except PoseError:
-        return None
+def _follow_wrists(
+    xy: FloatArray, time: FloatArray, landmarks: Sequence[str], grid: FloatArray
+) -> list[FloatArray]:
+    """Return the paths ``(G, 2)`` of the wrists that are seen, at the moments of a grid."""
     paths = []
     for name in WRISTS:
-        if name in trajectory.landmarks:
-            path = trajectory.select([name]).xy[:, 0]
-            seen = np.isfinite(path).all(axis=1)
-            if seen.sum() > 1:
-                whole = [
-                    np.interp(trajectory.time, trajectory.time[seen], path[seen, axis])
-                    for axis in (0, 1)
-                ]
-                paths.append(np.stack(whole, axis=1))
-    if not paths or trajectory.unit != "torso_length":
-        return None
-    return max(paths, key=lambda path: float(np.linalg.norm(np.ptp(path, axis=0))))
+        path = xy[:, landmarks.index(name)] if name in landmarks else xy[:0, 0]
+        seen = np.isfinite(path).all(axis=1)
+        if seen.any():
+            paths.append(
+                np.stack([np.interp(grid, time[seen], each[seen]) for each in path.T], axis=1)
+            )
+    return paths
 
 
 def _find_keypoint_faults(
@@ -393,38 +363,33 @@ def _find_keypoint_faults(
     raw, trajectory = Trajectory.from_poses(stroke), repair.trajectory
     names = tuple(salient) or find_salient_landmarks(trajectory)
     count = len(stroke)
-    other = int(np.count_nonzero(find_other_body(raw)))
-    if other > MOST_UNSTEADY * count:
-        words = f"shows another body in {other} of {count} frames"
-        yield DemonstrationFault(kind=FaultKind.other_person, words=words, remedy="show_again")
     columns = [stroke.landmarks.index(name) for name in names if name in stroke.landmarks]
+    other = int(np.count_nonzero(find_other_body(raw)))
     away = int(np.count_nonzero(find_unsteady(trajectory, names)))
     repaired = int(np.count_nonzero(repair.exchanged | repair.jumps[:, columns].any(axis=1)))
+    seen = float(stroke.seen[:, columns].mean(axis=0).min(initial=1.0))
+    if other > MOST_UNSTEADY * count:
+        words = f"shows another body in {other} of {count} frames"
+        yield DemonstrationFault(kind=FaultKind.other_person, words=words)
     if away > MOST_UNSTEADY * count or repaired > MOST_REPAIRED * count:
         words = f"has keypoints that jump in {max(away, repaired)} of {count} frames"
-        yield DemonstrationFault(kind=FaultKind.keypoints_jumped, words=words, remedy="show_again")
-    seen = stroke.seen[:, columns].mean(axis=0) if columns else np.ones(1)
-    if seen.min() < LEAST_FOLLOWED:
-        words = f"shows a keypoint that it needs in {seen.min():.0%} of its frames"
-        yield DemonstrationFault(kind=FaultKind.keypoints_missing, words=words, remedy="show_again")
+        yield DemonstrationFault(kind=FaultKind.keypoints_jumped, words=words)
+    if seen < LEAST_FOLLOWED:
+        words = f"shows a keypoint that it needs in {seen:.0%} of its frames"
+        yield DemonstrationFault(kind=FaultKind.keypoints_missing, words=words)
     if hand_counts and not find_moving_hands(repair.poses, list_moving_sides(names)):
         words = "shows no hand for long enough, although its hand shape counts"
-        yield DemonstrationFault(kind=FaultKind.no_hand, words=words, remedy="show_again")
+        yield DemonstrationFault(kind=FaultKind.no_hand, words=words)
 
 
 def _find_movement(poses: PoseSequence) -> tuple[float, float]:
     """Return the first and the last moment at which a wrist moves; the whole clip if none does."""
     time = poses.time
-    rows = [poses.landmarks.index(name) for name in WRISTS if name in poses.landmarks]
     grid = np.arange(float(time[0]), float(time[-1]), WINDOW_SECONDS)
-    if not rows or len(grid) < 3:
+    paths = _follow_wrists(poses.xy, time, poses.landmarks, grid)
+    if not paths or len(grid) < 3:
         return float(time[0]), float(time[-1])
-    speed = np.zeros(len(grid) - 1)
-    for row in rows:
-        seen = np.isfinite(poses.xy[:, row]).all(axis=1)
-        if seen.any():
-            path = [np.interp(grid, time[seen], poses.xy[seen, row, axis]) for axis in (0, 1)]
-            speed = np.maximum(speed, np.hypot(*np.diff(path, axis=1)))
+    speed = np.max([np.hypot(*np.diff(path, axis=0).T) for path in paths], axis=0)
     moving = np.flatnonzero(speed > RESTING_SPEED * speed.max())
     if not len(moving):
         return float(time[0]), float(time[-1])

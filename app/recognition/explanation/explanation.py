@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from typing import Annotated, Any
+from collections.abc import Iterator
+from typing import Annotated, Any, Final
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, computed_field
@@ -14,20 +13,12 @@ from pydantic import BaseModel, ConfigDict, Field, computed_field
 from app.recognition.decision.result import WRITTEN, Distance, Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import OsgError
-from app.recognition.explanation.alignment import (
-    AlignedBy,
-    Alignment,
-    Example,
-    align,
-    find_nearest_example,
-)
+from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.blame import Blame, find_blame
 from app.recognition.explanation.causes import Cause, CauseKind, find_causes
 from app.recognition.explanation.context import KnownTakes, RecognitionContext
 from app.recognition.explanation.counterfactuals import (
-    NONE_NEEDED,
     Counterfactual,
-    KeptRange,
     find_counterfactuals,
 )
 from app.recognition.explanation.transcript import (
@@ -37,15 +28,14 @@ from app.recognition.explanation.transcript import (
     transcribe,
     transcribe_gesture,
 )
-from app.recognition.explanation.undoing import (
-    compare_with,
-    find_better_range,
-)
 from app.recognition.explanation.vote_breakdown import VoterBreakdown, break_down_votes
-from app.recognition.features.motion import build_movement
 from app.recognition.features.traversals import AS_SHOWN
-from app.recognition.gestures.gesture import Gesture
-from app.recognition.gestures.profile import PROFILES
+
+UNFOLLOWED: Final = {CauseKind.keypoints_jumped, CauseKind.other_person, CauseKind.not_seen}
+"""Causes for which neither the strokes nor the turn of the diver are those that were shown."""
+
+CLEARLY_TURNED: Final = 15.0
+"""Least degrees by which a diver is turned that the numbers tell."""
 
 
 class Explanation(BaseModel):
@@ -82,8 +72,7 @@ class Explanation(BaseModel):
     turned
         Share of `score` minus `other_score` that comes from the penalties of traversals.
     alignments
-        Alignments of the query with the expected gesture and with the other: of the paths, and in
-        profile ``full`` of the postures.
+        Alignments of the query's path with the expected gesture's and with the other one's.
     causes
         Why, the cause first; empty for a right recognition and without evidence.
     blame
@@ -161,7 +150,11 @@ class Explanation(BaseModel):
             return f"Read as {self.expected!r}, as expected."
         if self.causes:
             return self.causes[0].sentence
-        return describe_transcript(self.transcript, self.expected)
+        told = describe_transcript(self.transcript, self.expected)
+        if self.transcript.differs is None and self.pair and self.expected in self.pair:
+            other = self.pair[self.pair[0] == self.expected]
+            told = f"{told} {other!r} is about as near."
+        return told
 
     @computed_field  # type: ignore[prop-decorator]
     @property
@@ -180,7 +173,8 @@ class Explanation(BaseModel):
                 f"{self.other!r} at {self.other_score:.2f}."
             )
         if not self.right and math.isfinite(self.novelty):
-            yield f"The take is {self.novelty:.1f} times as far as the limit allows."
+            far = f"{self.novelty:.1f} times as far as the limit allows"
+            yield f"The take is {far if self.novelty > 1 else 'within the limit'}."
         if self.causes and self.causes[0].share < 1:
             share = f"{self.causes[0].share:.0%}"
             yield f"Undoing the cause removes {share} of the distance beyond that of usual takes."
@@ -190,11 +184,16 @@ class Explanation(BaseModel):
                 f"Of {first.takes} known takes the change repairs {first.repaired} and breaks "
                 f"{first.broken}."
             )
-        if self.causes and self.transcript.shown:
+        followed = UNFOLLOWED.isdisjoint(each.kind for each in self.causes)
+        if (
+            self.causes
+            and followed
+            and self.transcript.shown
+            and self.transcript.differs is not None
+        ):
             yield describe_transcript(self.transcript, self.expected)
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
-        jumped = any(each.kind is CauseKind.keypoints_jumped for each in self.causes)
-        if self.facing is not None and not jumped:
+        if followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
             side = "left" if self.facing > 0 else "right"
             yield f"The diver is turned {abs(self.facing):.0f} degrees to their {side}."
         yield f"Confidence in {self.nearest!r}: {self.confidence:.0%}."
@@ -234,7 +233,6 @@ def explain(
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
     other = _find_other(result, expected)
-    pairings = _Pairings(context)
     gesture = table.find_nearest_demonstration(context.language.gestures, at)
     blame: tuple[Blame, ...] = ()
     if wanted := with_counterfactuals and result.label != expected:
@@ -243,33 +241,27 @@ def explain(
         known = context.known_takes if is_full else KnownTakes(full, context.known)
         blame = find_blame(known, [expected])
     causes = find_causes(context, expected, blame if wanted else None)
-    found = NONE_NEEDED
+    found: tuple[Counterfactual, ...] = ()
+    tried = 0
     if wanted:
-        found = find_counterfactuals(context, expected, _list_cuts(context, at, causes, blame))
+        faulty = any(each.kind is CauseKind.demonstration for each in causes)
+        found, tried = find_counterfactuals(context, expected, blame, faulty=faulty)
+    answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
-        profile=result.profile,
+        **{name: getattr(result, name) for name in (*answered, "fault", "support")},
         expected=expected,
-        label=result.label,
-        nearest=result.nearest,
-        runner_up=result.runner_up,
-        confidence=result.confidence,
-        between=result.between,
-        disagreed=result.disagreed,
         other=None if other is None else result.gestures[other],
         score=float(table.scores[at]),
         other_score=math.inf if other is None else float(table.scores[other]),
         novelty=float(table.novelty[at]),
-        fault=result.fault,
         votes=dict(Counter(result.counted.values()).most_common()),
-        support=result.support,
         breakdown=break_down_votes(table, result, at, other),
         facing=table.facing,
         turned=_difference(table, at, other),
         alignments=tuple(
             alignment
             for index in (at, other)
-            if index is not None
-            for alignment in pairings.alignments(index)
+            if index is not None and (alignment := _align(context, index))
         ),
         causes=causes,
         blame=blame,
@@ -278,26 +270,9 @@ def explain(
             transcribe_gesture(gesture),
             table.traversals[at] or AS_SHOWN,
         ),
-        counterfactuals=found.found,
-        tried=found.tried,
+        counterfactuals=found,
+        tried=tried,
     )
-
-
-def _list_cuts(
-    context: RecognitionContext, at: int, causes: Sequence[Cause], blame: Sequence[Blame]
-) -> list[KeptRange]:
-    """Return the better ranges of demonstrations that are at fault, by known takes and by this."""
-    cuts = [
-        (each.demonstration, each.start, each.end)
-        for each in blame
-        if each.start is not None and each.end is not None
-    ]
-    table = context.score_table
-    if any(each.kind is CauseKind.demonstration for each in causes):
-        comparison = compare_with(context.recognizer, context.trajectory, table, at)
-        if comparison is not None and (span := find_better_range([comparison])):
-            cuts.append((table.nearest_demonstration(at), *span))
-    return cuts
 
 
 def _find_other(result: Recognition, expected: str) -> int | None:
@@ -312,37 +287,15 @@ def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
     return float(table.turned[expected] - table.turned[other])
 
 
-class _Pairings:
-    """Pairings of a context's query with its gestures, as the recogniser compared them."""
-
-    def __init__(self, context: RecognitionContext) -> None:
-        self._gestures = context.language.gestures
-        self._table = context.score_table
-        self._full = PROFILES[context.profile].compares_motion
-        self._start = float(context.poses.time[0])
-        self._landmarks = context.recognizer.landmarks
-        self._query = context.trajectory
-
-    def alignments(self, index: int) -> Iterator[Alignment]:
-        """Yield alignments of the query with a gesture, if both have a movement."""
-        example = self._example(index)
-        if example is None or len(self._query) < 2:
-            return
-        query = build_movement(self._query, self._landmarks)
-        kinds: tuple[AlignedBy, ...] = ("path", "posture") if self._full else ("path",)
-        for kind in kinds:
-            aligned = align(query, example, self._landmarks, start=self._start, by=kind)
-            if aligned is not None:
-                yield replace(aligned, demonstration=self._table.nearest_demonstration(index))
-
-    def _gesture(self, index: int) -> Gesture:
-        return self._table.find_nearest_demonstration(self._gestures, index)
-
-    def _example(self, index: int) -> Example | None:
-        gesture, traversal = self._gesture(index), self._table.traversals[index]
-        if gesture.is_held:
-            return None
-        if traversal is None:
-            return find_nearest_example(self._query, gesture, self._landmarks)
-        mirrored = bool(self._table.mirrored[index])
-        return Example.of(gesture, self._landmarks, traversal, mirrored=mirrored)
+def _align(context: RecognitionContext, at: int) -> Alignment | None:
+    """Align the query with a gesture as the recogniser compared them; None without movements."""
+    table = context.score_table
+    return align(
+        context.trajectory,
+        table.find_nearest_demonstration(context.language.gestures, at),
+        context.recognizer.landmarks,
+        table.traversals[at],
+        mirrored=bool(table.mirrored[at]),
+        start=float(context.poses.time[0]),
+        demonstration=table.nearest_demonstration(at),
+    )

@@ -6,8 +6,8 @@ demonstration, or the hand turned back, and the voters compare again.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,8 +34,6 @@ ROUNDED = 10
 LEAST_SHARE = 0.1
 """Least share of the distance that undoing a difference removes."""
 
-MOST_NAMED = 3
-
 FINGER_LENGTHS = (0.94, 1.04, 0.98, 0.77)
 """Stretched fingers in palms, index to little finger (Buryanov and Kotiuk 2010)."""
 
@@ -51,8 +49,7 @@ _WRIST, _MIDDLE = HAND_LANDMARKS.index("wrist"), HAND_LANDMARKS.index("middle_fi
 ORDINALS = ("first", "second")
 
 
-@dataclass(frozen=True, kw_only=True)
-class HandDifference:
+class HandDifference(NamedTuple):
     """One way in which a hand differs from the expected shape.
 
     Attributes
@@ -69,10 +66,10 @@ class HandDifference:
     words: str
 
 
-def find_held_differences(
+def find_held_difference(
     label: str, shapes: HeldShapes, shown: HeldShapes
-) -> tuple[HandDifference, ...]:
-    """Find how a query's held hands differ from a gesture's, the largest share first.
+) -> HandDifference | None:
+    """Find in what a query's held hands differ most from a gesture's.
 
     Parameters
     ----------
@@ -85,31 +82,32 @@ def find_held_differences(
 
     Returns
     -------
-    For two sequences, the order of the shapes, where the opposite order fits; otherwise the fingers
-    of both shapes. The farther shape decides, so that the shares of the other one are reduced in
-    proportion to its distance.
+    For two sequences, the order of the shapes, where the opposite order fits; otherwise a finger of
+    one of the shapes, or the turn of the hand. The farther shape decides, so that the shares of the
+    other one are reduced in proportion to its distance. None where nothing differs.
 
     """
     if not shapes:
         words = f"no hand holds a shape in this take, and {label!r} is one"
         if len(shown) > 1:
             words = f"no hand holds two shapes in this take, and {label!r} is two in sequence"
-        return (_difference(1.0, words),)
+        return HandDifference(1.0, words)
     if len(shapes) != len(shown):
-        return (_difference(1.0, _describe_number(label, shapes, shown)),)
-    if len(shown) == 1:
-        return find_hand_differences(label, shapes[0], shown[0])
+        return HandDifference(1.0, _describe_number(label, shapes, shown))
     pairs, whole = _pair_parts(shapes, shown)
-    _, swapped = _pair_parts(shapes[::-1], shown)
-    if swapped <= OTHER_SHAPE < whole:
+    swapped = _pair_parts(shapes[::-1], shown)[1]
+    if len(pairs) > 1 and swapped <= OTHER_SHAPE < whole:
         words = f"the shapes come in the other order than in {label!r}"
-        return (_difference(_share(whole, swapped), words),)
-    return _name_largest(
-        (share * apart / whole, f"in the {ordinal} shape {words}")
-        for ordinal, (query, example) in zip(ORDINALS, pairs, strict=True)
-        if (apart := measure_distance(query, example)) > 0
-        for share, words in _list_shares(query, example, label)
-    )
+        return HandDifference(_share(whole, swapped), words)
+    found = []
+    for ordinal, (query, example) in zip(ORDINALS, pairs, strict=False):
+        where = f"in the {ordinal} shape " if len(pairs) > 1 else ""
+        if apart := measure_distance(query, example):
+            found += [
+                HandDifference(share * apart / whole, where + words)
+                for share, words in _list_shares(query, example, label)
+            ]
+    return _find_largest(found)
 
 
 def _describe_number(label: str, shapes: HeldShapes, shown: HeldShapes) -> str:
@@ -144,25 +142,6 @@ def _pair_parts(
     return choices[nearest], distances[nearest]
 
 
-def find_hand_differences(
-    label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
-) -> tuple[HandDifference, ...]:
-    """Find how a query's hand differs from a gesture's, the largest share first.
-
-    Parameters
-    ----------
-    label
-        The gesture's.
-    hands
-        The query's held hands, at least one.
-    shown
-        The gesture's.
-
-    """
-    [(query, example)], _ = _pair_parts([hands], [shown])
-    return _name_largest(_list_shares(query, example, label))
-
-
 def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[tuple[float, str]]:
     """Yield the shares and the words of all differences between two held hands."""
     whole = measure_distance(query, example)
@@ -170,10 +149,10 @@ def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[t
     yield from _turn(query, example, whole)
 
 
-def find_moving_hand_differences(
+def find_moving_hand_difference(
     label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
-) -> tuple[HandDifference, ...]:
-    """Find how the moving hands of a query differ from those of a gesture whose shape counts.
+) -> HandDifference | None:
+    """Find how a moving hand of a query differs most from a gesture's whose shape counts.
 
     Parameters
     ----------
@@ -186,8 +165,8 @@ def find_moving_hand_differences(
 
     Returns
     -------
-    The fingers of the hand that differs more, the largest share first; nothing where the shapes
-    are not clearly different. One difference of share 0 where no hand can be compared.
+    A finger of the hand that differs more; None where the shapes are not clearly different. Of
+    share 0 where no hand can be compared.
 
     """
     seen = {hand.side: hand for hand in hands}
@@ -196,14 +175,14 @@ def find_moving_hand_differences(
     worst = max((side for side in apart if side in seen), key=apart.__getitem__, default=None)
     if worst is None:
         words = "no hand is seen for long enough that keeps a shape: no shape is compared"
-        return (_difference(0.0, words),)
+        return HandDifference(0.0, words)
     if apart[worst] <= OTHER_SHAPE:
-        return ()
+        return None
     example = known[worst]
     either = [_turn_to(hand, example) for hand in (seen[worst], seen[worst].mirror())]
     query = min(either, key=lambda hand: measure_distance(hand, example))
     whole = measure_distance(query, example)
-    return _name_largest(_fingers(query, example, whole, label))
+    return _find_largest([HandDifference(*each) for each in _fingers(query, example, whole, label)])
 
 
 def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
@@ -212,26 +191,19 @@ def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
     return hand.turn(float(np.degrees(np.angle(one.conj() @ other))))
 
 
-def _name_largest(shares: Iterable[tuple[float, str]]) -> tuple[HandDifference, ...]:
-    """Return the differences with the largest shares, each given with its words."""
-    found = [_difference(share, words) for share, words in shares if share >= LEAST_SHARE]
-    return tuple(sorted(found, key=lambda each: -each.share)[:MOST_NAMED])
-
-
-def _difference(share: float, words: str) -> HandDifference:
-    return HandDifference(share=share, words=words)
+def _find_largest(found: Sequence[HandDifference]) -> HandDifference | None:
+    """Return the difference of the largest share, if any is large enough."""
+    first = max(found, key=lambda each: each.share, default=None)
+    return None if first is None or first.share < LEAST_SHARE else first
 
 
 def measure_distance(one: HandShape, other: HandShape) -> float:
     """Return the mean distance of the voters in `_LOCAL`, each over its between-class distance."""
-    return float(
-        np.mean(
-            [
-                voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
-                for voter in _LOCAL
-            ]
-        )
-    )
+    apart = [
+        voter.distances(voter.describe(one), voter.describe(other)[None])[0] / voter.between
+        for voter in _LOCAL
+    ]
+    return float(np.mean(apart))
 
 
 def measure_bends(hand: HandShape) -> FloatArray:
@@ -245,12 +217,13 @@ def measure_bends(hand: HandShape) -> FloatArray:
     bends = np.linspace(0.0, MOST_BENT, 41)
     # A third of the bend at each joint.
     reach = np.cos(np.radians(bends)[:, None] * np.array([1, 2, 3]) / 3) @ BONE_SHARES
-    measured = []
-    for finger, length in enumerate(FINGER_LENGTHS, start=1):
-        finger_vector = hand.xy[4 + 4 * finger] - hand.xy[1 + 4 * finger]
-        share = float(finger_vector @ axis / max(length * (axis @ axis), 1e-9))
-        measured.append(float(np.interp(-share, -reach, bends)))
-    return np.array(measured)
+    fingers = 4 * np.arange(1, 5)
+    shares = (
+        (hand.xy[4 + fingers] - hand.xy[1 + fingers])
+        @ axis
+        / np.maximum(np.array(FINGER_LENGTHS) * (axis @ axis), 1e-9)
+    )
+    return np.asarray(np.interp(-shares, -reach, bends), dtype=np.float64)
 
 
 def _fingers(
@@ -259,20 +232,17 @@ def _fingers(
     """Yield the share and the words of every finger that differs clearly."""
     more = measure_bends(query) - measure_bends(example)
     for finger, name in enumerate(FINGERS):
+        inner, joints = 1 + 4 * finger, slice(2 + 4 * finger, 5 + 4 * finger)
         undone = query.xy.copy()
-        joints = [1 + 4 * finger + joint for joint in range(4)]
-        inner = joints[0]
-        undone[joints[1:]] = undone[inner] + example.xy[joints[1:]] - example.xy[inner]
-        left = measure_distance(HandShape(query.side, undone), example)
-        share = _share(whole, left)
-        if finger == 0:
-            yield share, f"the thumb points otherwise than in {label!r}"
-        elif abs(more[finger - 1]) >= CLEARLY_BENT:
-            degrees = _round(more[finger - 1])
+        undone[joints] = undone[inner] + example.xy[joints] - example.xy[inner]
+        share = _share(whole, measure_distance(HandShape(query.side, undone), example))
+        words = f"the {name} points otherwise than in {label!r}"
+        if finger and abs(more[finger - 1]) >= CLEARLY_BENT:
             word = "more" if more[finger - 1] > 0 else "less"
-            yield share, f"the {name} is bent {degrees} degrees {word} than in {label!r}"
-        else:
-            yield share, f"the {name} points otherwise than in {label!r}"
+            words = (
+                f"the {name} is bent {_round(more[finger - 1])} degrees {word} than in {label!r}"
+            )
+        yield share, words
 
 
 def _turn(query: HandShape, example: HandShape, whole: float) -> Iterator[tuple[float, str]]:

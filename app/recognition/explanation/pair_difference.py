@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
-from app.recognition.explanation.alignment import Alignment, Example, align
-from app.recognition.explanation.causes import CauseKind, prove_change
+from app.recognition.explanation.alignment import Alignment, align
+from app.recognition.explanation.causes import prove_change, tell_change
 from app.recognition.explanation.transcript import (
     compare_transcripts,
     transcribe,
     transcribe_gesture,
 )
 from app.recognition.explanation.undoing import compare_with
-from app.recognition.features.motion import build_movement
 from app.recognition.gestures.demonstration import condense
 from app.recognition.recognizer import Recognizer
 
@@ -65,10 +63,8 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
     against = compared.find_nearest_demonstration(recognizer.language.gestures, other)
     landmarks = tuple(sorted({*shown.salient, *against.salient} & {*recognizer.landmarks}))
     mirrored = bool(compared.mirrored[other])
-    example = Example.of(against, landmarks, traversal, mirrored=mirrored)
-    movement = build_movement(query, landmarks)
-    alignment = None if example is None else align(movement, example, landmarks)
-    if example is None or alignment is None:
+    alignment = align(query, against, landmarks, traversal, mirrored=mirrored)
+    if alignment is None:
         return None
     expected = transcribe_gesture(against)
     strokes = compare_transcripts(transcribe(query, shown.salient), expected, traversal)
@@ -82,19 +78,8 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
         words = f"it goes {ways[0]} where {against.label!r} goes {ways[1]}"
         span = (ours.start, ours.end) if ours else (strokes.shown[-1].end, strokes.shown[-1].end)
     if proven := prove_change(comparison):
-        words = CLAUSES[CauseKind(proven[1].kind)].format(other=repr(against.label))
+        told = tell_change(proven, against.label).partition(". ")[0]
+        words = (
+            told.replace("The take", "it", 1) if "The take" in told else told[0].lower() + told[1:]
+        )
     return PairDifference(words, span, alignment)
-
-
-CLAUSES: Final = {
-    CauseKind.mirrored: "it is the mirror image of {other}",
-    CauseKind.reversed: "it goes through {other} backwards",
-    CauseKind.upside_down: "it is {other} upside down",
-    CauseKind.other_arm: "it is {other} with the other arm",
-    CauseKind.too_small: "it is a smaller {other}",
-    CauseKind.begun_late: "it lacks the beginning of {other}",
-    CauseKind.ended_early: "it lacks the end of {other}",
-    CauseKind.part_missing: "it lacks a part in the middle of {other}",
-    CauseKind.part_added: "it has a part that {other} has not",
-}
-"""What undoing one change shows of two demonstrations, as a clause."""

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Annotated, Final, Literal
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from pydantic import Field, computed_field
@@ -32,7 +32,6 @@ from app.recognition.recording.trimming import (
     measure_motion,
     split_pieces,
 )
-from app.recognition.text.wording import join_words
 
 DIRECTIONS: Final = (
     "right",
@@ -69,11 +68,20 @@ STRAIGHT: Final = math.radians(55)
 DIRECT: Final = 0.9
 """Least ratio of distance to path of a straight line."""
 
-LOOP: Final = math.radians(290)
+NEARLY: Final = 0.95
+"""Least such ratio of a straight line whose ends are bent, by a rounded corner."""
+
+LOOP: Final = math.radians(270)
 """Least turn of a loop."""
 
 CLOSED: Final = 0.3
 """Largest ratio of distance to path of a loop that does not turn so far."""
+
+VAGUE: Final = 0.5
+"""Ratio of distance to path below which a curve leads nowhere."""
+
+MOST_TOLD: Final = 7
+"""Most pieces that a sentence tells of a movement, unless it first differs later."""
 
 PAUSE_SECONDS: Final = 0.5
 """Shortest pause that is told."""
@@ -98,7 +106,8 @@ class Piece:
     hand
         The landmark that draws it.
     direction
-        Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+        Degrees from its start to its end, 0 to the right, 90 down; None of loops, pauses, and
+        curves that end near their start.
     turn
         Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
     start, end
@@ -129,7 +138,7 @@ class Piece:
                 turns = max(1, round(abs(self.turn) / 360))
                 return f"{sense} loop" if turns == 1 else f"{turns} {sense} loops"
             case "curve":
-                return "a curve"
+                return "a curve" if self.direction is None else f"a curve {self._way}"
             case _:
                 return "a pause"
 
@@ -193,33 +202,37 @@ def transcribe(
     clock change nothing but the times.
 
     """
-    pieces: list[Piece] = []
-    for name in find_drawing_landmarks(trajectory, salient):
-        pieces += _follow(trajectory, name, start)
-    return tuple(pieces)
+    drawing = find_drawing_landmarks(trajectory, salient)
+    return tuple(piece for name in drawing for piece in _follow(trajectory, name, start))
 
 
-_transcribed: WeakKeyDictionary[Gesture, tuple[Piece, ...]] = WeakKeyDictionary()
-
-
+@lru_cache(1024)
 def transcribe_gesture(gesture: Gesture) -> tuple[Piece, ...]:
     """Return the strokes of a gesture's first demonstration; empty for held hand shapes."""
     if gesture.is_held or gesture.trajectory is None or len(gesture.trajectory) < 2:
         return ()
-    if gesture not in _transcribed:
-        _transcribed[gesture] = transcribe(gesture.trajectory, gesture.salient)
-    return _transcribed[gesture]
+    return transcribe(gesture.trajectory, gesture.salient)
 
 
-def describe_strokes(pieces: Sequence[Piece]) -> str:
-    """Return strokes in words; of two hands, one after the other."""
-    hands = list(dict.fromkeys(each.hand for each in pieces))
-    words = [", ".join(each.words for each in pieces if each.hand == hand) for hand in hands]
-    if len(hands) < 2:
+def describe_strokes(
+    pieces: Sequence[Piece], most: int | None = None, *, named: bool = False
+) -> str:
+    """Return strokes in words; of two hands, one after the other, and at most so many of each.
+
+    `named` is whether the hand is named where there is one only.
+    """
+    rows: dict[str, list[str]] = {}
+    for each in pieces:
+        rows.setdefault(each.hand, []).append(each.words)
+    words = [", ".join(row[:most]) for row in rows.values()]
+    for index, row in enumerate(rows.values()):
+        if most is not None and len(row) > most:
+            words[index] += f", then {len(row) - most} more"
+    if len(words) < 2 and not named:
         return "".join(words)
-    if len(set(words)) == 1:
+    if len(words) > len(set(words)) == 1:
         return f"both hands {words[0]}"
-    sides = [parse_body_part(hand).partition("_")[0] for hand in hands]
+    sides = [parse_body_part(hand).partition("_")[0] for hand in rows]
     return "; ".join(f"{side} hand {each}" for side, each in zip(sides, words, strict=True))
 
 
@@ -255,74 +268,59 @@ def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
 
 def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the landmarks that draw: of each moving arm its wrist, or what moves most."""
-    names = [name for name in salient or trajectory.landmarks if name in trajectory.landmarks]
-    wrists = [name for name in trajectory.landmarks if parse_body_part(name).endswith("wrist")]
-    arms = {parse_body_part(name).partition("_")[0] for name in names}
-    chosen = [name for name in wrists if parse_body_part(name).partition("_")[0] in arms] or [
-        name for name in names if name != TORSO
+    parts = {name: parse_body_part(name) for name in trajectory.landmarks}
+    names = [name for name in salient or parts if name in parts and name != TORSO]
+    arms = {parts[name].partition("_")[0] for name in names}
+    wrists = [
+        name
+        for name, part in parts.items()
+        if part.endswith("wrist") and part.partition("_")[0] in arms
     ]
-    extents = {name: measure_extent(_path_of(trajectory, name)) for name in chosen}
+    extents = {name: measure_extent(_path_of(trajectory, name)) for name in wrists or names}
     most = max(extents.values(), default=0.0)
-    if most <= LEAST_MOVING:
-        return ()
-    if not wrists:
-        return (max(extents, key=extents.__getitem__),)
-    return tuple(name for name in chosen if extents[name] >= OTHER_HAND * most)
+    least = OTHER_HAND * most if wrists else most
+    return tuple(name for name in extents if extents[name] >= least and most > LEAST_MOVING)
 
 
 def _path_of(trajectory: Trajectory, name: str) -> FloatArray:
     return trajectory.xy[:, trajectory.landmarks.index(name)]
 
 
-def _follow(trajectory: Trajectory, name: str, start: float) -> Iterator[Piece]:
-    """Yield the pieces of one landmark's path."""
+def _follow(trajectory: Trajectory, name: str, start: float) -> list[Piece]:
+    """Return the pieces of one landmark's path."""
     count = min(MOST_MOMENTS, math.ceil(float(trajectory.time[-1]) / GRID_STEP) + 1)
     even = trajectory.select([name]).resample_in_time(max(count, 16))
     # In extents, so that a small movement is split as a large one.
     path = even.xy[:, 0] / max(measure_extent(even.xy[:, 0]), 1e-12)
     motion = measure_motion([path], even.time)
-    if motion is None:
-        return
-    parts = _list_runs(motion)
-    long = [part for part in parts if len(part.xy) > SHORTEST] or parts[:1]
-    last: Piece | None = None
-    for part in long:
+    parts = [] if motion is None else _list_runs(motion)
+    found: list[Piece] = []
+    for part in [part for part in parts if len(part.xy) > SHORTEST] or parts[:1]:
         here = part.name(name, start)
-        if last is not None and here.start - last.end >= PAUSE_SECONDS:
-            pause = Piece(
-                kind="pause", hand=name, direction=None, turn=0.0, start=last.end, end=here.start
-            )
-            yield last
-            yield pause
-            last = None
-        if last is not None and last.kind == here.kind == "line" and last.words == here.words:
-            here = replace(here, start=last.start)
-        elif last is not None:
-            yield last
-        last = here
-    if last is not None:
-        yield last
+        before = found[-1] if found else here
+        if here.start - before.end >= PAUSE_SECONDS:
+            pause = replace(here, kind="pause", direction=None, turn=0.0)
+            found.append(replace(pause, start=before.end, end=here.start))
+        elif found and before.kind == here.kind == "line" and before.words == here.words:
+            here = replace(here, start=found.pop().start)
+        found.append(here)
+    return found
 
 
 def _list_runs(motion: Motion) -> list[_Run]:
     """Return the pieces of a path between its corners and changes of sense; loops stay whole."""
+    pieces = [slice(piece.first, piece.last + 1) for piece in split_pieces(motion)]
+    runs = [_Run.of(motion.xy[each], motion.time[each]) for each in pieces]
+    whole = _join([run for run in runs if run is not None], _Run.continues)
+    return _join([part for run in whole for part in run.split()], _Run.closes)
+
+
+def _join(runs: Sequence[_Run], belongs: Callable[[_Run, _Run], bool]) -> list[_Run]:
+    """Join each run with the one before it where it belongs to that one."""
     found: list[_Run] = []
-    for piece in split_pieces(motion):
-        moments = slice(piece.first, piece.last + 1)
-        run = _Run.of(motion.xy[moments], motion.time[moments])
-        if run is None:
-            continue
-        if found and run.continues(found[-1]):
-            found[-1] = found[-1].join(run)
-        else:
-            found.append(run)
-    parts: list[_Run] = []
-    for part in (part for run in found for part in run.split()):
-        if parts and part.closes(parts[-1]):
-            parts[-1] = parts[-1].join(part)
-        else:
-            parts.append(part)
-    return parts
+    for run in runs:
+        found.append(found.pop().join(run) if found and belongs(run, found[-1]) else run)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -356,14 +354,10 @@ class _Run:
 
     def closes(self, before: _Run) -> bool:
         """Return whether this run and the one before it are the two halves of a loop."""
-        senses = [run.turn for run in (before, self) if STRAIGHT <= abs(run.turn) < LOOP]
+        bent = all(STRAIGHT <= abs(run.turn) < LOOP for run in (before, self))
+        follows = self.time[0] - before.time[-1] < PAUSE_SECONDS
         whole = before.join(self)
-        return (
-            len(senses) == 2
-            and senses[0] * senses[1] > 0
-            and whole.direct < CLOSED
-            and self.time[0] - before.time[-1] < PAUSE_SECONDS
-        )
+        return bent and follows and abs(whole.turn) >= LOOP and whole.direct < CLOSED
 
     @property
     def turn(self) -> float:
@@ -408,22 +402,16 @@ class _Run:
 
     def _split_bends(self) -> list[_Run]:
         """Split where the sense of the curve changes by more than `REVERSAL`."""
-        headings = self.headings
-        cuts, low, high = [0], 0, 0
-        sense = 0
-        for at, heading in enumerate(headings.tolist()):
-            low = at if heading < headings[low] else low
-            high = at if heading > headings[high] else high
-            if sense >= 0 and headings[high] - heading > REVERSAL:
-                if sense > 0:
-                    cuts.append(high)
-                sense, low = -1, at
-                high = at
-            elif sense <= 0 and heading - headings[low] > REVERSAL:
-                if sense < 0:
-                    cuts.append(low)
-                sense, high = 1, at
-                low = at
+        headings = self.headings.tolist()
+        cuts, sense, farthest = [0], 0, {-1: 0, 1: 0}
+        for at, heading in enumerate(headings):
+            for way in (-1, 1):
+                back = way * (headings[farthest[way]] - heading)
+                if back < 0:
+                    farthest[way] = at
+                elif back > REVERSAL and sense != -way:
+                    cuts += [farthest[way]] * (sense == way)
+                    sense, farthest = -way, {-1: at, 1: at}
         cuts.append(len(self.xy) - 1)
         return [self.between(a, b) for a, b in itertools.pairwise(cuts) if b > a]
 
@@ -434,14 +422,15 @@ class _Run:
         kind: PieceKind = "curve"
         if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
             kind = "loop"
-        elif self.direct >= DIRECT and abs(turn) < STRAIGHT:
+        elif self.direct >= (DIRECT if abs(turn) < STRAIGHT else NEARLY):
             kind = "line"
         elif is_bent:
             kind = "arc"
+        vague = kind == "loop" or (kind == "curve" and self.direct < VAGUE)
         return Piece(
             kind=kind,
             hand=hand,
-            direction=None if kind == "loop" else math.degrees(math.atan2(chord[1], chord[0])),
+            direction=None if vague else math.degrees(math.atan2(chord[1], chord[0])),
             turn=0.0 if kind == "line" else math.degrees(turn),
             start=start + float(self.time[0]),
             end=start + float(self.time[-1]),
@@ -456,14 +445,24 @@ def _is_monotone(headings: FloatArray) -> bool:
 
 def describe_transcript(transcript: Transcript, label: str) -> str:
     """Return what was shown and what was expected, in one sentence."""
+    hands = {each.hand for each in (*transcript.shown, *transcript.expected)}
+    shown, expected = (
+        _say(pieces, transcript.differs, named=len(hands) > 1)
+        for pieces in (transcript.shown, transcript.expected)
+    )
     if not transcript.shown:
-        return f"No movement of a hand was seen. {label!r} is: {_say(transcript.expected)}."
+        return f"No movement of a hand was seen. {label!r} is: {expected}."
     if not transcript.expected:
-        return f"You showed: {_say(transcript.shown)}. {label!r} is a held hand shape."
+        return f"You showed: {shown}. {label!r} is a held hand shape."
     if transcript.differs is None:
-        return f"You showed the strokes of {label!r}: {_say(transcript.shown)}."
-    return f"You showed: {_say(transcript.shown)}. {label!r}: {_say(transcript.expected)}."
+        return f"You showed the strokes of {label!r}: {shown}."
+    return f"You showed: {shown}. {label!r}: {expected}."
 
 
-def _say(pieces: Sequence[Piece]) -> str:
-    return describe_strokes(pieces) or join_words(["no stroke"])
+def _say(pieces: Sequence[Piece], differs: int | None, *, named: bool) -> str:
+    """Return at most `MOST_TOLD` strokes in words, and always the first that differs."""
+    hands = [each.hand for each in pieces]
+    most = MOST_TOLD // max(1, len(set(hands)))
+    if differs is not None and differs < len(hands):
+        most = max(most, differs + 1 - hands.index(hands[differs]))
+    return describe_strokes(pieces, most, named=named) or "no stroke"

@@ -42,6 +42,9 @@ END_CUTS: Final = (0, 1, 3, 5)
 """Steps of 32 that are cut off either end of a demonstration that holds the ways from and to the
 salutes."""
 
+USUAL: Final = 0.45
+"""Novelty of a right take by another person: what no change is expected to remove."""
+
 OUTSIDE: Final = 0.3
 """Least distance of a part from the other drawing, in sizes of the gesture, that is seen as its own
 part."""
@@ -100,6 +103,8 @@ class Undone:
         The kind of cause that the change would undo, see `causes.CauseKind`.
     novelty
         Distance of the two after it, over the language's limit; above 1 is rejected.
+    share
+        In [0, 1]: part of the distance beyond `USUAL` that it removes.
     part
         What is left out: of the take for ``part_added``, else of the demonstration.
     query
@@ -111,6 +116,7 @@ class Undone:
 
     kind: str
     novelty: float
+    share: float
     query: Movement
     part: Part | None = None
     also: str = ""
@@ -183,15 +189,6 @@ class Comparison:
         """Novelty of the two as they are; a gesture that is nearest backwards has its penalty."""
         return self.measure(self.query, self.shown)
 
-    def measure_cut(self, before: int, after: int) -> float:
-        """Return the novelty with steps of the demonstration cut off its start and its end."""
-        return self.measure(self.query, [keep_steps(self.shown[1], before, after)])
-
-    def locate_cut(self, before: int, after: int) -> tuple[float, float]:
-        """Return the seconds of the demonstration's clock between which a cut keeps it."""
-        reached = self.shown[1].reached
-        return float(reached[before]), float(reached[STEPS - 1 - after])
-
     def measure(self, query: Movement, shown: Sequence[Movement]) -> float:
         """Return the least novelty of a movement for any of the others."""
         return float(self._measure_all(query, shown).min())
@@ -209,12 +206,19 @@ class Comparison:
     def undo_all(self) -> Iterator[Undone]:
         """Yield every change with the novelty after it."""
         for kind, turned in self._turn_over():
-            yield Undone(kind, self.measure(turned, self.shown), turned)
+            yield self._undo(kind, self.measure(turned, self.shown), turned)
             yield from self._leave_out(turned, ENDS, kind)
         yield from self._leave_out(self.query, PARTS)
         for part in PARTS:
             novelty = self.measure(_keep(self.query, part.rest), self.shown)
-            yield Undone("part_added", novelty, self.query, part)
+            yield self._undo("part_added", novelty, self.query, part)
+
+    def _undo(
+        self, kind: str, novelty: float, query: Movement, part: Part | None = None, also: str = ""
+    ) -> Undone:
+        before, after = (max(0.0, each - USUAL) for each in (self.base, novelty))
+        share = 1 - after / before if 0 < before < np.inf else float(before > 0 and after < np.inf)
+        return Undone(kind, novelty, max(0.0, share), query, part, also)
 
     def _leave_out(
         self, query: Movement, parts: Sequence[Part], turned: str = ""
@@ -223,7 +227,7 @@ class Comparison:
         cut = [_keep(self.shown[0], part.rest) for part in parts]
         for part, novelty in zip(parts, self._measure_all(query, cut).tolist(), strict=True):
             lacks = LACKS[part.where]
-            yield Undone(turned or lacks, novelty, query, part, lacks if turned else "")
+            yield self._undo(turned or lacks, novelty, query, part, lacks if turned else "")
 
     def _turn_over(self) -> Iterator[tuple[str, Movement]]:
         """Yield the take mirrored in its place, upright, reversed, with the other arm, larger."""
@@ -252,12 +256,10 @@ class Comparison:
         whole, other = (undone.query, self.shown[0]) if added else (self.shown[0], undone.query)
         here, there = whole.paths, other.paths - other.paths.mean(axis=0)
         kept = here[undone.part.rest]
+        part = np.delete(here, undone.part.rest, axis=0) - kept.mean(axis=0)
         scale = np.sqrt((there**2).sum() / STEPS)
         size = np.sqrt(((kept - kept.mean(axis=0)) ** 2).sum() / len(kept))
-        if scale <= 0 or size <= 0:
-            return False
-        part = np.delete(here, undone.part.rest, axis=0) - kept.mean(axis=0)
-        apart = part[:, None] / size - there[None] / scale
+        apart = part[:, None] / max(size, 1e-9) - there[None] / max(scale, 1e-9)
         nearest = np.sqrt((apart**2).sum(axis=(2, 3))).min(axis=1)
         return bool(nearest.max() >= OUTSIDE)
 
@@ -306,11 +308,14 @@ def find_better_range(comparisons: Sequence[Comparison]) -> tuple[float, float] 
 
     """
     best, chosen = float(np.median([each.base for each in comparisons])), None
+    shown = comparisons[0].shown[1]
     for before, after in product(END_CUTS, repeat=2):
         cut = (before + after) / STEPS
-        typical = float(np.median([each.measure_cut(before, after) for each in comparisons]))
+        kept = _keep(shown, np.arange(before, STEPS - after)) if cut else shown
+        typical = float(np.median([each.measure(each.query, [kept]) for each in comparisons]))
         if cut <= MOST_CUT and typical + cut / 4 < best:
-            best, chosen = typical + cut / 4, comparisons[0].locate_cut(before, after)
+            best = typical + cut / 4
+            chosen = float(shown.reached[before]), float(shown.reached[STEPS - 1 - after])
     return chosen
 
 
@@ -326,11 +331,6 @@ def flip(movement: Movement, way: tuple[int, int]) -> Movement:
     )
 
 
-def keep_steps(movement: Movement, before: int, after: int) -> Movement:
-    """Cut steps off the start and the end of a movement."""
-    return _keep(movement, np.arange(before, STEPS - after)) if before or after else movement
-
-
 def _keep(movement: Movement, kept: npt.NDArray[np.intp]) -> Movement:
     """Keep some of a movement's steps, joined, and resample them to `STEPS`."""
     shares = movement.reached / max(float(movement.reached[-1]), 1e-9)
@@ -339,9 +339,10 @@ def _keep(movement: Movement, kept: npt.NDArray[np.intp]) -> Movement:
     if np.count_nonzero(in_time) < 2:
         in_time = np.ones(STEPS, dtype=bool)
     lasting = np.diff(movement.reached, prepend=movement.reached[0])[kept]
+    paths = _resample(_join(movement.paths, kept))
     return replace(
         movement,
-        paths=_centre(_resample(_join(movement.paths, kept))),
+        paths=paths - paths.mean(axis=0),
         limbs=_resample(movement.limbs[kept]),
         reached=np.interp(
             np.linspace(0, len(kept) - 1, STEPS), np.arange(len(kept)), np.cumsum(lasting)
@@ -357,10 +358,6 @@ def _join(paths: FloatArray, kept: npt.NDArray[np.intp]) -> FloatArray:
         gap = paths[kept[at + 1]] - paths[kept[at]]
         joined[at + 1 :] -= np.nan_to_num(gap)
     return joined
-
-
-def _centre(paths: FloatArray) -> FloatArray:
-    return np.asarray(paths - paths.mean(axis=0))
 
 
 def _resample(values: FloatArray) -> FloatArray:

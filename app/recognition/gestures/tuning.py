@@ -51,10 +51,8 @@ class Tuning:
     def __post_init__(self) -> None:
         """Validate the numbers, and freeze the weights."""
         limits = [(name, value, MAX_FACTOR) for name, value in self.weights.items()]
-        for name, value, most in (
-            *limits,
-            ("simplification", self.simplification, MAX_SIMPLIFICATION),
-        ):
+        limits.append(("simplification", self.simplification, MAX_SIMPLIFICATION))
+        for name, value, most in limits:
             if not (math.isfinite(value) and 0 <= value <= most):
                 raise OsgError(f"{name} must be a number from 0 to {most:g}, got {value!r}")
         object.__setattr__(self, "weights", MappingProxyType(dict(self.weights)))

@@ -221,20 +221,16 @@ def _of_two_parses(
     names = _names(automaton, one, other)
     shown = ", ".join(gestures)
     if len(names) == 1:
-        return Ambiguity(
-            "overlap",
-            names,
-            gestures,
+        message = (
             f"the phrase {names[0]!r} reads {shown} in two ways: a gesture may fill a slot or be "
-            "something else; give the slot other gestures, or put a gesture of its own between",
+            "something else; give the slot other gestures, or put a gesture of its own between"
         )
-    return Ambiguity(
-        "same_sequence",
-        names,
-        gestures,
+        return Ambiguity("overlap", names, gestures, message)
+    message = (
         f"the phrases {names[0]!r} and {names[1]!r} are both shown as {shown}, so neither is "
-        "obeyed; let them differ in a gesture",
+        "obeyed; let them differ in a gesture"
     )
+    return Ambiguity("same_sequence", names, gestures, message)
 
 
 def _run_together(

@@ -69,13 +69,9 @@ def check_health(
     """
     if not language.gestures:
         nothing = Finding("empty", (), "the language has no gestures yet: add one", True)
+        name, revision = language.name, language.revision
         return HealthReport(
-            language=language.name,
-            revision=language.revision,
-            forecast=Forecast(0),
-            gestures=(),
-            findings=(nothing,),
-            places=np.zeros((0, 2)),
+            language=name, revision=revision, forecast=Forecast(0), findings=(nothing,)
         )
     shown = sum(len(gesture.trajectories) for gesture in language.gestures)
     forecast = make_forecast(

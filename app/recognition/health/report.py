@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -146,9 +146,9 @@ class HealthReport:
     language: str
     revision: int
     forecast: Forecast
-    gestures: tuple[GestureHealth, ...]
+    gestures: tuple[GestureHealth, ...] = ()
     findings: tuple[Finding, ...]
-    places: FloatArray
+    places: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     trigger: TriggerHealth | None = None
     limit: LimitHealth | None = None
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.recognition.errors import GestureError, LanguageError, PoseError
+from app.recognition.errors import LanguageError, point_to
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
@@ -63,7 +63,10 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
 
     """
     shown = _read_shown(entry, pointer)
-    _check_words(entry, pointer)
+    with point_to(pointer + "/label"):
+        check_label(entry.label)
+    with point_to(pointer + "/command"):
+        check_command(entry.command)
     rates = entry.rates
     return Gesture(
         label=entry.label,
@@ -104,12 +107,14 @@ def _read_shown(entry: GestureEntry | DemonstrationEntry, pointer: str) -> dict[
     if entry.trajectory is not None:
         trajectory = _trajectory(entry.trajectory, pointer + "/trajectory")
     _check_salient(entry.salient, trajectory, pointer)
+    with point_to(pointer + "/diver"):
+        diver = check_diver(entry.diver)
     return {
         "salient": tuple(entry.salient),
         "trajectory": trajectory,
         "image": image,
         "descriptors": _descriptors(entry, image, pointer),
-        "diver": _diver(entry.diver, pointer),
+        "diver": diver,
     }
 
 
@@ -193,27 +198,9 @@ def _hands(entries: list[HandEntry], pointer: str) -> tuple[HandShape, ...]:
         raise LanguageError(f"two {entries[0].side} hands", pointer + build_pointer(1, "side"))
     hands = []
     for index, entry in enumerate(entries):
-        try:
+        with point_to(pointer + build_pointer(index)):
             hands.append(HandShape(entry.side, np.column_stack([entry.x, entry.y])))
-        except PoseError as error:
-            raise LanguageError(str(error), pointer + build_pointer(index)) from error
     return tuple(hands)
-
-
-def _check_words(entry: GestureEntry, pointer: str) -> None:
-    """Check rules that the schema cannot express, each with its own pointer."""
-    for key, check in (("label", check_label), ("command", check_command)):
-        try:
-            check(getattr(entry, key))
-        except GestureError as error:
-            raise LanguageError(str(error), pointer + build_pointer(key)) from error
-
-
-def _diver(name: str, pointer: str) -> str:
-    try:
-        return check_diver(name)
-    except GestureError as error:
-        raise LanguageError(str(error), pointer + "/diver") from error
 
 
 def _check_salient(salient: list[str], trajectory: Trajectory | None, pointer: str) -> None:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
+from pydantic import BaseModel, Discriminator, Field, Tag
 
 from app.recognition.errors import LanguageError
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
@@ -16,10 +16,12 @@ from app.recognition.phrases.phrase import (
     OneOf,
     Part,
     Phrase,
+    ReadsAs,
     Slot,
     SlotType,
     Value,
 )
+from app.recognition.text.described import STRICT
 from app.recognition.text.strict_json import build_pointer
 
 MAX_ENTRIES = 100
@@ -39,7 +41,7 @@ Gestures = Annotated[
 
 
 class _Model(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    model_config = STRICT
 
 
 Least = Annotated[
@@ -59,20 +61,14 @@ class GesturesEntry(_Model):
 class SlotEntry(_Model):
     """A gesture that carries a value for the command."""
 
-    slot: Annotated[
-        str,
-        Field(
-            pattern="^[a-z][a-z0-9_]{0,39}$",
-            description="Name by which command and spoken text refer to the value.",
-        ),
-    ]
-    type: Annotated[Name, Field(description="Name of the slot type that may stand here.")]
+    slot: Annotated[str, Field(pattern="^[a-z][a-z0-9_]{0,39}$")]
+    """Name by which command and spoken text refer to the value."""
+    type: Name
+    """Name of the slot type that may stand here."""
     least: Least = 1
     most: Most = 1
-    default: Annotated[
-        SlotValue | None,
-        Field(description="The command's value where the slot was left out. Left out when none."),
-    ] = None
+    default: SlotValue | None = None
+    """The command's value where the slot was left out. Left out when none."""
 
 
 def _kind_of_member(entry: Any) -> str | None:
@@ -127,10 +123,8 @@ class SlotTypeEntry(_Model):
     """The gestures that may fill a slot."""
 
     name: Name
-    reads_as: Annotated[
-        Literal["number", "text", "digits"],
-        Field(description="A number or a text each, or digits that make one number together."),
-    ]
+    reads_as: ReadsAs
+    """A number or a text each, or digits that make one number together."""
     values: Annotated[list[SlotValueEntry], Field(min_length=1, max_length=MAX_ENTRIES)]
 
 
@@ -139,20 +133,12 @@ class PhraseEntry(_Model):
 
     name: Name
     parts: Annotated[list[PartEntry], Field(min_length=1, max_length=MAX_ENTRIES)]
-    command: Annotated[
-        Text | dict[str, Any] | None,
-        Field(
-            description="What the robot should do: text or an object, in which {slot} stands for a "
-            "value, or null. Left out when null."
-        ),
-    ] = None
-    says: Annotated[
-        Text,
-        Field(
-            description="How it is spoken back: {slot} stands for a value, what is in [ ] is left "
-            "out with its slots. Left out: the name and the values."
-        ),
-    ] = ""
+    command: Text | dict[str, Any] | None = None
+    """What the robot should do: text or an object, in which {slot} stands for a value, or null.
+    Left out when null."""
+    says: Text = ""
+    """How it is spoken back: {slot} stands for a value, what is in [ ] is left out with its slots.
+    Left out: the name and the values."""
 
 
 Label = Annotated[Name | None, Field(description="A gesture's label. Left out when none.")]
@@ -164,15 +150,10 @@ class GrammarEntry(_Model):
     start: Label = None
     end: Label = None
     cancel: Label = None
-    timeout: Annotated[
-        Number,
-        Field(
-            gt=0, description="Most seconds between the end of a gesture and the start of the next."
-        ),
-    ]
-    most_phrases: Annotated[
-        int, Field(ge=1, description="Phrases in one message. Left out when 1.")
-    ] = 1
+    timeout: Annotated[Number, Field(gt=0)]
+    """Most seconds between the end of a gesture and the start of the next."""
+    most_phrases: Annotated[int, Field(ge=1)] = 1
+    """Phrases in one message. Left out when 1."""
     slot_types: Annotated[list[SlotTypeEntry], Field(max_length=MAX_ENTRIES)] = []
     phrases: Annotated[list[PhraseEntry], Field(max_length=MAX_ENTRIES)]
 

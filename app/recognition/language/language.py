@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from app.recognition.decision.rejection import MOST_REFUSED, MOST_REFUSED_AT_ALL
-from app.recognition.errors import LanguageError, OsgError
+from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
 from app.recognition.gestures.tuning import AS_THE_PROFILE, Tuning
@@ -28,6 +27,7 @@ from app.recognition.language.trigger_entry import entry_to_trigger, trigger_to_
 from app.recognition.language.tuning_entry import entry_to_tuning, tuning_to_entry
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
+from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.look_alikes import find_confusable, list_look_alikes
 from app.recognition.text.strict_json import build_pointer
@@ -139,7 +139,10 @@ class Language:
                 "another trigger first",
                 "/trigger",
             )
-        _check_tuning(self.profile, self.tuning)
+        with point_to("/profile"):
+            voters = find_profile(self.profile).voters
+        with point_to("/tuning/weights"):
+            self.tuning.weights_of([voter.name for voter in voters])
         object.__setattr__(self, "created", _utc_second(self.created))
 
     @property
@@ -282,16 +285,7 @@ class Language:
 
     def save(self, path: str | Path) -> None:
         """Write the language file atomically: readers see the old file or the new one."""
-        target = Path(path)
-        partial = target.with_name(f".{target.name}.{os.getpid()}.partial")
-        try:
-            with partial.open("wb") as file:
-                file.write(self.to_json().encode("utf-8"))
-                file.flush()
-                os.fsync(file.fileno())
-            partial.replace(target)
-        finally:
-            partial.unlink(missing_ok=True)
+        write_atomically(Path(path), self.to_json().encode("utf-8"))
 
     @classmethod
     def load(cls, path: str | Path) -> Language:
@@ -339,17 +333,6 @@ def require_distinct_labels(labels: Sequence[str]) -> None:
 def _check_text(text: Any, most: int, pointer: str) -> None:
     if not isinstance(text, str) or len(text) > most or not is_printable(text):
         raise LanguageError(f"must be at most {most} printable characters, got {text!r}", pointer)
-
-
-def _check_tuning(profile: str, tuning: Tuning) -> None:
-    try:
-        voters = find_profile(profile).voters
-    except OsgError as error:
-        raise LanguageError(str(error), "/profile") from error
-    try:
-        tuning.weights_of([voter.name for voter in voters])
-    except OsgError as error:
-        raise LanguageError(str(error), "/tuning/weights") from error
 
 
 def _utc_second(moment: datetime | None) -> datetime:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.errors import GestureError, LanguageError
+from app.recognition.errors import LanguageError, point_to
 from app.recognition.features.contour import BinaryImage
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.gestures.gesture import Gesture
@@ -100,10 +100,8 @@ def _gesture(label: str, entry: Any) -> Gesture:
         raise LanguageError('must be an object with "image" and "salient_keypoints"', pointer)
     salient = _salient(entry["salient_keypoints"], pointer + "/salient_keypoints")
     image = _image(entry["image"], pointer + "/image")
-    try:
+    with point_to(pointer):
         return Gesture(label=label, salient=salient, image=image).redraw()
-    except GestureError as error:
-        raise LanguageError(str(error), pointer) from error
 
 
 def _salient(names: Any, pointer: str) -> tuple[str, ...]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, Field
 
-from app.recognition.errors import LanguageError, TriggerError
+from app.recognition.errors import point_to
+from app.recognition.text.described import STRICT
 from app.recognition.triggers.arm_pose import ArmPose
 from app.recognition.triggers.trigger import SALUTE, Trigger, TriggerKind
 
@@ -24,7 +25,7 @@ PlaceEntry = Annotated[
 
 
 class _Model(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    model_config = STRICT
 
 
 class ArmPoseEntry(_Model):
@@ -39,26 +40,17 @@ class ArmPoseEntry(_Model):
 class TriggerEntry(_Model):
     """What begins and ends a take."""
 
-    kind: Annotated[
-        TriggerKind,
-        Field(
-            description="salute: a Vulcan salute. pose: a held pose of the arms. gesture: a "
-            "gesture of the language. none: nothing, gestures are found anywhere."
-        ),
-    ]
-    start: Annotated[
-        ArmPoseEntry | None, Field(description="Of kind pose, the pose that begins a take.")
-    ] = None
-    stop: Annotated[
-        ArmPoseEntry | None,
-        Field(description="The pose that ends it. Left out when it is the one that begins it."),
-    ] = None
-    start_label: Annotated[
-        str, Field(description="Of kind gesture, the label of the gesture that begins a take.")
-    ] = ""
-    stop_label: Annotated[
-        str, Field(description="Label of the gesture that ends it. Left out when it is the same.")
-    ] = ""
+    kind: TriggerKind
+    """salute: a Vulcan salute. pose: a held pose of the arms. gesture: a gesture of the language.
+    none: nothing, gestures are found anywhere."""
+    start: ArmPoseEntry | None = None
+    """Of kind pose, the pose that begins a take."""
+    stop: ArmPoseEntry | None = None
+    """The pose that ends it. Left out when it is the one that begins it."""
+    start_label: str = ""
+    """Of kind gesture, the label of the gesture that begins a take."""
+    stop_label: str = ""
+    """Label of the gesture that ends it. Left out when it is the same."""
 
 
 def trigger_to_entry(trigger: Trigger) -> TriggerEntry | None:
@@ -82,13 +74,11 @@ def entry_to_trigger(entry: TriggerEntry | None) -> Trigger:
     """
     if entry is None:
         return SALUTE
-    try:
+    with point_to("/trigger"):
         poses = (entry.start, entry.stop)
         start, stop = (pose and ArmPose.of_joints(pose.model_dump()) for pose in poses)
         read: dict[str, Any] = vars(entry) | {"start": start, "stop": stop}
         return Trigger(**read)
-    except TriggerError as error:
-        raise LanguageError(str(error), "/trigger") from error
 
 
 def _pose_to_entry(pose: ArmPose) -> ArmPoseEntry:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final, Literal, TypeVar
 
 ModelName = Literal[
     "pose_detection", "pose_landmark_full", "palm_detection_full", "hand_landmark_full"
@@ -34,28 +34,22 @@ class InstalledFile:
     sha256: str
 
 
-MODELS: Final[dict[ModelName, InstalledFile]] = {
-    "pose_detection": InstalledFile(
-        "pose_detection",
-        "pose_detection.onnx",
-        "20d7377dfe4e13cf618c97520f89781acffc07ec9fb16fed8f5f4458a647e966",
-    ),
-    "pose_landmark_full": InstalledFile(
-        "pose_landmark_full",
-        "pose_landmark_full.onnx",
-        "6a7a75360ccb2e719dfdfbedd8dd112bea39fff4b95a8d4e1f4fc94fecf74c08",
-    ),
-    "palm_detection_full": InstalledFile(
-        "palm_detection_full",
-        "palm_detection_full.onnx",
-        "ed7bffc1721aa5dbcb67b11b735437c3972258031000f798ba8060e264c70fbd",
-    ),
-    "hand_landmark_full": InstalledFile(
-        "hand_landmark_full",
-        "hand_landmark_full.onnx",
-        "de8028c2509e24b5767e210b3ca30f883051621ee5e68587d228bca3462782b5",
-    ),
-}
+Name = TypeVar("Name", bound=str)
+
+
+def _name_files(ending: str, hashes: dict[Name, str]) -> dict[Name, InstalledFile]:
+    return {name: InstalledFile(name, name + ending, sha256) for name, sha256 in hashes.items()}
+
+
+MODELS: Final[dict[ModelName, InstalledFile]] = _name_files(
+    ".onnx",
+    {
+        "pose_detection": "20d7377dfe4e13cf618c97520f89781acffc07ec9fb16fed8f5f4458a647e966",
+        "pose_landmark_full": "6a7a75360ccb2e719dfdfbedd8dd112bea39fff4b95a8d4e1f4fc94fecf74c08",
+        "palm_detection_full": "ed7bffc1721aa5dbcb67b11b735437c3972258031000f798ba8060e264c70fbd",
+        "hand_landmark_full": "de8028c2509e24b5767e210b3ca30f883051621ee5e68587d228bca3462782b5",
+    },
+)
 """The ONNX models, part of every release; their conversion is deterministic (`release.models`)."""
 
 HAND_FINDER: Final = InstalledFile(
@@ -65,18 +59,13 @@ HAND_FINDER: Final = InstalledFile(
 )
 """The finder of divers' hands, part of the package itself; its card lies beside it."""
 
-TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = {
-    "pose_landmarker_full": InstalledFile(
-        "pose_landmarker_full",
-        "pose_landmarker_full.task",
-        "3c82c60bbe5fd58bdfb060737d7efed3cc64a2e5efd2292f6cdf08a7ccd51d7c",
-    ),
-    "hand_landmarker": InstalledFile(
-        "hand_landmarker",
-        "hand_landmarker.task",
-        "6bbbde8c9ceef075c7daa9ccca97dcc45396ba44eaa19eea243e9ea0d2904ccc",
-    ),
-}
+TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = _name_files(
+    ".task",
+    {
+        "pose_landmarker_full": "3c82c60bbe5fd58bdfb060737d7efed3cc64a2e5efd2292f6cdf08a7ccd51d7c",
+        "hand_landmarker": "6bbbde8c9ceef075c7daa9ccca97dcc45396ba44eaa19eea243e9ea0d2904ccc",
+    },
+)
 """The bundles, as reproducible; for MediaPipe's own library, beside the wheel in a release."""
 
 LICENSE: Final = InstalledFile(

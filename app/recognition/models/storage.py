@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
 import os
 import shlex
-import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,6 +22,7 @@ from app.recognition.models.catalogue import (
     ModelName,
     TaskBundleName,
 )
+from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.hashing import hash_file
 
 State = Literal["ok", "missing", "damaged"]
@@ -204,28 +203,13 @@ def write_file(path: Path, content: bytes) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        _replace(path, content)
+        write_atomically(path, content)
+        path.chmod(0o644)  # A server or robot may run as another user, whatever the umask.
     except OSError as error:
         raise ModelError(
             f"cannot write {path}: {error.strerror}; "
             f"make room there or choose another folder ({DIRECTORY_VARIABLE} for the models in use)"
         ) from error
-
-
-def _replace(path: Path, content: bytes) -> None:
-    handle, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        # mkstemp's files are private; a server or robot may run as another user.
-        Path(part).chmod(0o644)
-        Path(part).replace(path)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            Path(part).unlink()
-        raise
 
 
 def _size(path: Path) -> int:

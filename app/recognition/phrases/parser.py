@@ -89,17 +89,11 @@ class PhraseEvent:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        return {
-            "kind": self.kind,
-            "gestures": list(self.gestures),
-            "label": self.label,
-            "pair": self.pair and list(self.pair),
-            "expected": list(self.expected),
-            "mission": self.mission and self.mission.to_list(),
-            "text": self.text,
-            "start": self.start,
-            "end": self.end,
+        plain = {
+            key: [*each] if isinstance(each, tuple) else each for key, each in vars(self).items()
         }
+        mission = None if self.mission is None else self.mission.to_list()
+        return plain | {"mission": mission, "text": self.text}
 
 
 @dataclass(frozen=True)

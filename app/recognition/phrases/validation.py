@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from app.recognition.errors import GestureError, LanguageError
+from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, check_command
 from app.recognition.phrases.grammar_parts import GrammarParts
 from app.recognition.phrases.phrase import (
@@ -228,10 +228,8 @@ def _check_words(phrase: Phrase, pointer: str) -> None:
         )
     if fault := find_template_fault(phrase.says, slots, missing):
         raise LanguageError(fault, pointer + "/says")
-    try:
+    with point_to(pointer + "/command"):
         check_command(phrase.command)
-    except GestureError as error:
-        raise LanguageError(str(error), pointer + "/command") from error
     for name in _names_in(phrase.command):
         if name not in slots:
             raise LanguageError(

@@ -28,6 +28,9 @@ put the ratio at 1.3 to 1.7; it only stands in until the hips are seen.
 HANDS_SHAPE = (2, len(HAND_LANDMARKS), 2)
 """Shape of the hands of one frame: left and right, landmarks, x and y."""
 
+ARRAYS = ("xy", "time", "confidence", "world", "hands")
+"""Attributes of a pose sequence with a row for every frame."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PoseSequence:
@@ -90,10 +93,15 @@ class PoseSequence:
             )
         object.__setattr__(self, "xy", xy)
         object.__setattr__(self, "time", time)
-        object.__setattr__(self, "confidence", _check_confidence(self.confidence, xy))
         object.__setattr__(self, "frame_size", _check_size(self.frame_size))
-        object.__setattr__(self, "world", _check_world(self.world, xy))
-        object.__setattr__(self, "hands", _check_hands(self.hands, len(xy)))
+        for name, shape in (
+            ("confidence", xy.shape[:2]),
+            ("world", (*xy.shape[:2], 3)),
+            ("hands", (len(xy), *HANDS_SHAPE)),
+        ):
+            object.__setattr__(self, name, _freeze_optional(getattr(self, name), name, shape))
+        if not (self.confidence is None or ((self.confidence >= 0) & (self.confidence <= 1)).all()):
+            raise PoseError("confidence holds values outside [0, 1]")
 
     def __len__(self) -> int:
         """Count the frames, T."""
@@ -106,11 +114,7 @@ class PoseSequence:
         return (
             self.landmarks == other.landmarks
             and self.frame_size == other.frame_size
-            and np.array_equal(self.xy, other.xy, equal_nan=True)
-            and np.array_equal(self.time, other.time)
-            and _same_values(self.confidence, other.confidence)
-            and _same_values(self.world, other.world)
-            and _same_values(self.hands, other.hands)
+            and all(_same_values(getattr(self, name), getattr(other, name)) for name in ARRAYS)
         )
 
     __hash__ = None  # type: ignore[assignment]  # arrays inside: equality without a hash
@@ -157,22 +161,16 @@ class PoseSequence:
         return replace(
             self,
             landmarks=tuple(names),
-            xy=self.xy[:, columns],
-            confidence=None if self.confidence is None else self.confidence[:, columns],
-            world=None if self.world is None else self.world[:, columns],
+            **self._cut(("xy", "confidence", "world"), np.s_[:, columns]),
         )
 
     def between(self, start: float, end: float) -> PoseSequence:
         """Keep the frames with ``start <= time <= end`` (seconds, as in `time`)."""
-        inside = (self.time >= start) & (self.time <= end)
-        return replace(
-            self,
-            xy=self.xy[inside],
-            time=self.time[inside],
-            confidence=None if self.confidence is None else self.confidence[inside],
-            world=None if self.world is None else self.world[inside],
-            hands=None if self.hands is None else self.hands[inside],
-        )
+        return replace(self, **self._cut(ARRAYS, (self.time >= start) & (self.time <= end)))
+
+    def _cut(self, names: Sequence[str], at: Any) -> dict[str, Any]:
+        """Return a part of the named arrays, but of those that are None."""
+        return {name: array[at] for name in names if (array := getattr(self, name)) is not None}
 
     def torso_centre(self) -> FloatArray | None:
         """Return the middle of the torso: the mean of mid-shoulders and mid-hips.
@@ -323,37 +321,15 @@ def _freeze(values: Any, name: str) -> FloatArray:
     return array
 
 
-def _check_confidence(values: Any, xy: FloatArray) -> FloatArray | None:
+def _freeze_optional(values: Any, name: str, shape: tuple[int, ...]) -> FloatArray | None:
     if values is None:
         return None
-    confidence = _freeze(values, "confidence")
-    if confidence.shape != xy.shape[:2]:
-        raise PoseError(f"confidence has shape {confidence.shape}, expected {xy.shape[:2]}")
-    if not ((confidence >= 0) & (confidence <= 1)).all():
-        raise PoseError("confidence holds values outside [0, 1]")
-    return confidence
-
-
-def _check_world(values: Any, xy: FloatArray) -> FloatArray | None:
-    if values is None:
-        return None
-    world = _freeze(values, "world")
-    if world.shape != (*xy.shape[:2], 3):
-        raise PoseError(f"world has shape {world.shape}, expected {(*xy.shape[:2], 3)}")
-    if np.isinf(world).any():
-        raise PoseError("world holds infinite values; mark what is not known with NaN")
-    return world
-
-
-def _check_hands(values: Any, frames: int) -> FloatArray | None:
-    if values is None:
-        return None
-    hands = _freeze(values, "hands")
-    if hands.shape != (frames, *HANDS_SHAPE):
-        raise PoseError(f"hands has shape {hands.shape}, expected {(frames, *HANDS_SHAPE)}")
-    if np.isinf(hands).any():
-        raise PoseError("hands holds infinite values; mark what was not seen with NaN")
-    return hands
+    array = _freeze(values, name)
+    if array.shape != shape:
+        raise PoseError(f"{name} has shape {array.shape}, expected {shape}")
+    if np.isinf(array).any():
+        raise PoseError(f"{name} holds infinite values; mark what was not seen with NaN")
+    return array
 
 
 def _check_size(size: Any) -> tuple[int, int]:

@@ -30,32 +30,15 @@ COCO_17: Final = (
 COCO_18: Final[LandmarkSet] = (
     "nose",
     None,  # neck
-    "right_shoulder",
-    "right_elbow",
-    "right_wrist",
-    "left_shoulder",
-    "left_elbow",
-    "left_wrist",
-    "right_hip",
-    "right_knee",
-    "right_ankle",
-    "left_hip",
-    "left_knee",
-    "left_ankle",
-    "right_eye",
-    "left_eye",
-    "right_ear",
-    "left_ear",
+    *("right_shoulder", "right_elbow", "right_wrist"),
+    *("left_shoulder", "left_elbow", "left_wrist"),
+    *("right_hip", "right_knee", "right_ankle"),
+    *("left_hip", "left_knee", "left_ankle"),
+    *("right_eye", "left_eye", "right_ear", "left_ear"),
 )
 """OpenPose's COCO model."""
 
-SKELETON_2D: Final[LandmarkSet] = (
-    *COCO_18[:14],
-    "left_eye",
-    "right_eye",
-    "left_ear",
-    "right_ear",
-)
+SKELETON_2D: Final[LandmarkSet] = (*COCO_18[:14], *name_both_sides("eye", "ear"))
 """ROS4HRI's `hri_msgs/Skeleton2D`: documented as OpenPose's COCO model, but in the message's own
 constants the left eye and the left ear come first."""
 

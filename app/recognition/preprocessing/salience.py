@@ -113,10 +113,7 @@ def _find_other_moving(trajectory: Trajectory, hands: Mapping[str, float]) -> se
     joints = {
         name: moved for name, moved in measure_displacements(trajectory).items() if name in _JOINTS
     }
-    for moved, least in (
-        (joints, MIN_DISPLACEMENT),
-        ({**joints, **hands}, LEAST_DISPLACEMENT),
-    ):
+    for moved, least in ((joints, MIN_DISPLACEMENT), (joints | {**hands}, LEAST_DISPLACEMENT)):
         largest = max(moved.values(), default=0.0)
         if largest >= least:
             bar = max(least, MIN_SHARE_OF_LARGEST * largest)

@@ -106,15 +106,9 @@ def record(
         When the default estimator's models are not installed.
 
     """
+    following = Following(progress=progress, observer=observer, keep_so_far=keep_so_far)
     with read_frames(clip, limits, turn) as reader:
-        return record_frames(
-            reader,
-            estimator=estimator,
-            progress=progress,
-            observer=observer,
-            water=water,
-            keep_so_far=keep_so_far,
-        )
+        return record_frames(reader, estimator=estimator, water=water, **following)
 
 
 def record_frames(

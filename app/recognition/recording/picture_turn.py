@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.video import Turn
 
@@ -30,18 +31,15 @@ HEAD_POINTS: Final[dict[Turn, str]] = {
 }
 """How a diver is seen in a picture that must be turned by so much."""
 
-_SHOULDERS: Final = ("left_shoulder", "right_shoulder")
-_HIPS: Final = ("left_hip", "right_hip")
-
 
 def find_turn(poses: PoseSequence) -> Turn:
     """Return by how much the picture must be turned for the person to stand upright in it.
 
     0 where shoulders and hips do not lie sideways or upside down in nearly all frames.
     """
-    if not {*_SHOULDERS, *_HIPS} <= set(poses.landmarks):
+    if not {*SHOULDERS, *HIPS} <= set(poses.landmarks):
         return 0
-    shoulders, hips = poses.select(_SHOULDERS).xy, poses.select(_HIPS).xy
+    shoulders, hips = poses.select(SHOULDERS).xy, poses.select(HIPS).xy
     up = shoulders.mean(axis=1) - hips.mean(axis=1)
     width = np.hypot(*(shoulders[:, 0] - shoulders[:, 1]).T)
     length = np.hypot(*up.T)

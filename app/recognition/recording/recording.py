@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import math
-import os
-import tempfile
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +17,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.recording.hand_sides import place_hands
+from app.recognition.text.atomic_files import PRIVATE, replace_file
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 FILE_VERSION = 1
@@ -97,19 +96,6 @@ class Recording:
 
         The file appears under its name only when it is complete and on the disk.
         """
-        target = Path(path)
-        descriptor, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-        try:
-            with os.fdopen(descriptor, "wb") as file:
-                self._write(file)
-                file.flush()
-                os.fsync(file.fileno())
-            Path(name).replace(target)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
-
-    def _write(self, file: BinaryIO) -> None:
         found = [hand for frame in self.hands for hand in frame]
         arrays: dict[str, Any] = {
             "version": np.array(FILE_VERSION),
@@ -131,7 +117,8 @@ class Recording:
             arrays["world"] = self.poses.world.astype(np.float32)  # micrometres are enough
         if self.people is not None:
             arrays["people"] = self.people
-        np.savez_compressed(file, allow_pickle=False, **arrays)
+        with replace_file(Path(path), PRIVATE) as file:
+            np.savez_compressed(file, allow_pickle=False, **arrays)
 
     @classmethod
     def load(cls, path: str | Path) -> Recording:

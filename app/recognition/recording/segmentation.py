@@ -204,16 +204,9 @@ class TakeMachine:
         released = self.trigger.until if self._released is None else self._released
         assert released is not None
         if stopped and since is not None:
-            self.state, self._closing = TakeState.done, since
-            if since - released < self.shortest:
-                return None
-            return Bracket(
-                opening=Span(self._began, released), closing=Span(since, time), end=since
-            )
-        if self._released is None or time - released <= self.longest:
-            return None
-        self.state = TakeState.idle
-        return self._unclosed(released, released + self.longest)
+            ended = self._end(released, since, time)
+            return ended if since - released >= self.shortest else None
+        return None if self._released is None else self._end_too_long(released, time)
 
     def _recording(self, time: float, held: bool) -> Bracket | None:
         released, since = self._released, self.trigger.since
@@ -222,15 +215,23 @@ class TakeMachine:
                 self._released = self.trigger.until
             return None
         if not held or since is None:
-            if time - released <= self.longest:
-                return None
-            self.state = TakeState.idle
-            return self._unclosed(released, released + self.longest)
+            return self._end_too_long(released, time)
         if since - released < self.shortest:
             self._released = None
             return None
+        return self._end(released, since, time)
+
+    def _end(self, released: float, since: float, time: float) -> Bracket:
+        """End the take by a trigger that is held since then."""
         self.state, self._closing = TakeState.done, since
         return Bracket(opening=Span(self._began, released), closing=Span(since, time), end=since)
+
+    def _end_too_long(self, released: float, time: float) -> Bracket | None:
+        """End the take without a trigger, if it lasts longer than a take may."""
+        if time - released <= self.longest:
+            return None
+        self.state = TakeState.idle
+        return self._unclosed(released, released + self.longest)
 
     def _find_gap(self, time: float) -> Bracket | None:
         ended, self._ended = self._ended, None

@@ -30,18 +30,6 @@ from app.recognition.recording.file_kinds import describe_unreadable
 from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock, tell_jumps
 from app.recognition.recording.video_limits import VideoLimits
 
-__all__ = [
-    "FrameReader",
-    "FrameSource",
-    "Turn",
-    "VideoFrame",
-    "VideoInfo",
-    "VideoLimits",
-    "over_background",
-    "probe",
-    "read_frames",
-]
-
 CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts", "mpeg")
 """Names of the FFmpeg demuxers that may open a clip: what phones, action and dive cameras, screen
 recorders and browsers write. None of them is a playlist."""
@@ -123,16 +111,13 @@ class FrameSource(Protocol):
     @property
     def info(self) -> VideoInfo:
         """The clip's metadata."""
-        ...
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Problems of the frames read so far, as sentences."""
-        ...
 
     def __iter__(self) -> Iterator[VideoFrame]:
         """Go through the frames once, in order."""
-        ...
 
 
 class FrameReader(Iterator[VideoFrame]):

@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 
 def humanize(identifier: str) -> str:
     """Return an identifier as words: ``right_wrist`` as "right wrist"."""
     return identifier.replace("_", " ")
-
-
-def humanize_all(identifiers: Iterable[str]) -> list[str]:
-    """Return each identifier as words."""
-    return [humanize(identifier) for identifier in identifiers]
 
 
 def join_words(items: Sequence[str], last: str = "and") -> str:

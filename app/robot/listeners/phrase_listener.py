@@ -8,7 +8,7 @@ from app.recognition import PoseSequence
 from app.recognition.phrases.parser import PhraseEvent, PhraseParser
 from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
-from app.robot.events import Event, PhraseHeard, TakeRecognized, TakeRejected
+from app.robot.events import Event, PhraseHeard, TakeEvent, TakeRecognized, TakeRejected
 from app.robot.listeners.trigger_listener import LandmarkListener, WrappingListener
 
 
@@ -75,7 +75,7 @@ class PhraseListener(WrappingListener):
         added: list[Event] = []
         for event in events:
             added.append(event)
-            if self._parser is None or not isinstance(event, TakeRecognized | TakeRejected):
+            if self._parser is None or not isinstance(event, TakeEvent):
                 continue
             label = pair = None
             if isinstance(event, TakeRejected):

@@ -34,33 +34,26 @@ class LandmarkListener(Protocol):
     @property
     def language(self) -> ActiveLanguage:
         """The active language."""
-        ...
 
     @property
     def state(self) -> TakeState:
         """State of the triggers."""
-        ...
 
     @property
     def order(self) -> StreamOrder:
         """What is known of the order of the frames."""
-        ...
 
     def feed(self, moment: PoseSequence, salute: float) -> tuple[Event, ...]:
         """Process the next frame and return its events; a late frame has none."""
-        ...
 
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory; an open take is rejected for `reason`."""
-        ...
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream and return the events that were still pending."""
-        ...
 
     def set_language(self, language: ActiveLanguage) -> None:
         """Recognise another language from the next frame on, without clearing the memory."""
-        ...
 
 
 class TriggerListener:

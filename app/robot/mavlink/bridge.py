@@ -15,6 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import OsgError, VehicleError
 from app.recognition.recording.segmentation import TakeState
+from app.robot import events
 from app.robot.active_language import ActiveLanguage
 from app.robot.commands.answers import Answer
 from app.robot.commands.dialogue import (
@@ -23,18 +24,6 @@ from app.robot.commands.dialogue import (
     Decision,
     RecognizedGesture,
     RecognizedPhrase,
-)
-from app.robot.events import (
-    Event,
-    FrameRateChanged,
-    LanguageChanged,
-    OutputFailed,
-    PhraseHeard,
-    RecognitionReady,
-    SourceEnded,
-    StateChanged,
-    TakeRecognized,
-    TakeRejected,
 )
 from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
 from app.robot.mavlink.answers import AnswerDesk
@@ -147,7 +136,7 @@ class MavlinkBridge:
         order = self._desk.order
         return order is not None and order.emergency
 
-    def publish(self, event: Event) -> None:
+    def publish(self, event: events.Event) -> None:
         """Decide about one event.
 
         Raises
@@ -162,22 +151,22 @@ class MavlinkBridge:
         with self._lock:
             self._time = event.time
             match event:
-                case LanguageChanged():
+                case events.LanguageChanged():
                     self._set_language()
-                case TakeRecognized() | TakeRejected():
+                case events.TakeRecognized() | events.TakeRejected():
                     self._decide_take(event)
-                case PhraseHeard():
+                case events.PhraseHeard():
                     self._decide_phrase(event)
-                case FrameRateChanged():
+                case events.FrameRateChanged():
                     self._say(event.words, mavlink.MAV_SEVERITY_WARNING)
-                case RecognitionReady():
+                case events.RecognitionReady():
                     self._say("ready for gestures", mavlink.MAV_SEVERITY_NOTICE)
                     self.answer(Answer.listening, "ready for gestures")
-                case StateChanged(state=state):
+                case events.StateChanged(state=state):
                     self._answers.is_take_open = state is TakeState.recording
-                case OutputFailed(output=output):
+                case events.OutputFailed(output=output):
                     self._say(f"{output} cannot be written", mavlink.MAV_SEVERITY_WARNING)
-                case SourceEnded(stopped=True):
+                case events.SourceEnded(stopped=True):
                     self._report(self._desk.stop("robot is stopped"))
 
     @property
@@ -224,15 +213,15 @@ class MavlinkBridge:
         for name in self._table.list_unknown(language):
             self._say(f"not in the language: {name}", mavlink.MAV_SEVERITY_WARNING)
 
-    def _decide_take(self, event: TakeRecognized | TakeRejected) -> None:
-        recognized = isinstance(event, TakeRecognized)
+    def _decide_take(self, event: events.TakeEvent) -> None:
+        recognized = isinstance(event, events.TakeRecognized)
         gesture = RecognizedGesture(
-            event.label if isinstance(event, TakeRecognized) else None,
+            event.label if isinstance(event, events.TakeRecognized) else None,
             event.confidence if recognized and event.confidence is not None else 0.0,
             event.time,
             event.sha256,
             start=event.start,
-            pair=event.pair if isinstance(event, TakeRejected) else None,
+            pair=event.pair if isinstance(event, events.TakeRejected) else None,
             novelty=math.nan if event.recognition is None else event.recognition.nearest_novelty,
         )
         decision = self._dialogue.decide(gesture, self._source_time())
@@ -241,7 +230,7 @@ class MavlinkBridge:
             action = self._table.find_action(decision.label)
         self._act(decision, () if action is None else (action,))
 
-    def _decide_phrase(self, event: PhraseHeard) -> None:
+    def _decide_phrase(self, event: events.PhraseHeard) -> None:
         phrase, mission, text = event.phrase, "", event.phrase.text
         if phrase.mission is not None:
             listed = phrase.mission.to_list()

@@ -17,10 +17,10 @@ from urllib.parse import urlsplit
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.recognition.errors import VehicleError
+from app.recognition.text.atomic_files import write_atomically
 from app.robot.mavlink.actions import OUR_COMPONENT, Message
 from app.robot.mavlink.peer import Sender
 from app.robot.mavlink.rest_link import RestLink
-from app.robot.publishing.robot_files import write_atomically
 
 LARGEST_DATAGRAM: Final = 4096
 """Bytes of a datagram that are read; a vehicle's or router's are at most 1500."""

@@ -9,7 +9,7 @@ from typing import Final
 
 from pydantic import FiniteFloat, TypeAdapter
 
-from app.robot.publishing.robot_files import write_atomically
+from app.recognition.text.atomic_files import write_atomically
 
 MOST_BYTES: Final = 4096
 """Largest size in bytes of a file that is read: a few numbers."""

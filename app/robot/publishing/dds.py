@@ -20,17 +20,9 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from app.recognition.errors import PublishError
+from app.robot import events
 from app.robot.commands.answers import PULSE_SECONDS
 from app.robot.event_messages import format_line
-from app.robot.events import (
-    AnswerGiven,
-    Event,
-    LanguageChanged,
-    PhraseHeard,
-    SourceOpened,
-    TakeRecognized,
-    TakeRejected,
-)
 from app.robot.publishing.dds_messages import (
     Answer,
     GestureRecognition,
@@ -120,25 +112,25 @@ class DdsPublisher:
         self._origin = 0
         self._language = ""
 
-    def publish(self, event: Event) -> None:
+    def publish(self, event: events.Event) -> None:
         """Send one event; a subscriber that is too slow loses it."""
         # A failed write must not stop the recognition.
         with suppress(DDSException):
             self._send(event)
 
-    def _send(self, event: Event) -> None:
-        if isinstance(event, SourceOpened):
+    def _send(self, event: events.Event) -> None:
+        if isinstance(event, events.SourceOpened):
             self._origin = _nanoseconds(event.began)
-        if isinstance(event, LanguageChanged):
+        if isinstance(event, events.LanguageChanged):
             self._language = event.name
         self._events.write(String(format_line(event)))
-        if isinstance(event, TakeRecognized | TakeRejected):
+        if isinstance(event, events.TakeEvent):
             self._takes.write(self._recognition(event))
-        if isinstance(event, TakeRecognized):
+        if isinstance(event, events.TakeRecognized):
             self._labels.write(String(event.label))
-        if isinstance(event, PhraseHeard):
+        if isinstance(event, events.PhraseHeard):
             self._phrases.write(self._phrase(event))
-        if isinstance(event, AnswerGiven):
+        if isinstance(event, events.AnswerGiven):
             self._answers.write(
                 Answer(
                     header=Header(self._stamp(event.time)),
@@ -158,7 +150,7 @@ class DdsPublisher:
         topic = Topic(self._participant, f"rt/{NAMESPACE}/{name}", kind, qos=RELIABLE)
         return DataWriter(self._participant, topic, qos=RELIABLE)
 
-    def _recognition(self, event: TakeRecognized | TakeRejected) -> GestureRecognition:
+    def _recognition(self, event: events.TakeEvent) -> GestureRecognition:
         return GestureRecognition(
             header=Header(self._stamp(event.time)),
             start=self._stamp(event.start),
@@ -166,7 +158,7 @@ class DdsPublisher:
             **list_message_fields(event, self._language),
         )
 
-    def _phrase(self, event: PhraseHeard) -> Phrase:
+    def _phrase(self, event: events.PhraseHeard) -> Phrase:
         phrase = event.phrase
         mission = None if phrase.mission is None else phrase.mission.to_list()
         return Phrase(

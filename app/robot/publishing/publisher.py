@@ -16,11 +16,9 @@ class Publisher(Protocol):
 
     def publish(self, event: Event) -> None:
         """Send one event."""
-        ...
 
     def close(self) -> None:
         """Leave the network."""
-        ...
 
 
 def open_publisher(network: Network) -> Publisher:

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
 from app.recognition.errors import LanguageError, OsgError, VehicleError
 from app.recognition.language.file import short_code
+from app.recognition.text.atomic_files import write_atomically
 from app.robot.active_language import ActiveLanguage
 from app.robot.mavlink.table import (
     EMERGENCIES,
@@ -286,23 +285,3 @@ def _compare_actions(
         was, becomes = before.get(label, "nothing"), after.get(label, "nothing")
         if was != becomes:
             yield f"{role} {label!r}: {was} becomes {becomes}"
-
-
-def write_atomically(path: Path, content: bytes) -> None:
-    """Replace a file, so that a reader and a power cut find the old content or the new one."""
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    try:
-        with partial.open("wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
-    except OSError:
-        partial.unlink(missing_ok=True)
-        raise
-    with suppress(OSError):  # Windows opens no folders
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)

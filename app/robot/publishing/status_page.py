@@ -13,16 +13,8 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 from app import __version__
 from app.recognition.errors import OsgError, PublishError
+from app.robot import events
 from app.robot.event_messages import to_message
-from app.robot.events import (
-    Event,
-    FrameRateChanged,
-    Heartbeat,
-    LanguageChanged,
-    SourceLost,
-    SourceOpened,
-    SourceRestored,
-)
 from app.robot.publishing.page_server import PageServer, is_own_host, is_own_origin
 
 if TYPE_CHECKING:  # it reads vehicle tables, which need a package of the extra mavlink
@@ -90,7 +82,7 @@ class StatusPage:
         self,
         host: str,
         port: int,
-        describe: Callable[[Event], str],
+        describe: Callable[[events.Event], str],
         files: RobotFiles | None = None,
     ) -> None:
         self._describe = describe
@@ -125,23 +117,23 @@ class StatusPage:
         """Port that the server listens on."""
         return int(self._server.server_address[1])
 
-    def publish(self, event: Event) -> None:
+    def publish(self, event: events.Event) -> None:
         """Add one event to the page."""
         with self._lock:
             self._heard = clock.monotonic()
             match event:
-                case SourceOpened(source=source, live=live):
+                case events.SourceOpened(source=source, live=live):
                     self._live = live
                     self._facts["source"] = source
-                case LanguageChanged(name=name, code=code, revision=revision):
+                case events.LanguageChanged(name=name, code=code, revision=revision):
                     self._facts["language"] = {"name": name, "code": code, "revision": revision}
-                case SourceLost():
+                case events.SourceLost():
                     self._facts["lost"] = True
-                case SourceRestored():
+                case events.SourceRestored():
                     self._facts["lost"] = False
-                case FrameRateChanged(sufficient=sufficient):
+                case events.FrameRateChanged(sufficient=sufficient):
                     self._facts["slow"] = "" if sufficient else event.words
-                case Heartbeat(frames=frames, dropped=dropped):
+                case events.Heartbeat(frames=frames, dropped=dropped):
                     self._facts |= {"frames": frames, "dropped": dropped}
             if text := self._describe(event):
                 message = to_message(event).model_dump(mode="json")

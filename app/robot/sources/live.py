@@ -57,11 +57,9 @@ class Camera(Protocol):
             When no frame comes, or none will come any more.
 
         """
-        ...
 
     def close(self) -> None:
         """Release the camera."""
-        ...
 
 
 class TurnedCamera:

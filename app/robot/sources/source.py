@@ -73,27 +73,21 @@ class Source(Protocol):
     @property
     def name(self) -> str:
         """Display name, without passwords."""
-        ...
 
     @property
     def live(self) -> bool:
         """Whether it is a camera or stream, not a recording."""
-        ...
 
     @property
     def began(self) -> datetime | None:
         """Time in UTC at which its clock was 0; None: unknown."""
-        ...
 
     @property
     def frame_size(self) -> tuple[int, int]:
         """Width and height in pixels of the first frame."""
-        ...
 
     def __iter__(self) -> Iterator[Frame | Notice]:
         """Iterate once over the frames and notices."""
-        ...
 
     def close(self) -> None:
         """Release the camera or file; iteration ends. May be called twice."""
-        ...

@@ -9,30 +9,30 @@ export interface components {
     schemas: {
         /**
          * Alignment
-         * @description The best DTW alignment of a query with a gesture, by one voter; rounded in JSON.
+         * @description The best DTW alignment of a query's path with a gesture's; rounded in JSON.
          *
          *     Attributes
          *     ----------
          *     label
          *         The gesture's.
          *     voter
-         *         ``path``, the voter, or ``posture``: where the arms' bones point.
+         *         ``path``, whose distance it is.
          *     parts
-         *         P landmarks; of postures the limbs' outer ends.
+         *         P landmarks.
          *     pairs
-         *         ``(S, 2)``: corresponding steps of the query and of the gesture.
+         *         S corresponding steps of the query and of the gesture.
          *     time
-         *         ``(N,)`` seconds in the query's clock of each of its steps.
+         *         Seconds in the query's clock of each of its steps.
          *     gesture_time
-         *         ``(N,)`` seconds in the demonstration of each of the gesture's steps.
+         *         Seconds in the demonstration of each of the gesture's steps.
          *     query, gesture
-         *         ``(N, P, 2)``: the voter's descriptors, step by step and part by part, x right and y down,
-         *         in its own unit; NaN where not seen. For `Path` each landmark's position relative to its
-         *         mean, in sizes of the gesture: the costs are the distances between corresponding positions,
-         *         divided by N.
+         *         Step by step each landmark's position relative to its mean, x right and
+         *         y down, in sizes of the gesture: the costs are the distances between corresponding
+         *         positions, divided by the number of steps.
          *     costs
-         *         ``(S, P)`` >= 0: the contribution of each pair and part to the voter's distance, which is
-         *         their sum.
+         *         The contribution of each pair and part to the voter's distance, >= 0.
+         *     distance
+         *         The voter's distance, in its unit: the sum of the costs.
          *     backward, mirrored
          *         Whether the gesture is traversed backwards, and whether it is its mirror image.
          *     demonstration
@@ -41,7 +41,10 @@ export interface components {
         Alignment: {
             /** Label */
             label: string;
-            /** Voter */
+            /**
+             * Voter
+             * @default path
+             */
             voter: string;
             /** Parts */
             parts: string[];
@@ -59,25 +62,27 @@ export interface components {
             gesture_time: number[];
             /**
              * Query
-             * @description Step by step and part by part, x right and y down; null: not seen.
+             * @description Step by step and part by part, x right and y down.
              */
-            query: ([
+            query: [
                 number,
                 number
-            ] | null)[][];
+            ][][];
             /**
              * Gesture
-             * @description Step by step and part by part, x right and y down; null: not seen.
+             * @description Step by step and part by part, x right and y down.
              */
-            gesture: ([
+            gesture: [
                 number,
                 number
-            ] | null)[][];
+            ][][];
             /**
              * Costs
              * @description Per pair and part; their sum is `distance`.
              */
             costs: number[][];
+            /** Distance */
+            distance: number;
             /** Backward */
             backward: boolean;
             /** Mirrored */
@@ -87,11 +92,6 @@ export interface components {
              * @default 0
              */
             demonstration: number;
-            /**
-             * Distance
-             * @description The voter's distance, in its unit.
-             */
-            readonly distance: number;
         };
         /**
          * AlikeView
@@ -271,7 +271,10 @@ export interface components {
          */
         Cause: {
             kind: components["schemas"]["CauseKind"];
-            /** Share */
+            /**
+             * Share
+             * @default 1
+             */
             share: number;
             /** Sentence */
             sentence: string;
@@ -770,7 +773,7 @@ export interface components {
         };
         /**
          * FaultKind
-         * @description What is wrong with a demonstration, the gravest first.
+         * @description What is wrong with a demonstration, the gravest first, and that as a clause about it.
          * @enum {string}
          */
         FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand" | "unlike_takes";
@@ -1969,7 +1972,8 @@ export interface components {
          *     hand
          *         The landmark that draws it.
          *     direction
-         *         Degrees from its start to its end, 0 to the right, 90 down; None of loops and pauses.
+         *         Degrees from its start to its end, 0 to the right, 90 down; None of loops, pauses, and
+         *         curves that end near their start.
          *     turn
          *         Degrees that it turns, positive: clockwise in the picture; 0 of lines and pauses.
          *     start, end

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from app.recognition import Recording
 from app.settings import Settings
@@ -70,6 +70,33 @@ def test_the_start_shows_a_salute_and_the_example_stays_at_hand(
     expect(strokes.locator(".differs")).to_have_text(["down right", "down left"])
     strokes.get_by_role("button", name="up right").click()
     expect(page.locator("#clock")).to_have_text(re.compile(r"^3\.[4-9]"))
+
+
+def test_after_seven_strokes_the_rest_is_folded_and_hands_are_named(
+    open_page: OpenPage, server: Running, clips: Path
+) -> None:
+    def lengthen(route: Route) -> None:
+        answer = route.fetch()
+        why = answer.json()
+        first = why["transcript"]["shown"][0]
+        other = {**first, "hand": "left_wrist", "words": "up"}
+        why["transcript"]["shown"] = [first | {"words": f"stroke {n}"} for n in range(9)]
+        why["transcript"]["expected"] = [other, first]
+        route.fulfill(response=answer, json=why)
+
+    page = open_page()
+    add_example(server, clips)
+    page.reload()
+    page.route("**/explanation*", lengthen)
+    page.get_by_role("button", name="All keys").click()
+    page.get_by_role("button", name="Example").click()
+    strokes = page.get_by_role("group", name="Strokes in words").locator("p")
+    shown, expected = strokes.nth(0), strokes.nth(1)
+    expect(expected).to_have_text("triangle: left hand up; right hand down right")
+    expect(shown.get_by_role("button", name="stroke 6")).to_be_visible()
+    expect(shown.get_by_role("button", name="stroke 8")).to_be_hidden()
+    shown.get_by_text("then 2 more").click()
+    expect(shown.get_by_role("button", name="stroke 8")).to_be_visible()
 
 
 def test_the_tour_shows_its_steps_on_the_example(

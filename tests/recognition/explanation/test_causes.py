@@ -189,7 +189,12 @@ def test_moments_are_those_of_the_takes_clock() -> None:
 @pytest.mark.parametrize("kind", sorted(SENTENCES))
 def test_a_sentence_has_at_most_fifteen_words(kind: str) -> None:
     words = SENTENCES[kind].format(
-        label="'hook'", other="'line'", also="", frames="12 of 60 frames", degrees=60
+        label="'hook'",
+        other="'line'",
+        also="",
+        where="in the middle of",
+        frames="12 of 60 frames",
+        degrees=60,
     )
     assert len(words.split()) <= 15
     assert re.search(r"\.$", words) or not words

@@ -77,6 +77,35 @@ def test_strokes_are_named_by_direction_sense_and_turns(path: FloatArray, words:
     assert say(path) == words
 
 
+def test_a_line_whose_ends_are_bent_by_rounded_corners_is_straight() -> None:
+    share = np.linspace(0, 1, 60)
+    bent = np.interp(share, [0, 0.05, 0.95, 1], [0.05, 0, 0, 0.05])
+    assert say(np.stack([share, bent], axis=1)) == "right"
+
+
+def test_a_curve_tells_where_it_leads_if_it_leads_anywhere() -> None:
+    curve = Piece(kind="curve", hand="right_wrist", direction=45.0, turn=90.0, start=0.0, end=1.0)
+    assert curve.words == "a curve down right"
+    assert replace(curve, direction=None).words == "a curve"
+
+
+def test_a_long_movement_is_told_up_to_where_it_differs() -> None:
+    zigzag = [(0.5 * (step % 2), 0.2 * step) for step in range(14)]
+    shown = transcribe(hand(draw(*zigzag)))
+    told = describe_transcript(compare_transcripts(shown, shown[:3]), "zigzag")
+    assert ", then 6 more. 'zigzag': " in told
+    late = compare_transcripts(shown, (*shown[:9], replace(shown[9], direction=90.0)))
+    assert late.differs == 9
+    assert ", then 3 more. 'zigzag': " in describe_transcript(late, "zigzag")
+
+
+def test_the_hand_is_named_where_the_gesture_uses_both() -> None:
+    shown = transcribe(hand(draw((0, 0), (1, 0))))
+    both = (*transcribe(hand(draw((0, 0), (0, 1)), "left_wrist")), *shown)
+    told = describe_transcript(compare_transcripts(shown, both), "both")
+    assert told == "You showed: right hand right. 'both': left hand down; right hand right."
+
+
 def test_a_pause_between_two_strokes_is_told() -> None:
     rest = np.repeat([[1.0, 0.0]], RATE, axis=0)
     path = np.concatenate([draw((0, 0), (1, 0)), rest, draw((1, 0), (1, 1))])

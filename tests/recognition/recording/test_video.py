@@ -21,12 +21,12 @@ from app.recognition.recording.video import (
     FrameReader,
     Turn,
     VideoFrame,
-    VideoLimits,
     over_background,
     probe,
     read_frames,
     read_jpeg_size,
 )
+from app.recognition.recording.video_limits import VideoLimits
 from tests.recognition.damaged_clips import (
     HEIGHT,
     IMPOSTORS,

@@ -2,12 +2,11 @@
 
 import pytest
 
-from app.recognition.text.wording import humanize, humanize_all, join_words
+from app.recognition.text.wording import humanize, join_words
 
 
 def test_identifiers_are_said_as_words() -> None:
     assert humanize("wrist_bend") == "wrist bend"
-    assert humanize_all(["hu", "left_foot_index"]) == ["hu", "left foot index"]
 
 
 @pytest.mark.parametrize(

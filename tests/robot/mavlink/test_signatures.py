@@ -16,6 +16,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from app.cli.robots.robot_options import RobotOptions
 from app.cli.robots.run import open_bridge
 from app.recognition.errors import VehicleError
 from app.robot import TriggerListener
@@ -87,9 +88,8 @@ def test_a_vehicle_hears_a_signed_robot_that_starts_again_with_an_earlier_clock(
         for starts in range(3):
             monkeypatch.setattr(time, "time", lambda starts=starts: real() - starts * seconds)
             listener = TriggerListener(spoken("circle"))
-            robot = open_bridge(
-                address, file, listener, None, print, lambda *said: None, without_salutes=False
-            )
+            options = RobotOptions(file, mavlink=address)
+            robot = open_bridge(options, file, listener, None, print, lambda *said: None)
             with closing(robot):
                 accepted.append(len(reader.read(vehicle.recv(1000))[0]))
     assert accepted == [1, 1, 1]

@@ -1,11 +1,14 @@
 """Recognitions over HTTP: complete, repeatable, and stored."""
 
 import json
+from dataclasses import replace
 
 import httpx
 import pytest
 
 from app.api.services.running_studio import Studio
+from app.api.services.stored_recognitions import locate_cuts
+from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
 from app.recognition.gestures.profile import PROFILES
 from app.store import RecognitionRecord
 from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
@@ -120,6 +123,27 @@ def test_what_cannot_be_recognised_says_why(
     assert "paper" in str(problem["detail"])
     for missing in ({"clip_id": "x", "language_id": spoken}, body | {"language_id": "x"}):
         assert_problem(client.post(RECOGNITIONS, json=missing), 404, "not_found")
+
+
+def test_a_cut_of_a_demonstration_is_told_with_its_clip(
+    studio: Studio, spoken: str, circle_clip: str
+) -> None:
+    language = studio.language(studio.languages.get(spoken))
+    values = {"label": "circle", "demonstration": 0, "start": 0.2, "end": 1.0}
+    cut = Counterfactual(
+        change=Intervention("demonstration_cut", 0.5, values),
+        label="circle",
+        confidence=1.0,
+        margin=0.1,
+        effect=None,
+    )
+    (found,) = locate_cuts(studio, language, [cut])
+    told = found.change.to_dict()
+    assert told["clip_id"] == circle_clip
+    assert told["clip_end"] - told["clip_start"] == pytest.approx(0.8)
+    assert found.change.words == cut.change.words
+    later = Intervention("demonstration_cut", 0.5, {**values, "demonstration": 1})
+    assert list(locate_cuts(studio, language, [replace(cut, change=later)])) == []
 
 
 def test_a_recognition_is_explained_by_what_was_meant(

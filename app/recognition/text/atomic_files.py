@@ -1,0 +1,47 @@
+"""Atomic files: a reader and a power cut find the old content or the new one, never a part."""
+
+from __future__ import annotations
+
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import BinaryIO
+
+PUBLIC, PRIVATE = 0o666, 0o600
+"""Permissions of a new file, of which the process's umask takes its share."""
+
+
+@contextmanager
+def replace_file(path: Path, mode: int = PUBLIC) -> Iterator[BinaryIO]:
+    """Open a new file that takes the place of `path` once it is complete and on the disk.
+
+    Raises
+    ------
+    OSError
+        When it cannot be written; `path` is as it was, and no part is left.
+
+    """
+    partial = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    try:
+        with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        partial.replace(path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+    with suppress(OSError):  # Windows opens no folders
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+
+
+def write_atomically(path: Path, content: bytes) -> None:
+    """Replace a file by one with this content; see `replace_file`."""
+    with replace_file(path) as file:
+        file.write(content)
