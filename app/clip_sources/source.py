@@ -196,23 +196,18 @@ class ClipSource(Protocol):
 
     def accepts(self, path: Path, topic: str | None = None) -> bool:
         """Return whether the file or folder at `path` is of this kind."""
-        ...
 
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Return whether a received file that begins with `head` may be of this kind."""
-        ...
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
         """Return `options` with what the first bytes and the name of a received file add."""
-        ...
 
     def media_type(self, head: bytes) -> str:
         """Return the media type of the video that players show."""
-        ...
 
     def is_take(self, path: Path) -> bool:
         """Return whether `path`, in a folder of labelled takes, is a take, by its name."""
-        ...
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """Read the facts that the file states about its clip.
@@ -225,11 +220,9 @@ class ClipSource(Protocol):
             When no clip can be made of it.
 
         """
-        ...
 
     def shows_pictures(self, path: Path, options: ReadOptions) -> bool:
         """Return whether landmarks are found in pictures; else the file holds keypoints."""
-        ...
 
     def record(
         self,
@@ -261,15 +254,12 @@ class ClipSource(Protocol):
             When the default estimator's models are not installed.
 
         """
-        ...
 
     def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Return the answer to the sender of the file, which is stored as `path`."""
-        ...
 
     def playable_video(self, path: Path, options: ReadOptions, copy: Path) -> Path | None:
         """Return a video of the clip, written to `copy` if the file is none; None for no video."""
-        ...
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
         """Open the pictures for reading.
@@ -280,4 +270,3 @@ class ClipSource(Protocol):
             When the file holds no pictures, or cannot be read.
 
         """
-        ...
