@@ -13,6 +13,7 @@ from platformdirs import user_data_path
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     SecretStr,
@@ -55,6 +56,12 @@ def is_loopback(host: str) -> bool:
 
 def _absolute(path: Path) -> Path:
     return path.expanduser().absolute()
+
+
+def _split(names: object) -> object:
+    if not isinstance(names, str):
+        return names
+    return tuple(name.strip() for name in names.split(",") if name.strip())
 
 
 S3_ADDRESS = r"^s3://[a-z0-9][a-z0-9.-]{1,61}[a-z0-9](/\S*)?$"
@@ -166,7 +173,7 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = "warning"
     """Least severe entries logged; ``info`` logs every request and job."""
 
-    allowed_hosts: Annotated[tuple[str, ...], NoDecode] = ()
+    allowed_hosts: Annotated[tuple[str, ...], NoDecode, BeforeValidator(_split)] = ()
     """Further host names of the app, comma separated in the environment."""
 
     max_clip_bytes: Annotated[int, Field(gt=0)] = 512 * MEBIBYTE
@@ -233,14 +240,6 @@ class Settings(BaseSettings):
         given = values.get("limits", {})
         given = given.model_dump() if isinstance(given, Limits) else given
         return {**values, "limits": {**single, **given}} if isinstance(given, dict) else values
-
-    @model_validator(mode="before")
-    @classmethod
-    def _split_hosts(cls, values: object) -> object:
-        if isinstance(values, dict) and isinstance(hosts := values.get("allowed_hosts"), str):
-            names = tuple(name.strip() for name in hosts.split(",") if name.strip())
-            return {**values, "allowed_hosts": names}
-        return values
 
     @field_validator("executor")
     @classmethod

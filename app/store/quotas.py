@@ -105,33 +105,27 @@ class Quota:
 
         """
         more = self._excess(usage, size, clips)
+        if more == Usage(0, 0):
+            return
+        limit, alone = self.bytes, not more.clips and size > self.bytes
+        left = max(0, self.bytes - usage.bytes)
+        detail = (
+            f"{self.owner!r} keeps {_megabytes(usage.bytes)}, so {_megabytes(left)} are left for "
+            f"this of {_megabytes(size)}; delete clips or languages, or ask an administrator for "
+            "a larger quota"
+        )
         if more.clips:
-            raise QuotaExceeded(
+            limit = self.clips
+            detail = (
                 f"{self.owner!r} keeps {usage.clips} clips, and {self.clips} are allowed; "
-                "delete some, or ask an administrator for a larger quota",
-                usage,
-                limit=self.clips,
-                excess=more,
+                "delete some, or ask an administrator for a larger quota"
             )
-        if more.bytes and size > self.bytes:
-            raise QuotaExceeded(
+        elif alone:
+            detail = (
                 f"this takes {_megabytes(size)}, and {self.owner!r} may keep "
-                f"{_megabytes(self.bytes)} in all; send something shorter or smaller",
-                usage,
-                limit=self.bytes,
-                excess=more,
-                alone=True,
+                f"{_megabytes(self.bytes)} in all; send something shorter or smaller"
             )
-        if more.bytes:
-            left = max(0, self.bytes - usage.bytes)
-            raise QuotaExceeded(
-                f"{self.owner!r} keeps {_megabytes(usage.bytes)}, so {_megabytes(left)} are left "
-                f"for this of {_megabytes(size)}; delete clips or languages, or ask an "
-                "administrator for a larger quota",
-                usage,
-                limit=self.bytes,
-                excess=more,
-            )
+        raise QuotaExceeded(detail, usage, limit=limit, excess=more, alone=alone)
 
     def require_in(
         self, session: Session, size: int, clips: int = 0, *, without: str | None = None

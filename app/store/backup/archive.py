@@ -230,7 +230,7 @@ class _ClipFiles:
 def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
     """Copy the database of a library into a file of SQLite."""
     if url is not None:
-        with _opened(url) as source:
+        with closing(Database(url)) as source:
             file = source.file
             if file is None:
                 _copy_rows(source, target)
@@ -243,7 +243,7 @@ def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
 
 
 def _copy_rows(source: Database, target: Path) -> None:
-    with _opened(f"sqlite:///{target}") as copy:
+    with closing(Database(f"sqlite:///{target}")) as copy:
         try:
             snapshot(source, copy)
         except ProgrammingError as error:
@@ -257,7 +257,7 @@ def _copy_rows(source: Database, target: Path) -> None:
 
 def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None:
     """Copy the rows of a restored file into another database, and place the clips."""
-    with _opened(f"sqlite:///{file}") as source, _opened(url) as target:
+    with closing(Database(f"sqlite:///{file}")) as source, closing(Database(url)) as target:
         if not target.shared:
             raise OsgError("OSG_DATABASE_URL names SQLite; restore into a data folder instead")
         for database in (source, target):
@@ -273,12 +273,6 @@ def _restore_rows(file: Path, url: str, place_clips: Callable[[], None]) -> None
                 ) from error
             # Before the rows are committed, because no row may refer to a missing file.
             place_clips()
-
-
-@contextmanager
-def _opened(url: str) -> Iterator[Database]:
-    with closing(Database(url)) as database:
-        yield database
 
 
 def _copy_file(database: Path, target: Path) -> None:

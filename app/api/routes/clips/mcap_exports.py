@@ -132,12 +132,10 @@ def _export(studio: Studio, clip_id: str) -> Export:
     clip = studio.clips.get(clip_id).clip
     records = studio.recognitions.all(clip_id=clip_id, limit=MOST_RECOGNITIONS)
     # Takes are cut by the trigger of the language used last.
-    last = records[0] if records else None
-    trigger = (
-        SALUTE
-        if last is None
-        else studio.language(studio.languages.get(last.language_id, last.revision)).trigger
-    )
+    trigger = SALUTE
+    if records:
+        last = studio.languages.get(records[0].language_id, records[0].revision)
+        trigger = studio.language(last).trigger
     return Export(
         clip=clip.name,
         video=studio.clips.video(clip_id),

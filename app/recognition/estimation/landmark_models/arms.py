@@ -177,10 +177,7 @@ class ArmPace:
         """Update by the body in the next frame, taken `seconds` after the last one."""
         wrist = body.xy[POSE_LANDMARKS.index(f"{self.side}_wrist")]
         self.shift, self.wrist = wrist - self.wrist, wrist
-        shoulder, hip = (
-            body.xy[[POSE_LANDMARKS.index(f"{side}_{joint}") for side in SIDES]].mean(axis=0)
-            for joint in ("shoulder", "hip")
-        )
+        shoulder, hip = (_both(body, joint).mean(axis=0) for joint in ("shoulder", "hip"))
         size = max(measure_body(body), 1e-9)
         if not np.linalg.norm(self.shift) >= SLOW * size * seconds:
             self.slow = time
@@ -288,10 +285,7 @@ def regions_of_forearm(body: Body, side: Side) -> tuple[Region, ...]:
 
 def measure_body(body: Body) -> float:
     """Return the longer of torso and shoulders in pixels; one of them is long in every view."""
-    shoulders, hips = (
-        body.xy[[POSE_LANDMARKS.index(f"{side}_{joint}") for side in SIDES]]
-        for joint in ("shoulder", "hip")
-    )
+    shoulders, hips = _both(body, "shoulder"), _both(body, "hip")
     torso = np.linalg.norm(shoulders.mean(axis=0) - hips.mean(axis=0))
     return float(max(torso, np.linalg.norm(shoulders[0] - shoulders[1])))
 
@@ -332,6 +326,11 @@ def find_stray_wrist(hands: Iterable[Hand], bodies: Sequence[Body]) -> FloatArra
     """Return the wrist ``(2,)`` of the largest hand that belongs to none of the bodies."""
     stray = [hand for hand in hands if bodies and find_owner(hand, bodies) is None]
     return max(stray, key=lambda hand: hand.size).xy[0] if stray else None
+
+
+def _both(body: Body, joint: str) -> FloatArray:
+    """Return a joint ``(2, 2)`` on both sides of a body, pixels."""
+    return body.xy[[POSE_LANDMARKS.index(f"{side}_{joint}") for side in SIDES]]
 
 
 def _reach_of(hand: Hand, body: Body, side: Side) -> float:
