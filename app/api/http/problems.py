@@ -11,7 +11,7 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
@@ -28,6 +28,7 @@ from app.recognition.errors import (
     VideoError,
 )
 from app.recognition.language.file import list_document_steps
+from app.recognition.text.described import DESCRIBED
 from app.recognition.text.strict_json import build_pointer
 
 MEDIA_TYPE = "application/problem+json"
@@ -43,24 +44,33 @@ logger = logging.getLogger(__name__)
 class Fault(BaseModel):
     """One thing that is wrong with a request."""
 
-    pointer: str = Field(description="JSON pointer (RFC 6901) into the body; empty: all of it")
-    detail: str = Field(description="What is wrong there")
-    parameter: str | None = Field(
-        default=None, description="Name of the query, path or header parameter, outside the body"
-    )
+    model_config = DESCRIBED
+
+    pointer: str
+    """JSON pointer (RFC 6901) into the body; empty: all of it."""
+    detail: str
+    """What is wrong there."""
+    parameter: str | None = None
+    """Name of the query, path or header parameter, outside the body."""
 
 
 class Problem(BaseModel):
     """What went wrong, in the shape of RFC 9457."""
 
-    model_config = ConfigDict(extra="allow")
+    model_config = ConfigDict(**DESCRIBED, extra="allow")
 
-    type: str = Field(description="URI of this kind of problem")
-    title: str = Field(description="The kind of problem in words")
-    status: int = Field(description="The HTTP status")
-    detail: str = Field(description="What is wrong here, why, and what to do next")
-    code: str = Field(description="Stable word for programs")
-    errors: list[Fault] | None = Field(default=None, description="Each fault of the request")
+    type: str
+    """URI of this kind of problem."""
+    title: str
+    """The kind of problem in words."""
+    status: int
+    """The HTTP status."""
+    detail: str
+    """What is wrong here, why, and what to do next."""
+    code: str
+    """Stable word for programs."""
+    errors: list[Fault] | None = None
+    """Each fault of the request."""
 
 
 class ProblemError(HTTPException):

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 
 from app.api.http.problems import Fault, ProblemError
 from app.clip_sources import ReadOptions
+from app.recognition.text.described import DESCRIBED
 
 LONGEST_TOPIC: Final = 255
 """Most bytes of a topic's name, as ROS allows."""
@@ -38,24 +39,18 @@ Sizes = Annotated[str, StringConstraints(pattern=r"^[1-9]\d{0,14}(,[1-9]\d{0,14}
 class UploadFields(BaseModel):
     """The fields of one upload; each is None where it is absent or empty."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", str_strip_whitespace=True)
+    model_config = ConfigDict(**DESCRIBED, extra="forbid", str_strip_whitespace=True)
 
-    topic: str | None = Field(
-        default=None, description="Of a dive recording with several topics: which one"
-    )
-    frame_rate: Annotated[float, Field(gt=0, le=FASTEST)] | None = Field(
-        default=None, description="Of a keypoint file that counts frames: its video's, a second"
-    )
-    frame_size: Size | None = Field(
-        default=None,
-        description="Of a keypoint file with fractions of the picture: pixels, as 1920x1080",
-    )
+    topic: str | None = None
+    """Of a dive recording with several topics: which one."""
+    frame_rate: Annotated[float, Field(gt=0, le=FASTEST)] | None = None
+    """Of a keypoint file that counts frames: its video's, a second."""
+    frame_size: Size | None = None
+    """Of a keypoint file with fractions of the picture: pixels, as 1920x1080."""
 
-    chapters: Sizes | None = Field(
-        default=None,
-        description="Of a camera's chapters of one recording, sent one after the other as one "
-        "file: the bytes of each, as 4000000,120000. They become one video, without its sound",
-    )
+    chapters: Sizes | None = None
+    """Of a camera's chapters of one recording, sent one after the other as one file: the bytes of
+    each, as 4000000,120000. They become one video, without its sound."""
 
     @classmethod
     def read(cls, texts: Mapping[str, str]) -> UploadFields:

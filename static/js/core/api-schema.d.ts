@@ -2398,14 +2398,14 @@ export interface components {
             end?: number | null;
             /**
              * Profile
-             * @description Null: the language's own
+             * @description Null: the language's own.
              */
             profile?: string | null;
-            /** @description Null: as the language says */
+            /** @description Null: as the language says. */
             tuning?: components["schemas"]["TuningEntry"] | null;
             /** Expected */
             expected?: string | null;
-            /** @description Recognise with this change; the language is not edited */
+            /** @description Recognise with this change; the language is not edited. */
             trial?: components["schemas"]["GestureTrial"] | null;
         };
         /**
@@ -3348,17 +3348,17 @@ export interface components {
         Fault: {
             /**
              * Pointer
-             * @description JSON pointer (RFC 6901) into the body; empty: all of it
+             * @description JSON pointer (RFC 6901) into the body; empty: all of it.
              */
             pointer: string;
             /**
              * Detail
-             * @description What is wrong there
+             * @description What is wrong there.
              */
             detail: string;
             /**
              * Parameter
-             * @description Name of the query, path or header parameter, outside the body
+             * @description Name of the query, path or header parameter, outside the body.
              * @default null
              */
             parameter: string | null;
@@ -3370,32 +3370,32 @@ export interface components {
         Problem: {
             /**
              * Type
-             * @description URI of this kind of problem
+             * @description URI of this kind of problem.
              */
             type: string;
             /**
              * Title
-             * @description The kind of problem in words
+             * @description The kind of problem in words.
              */
             title: string;
             /**
              * Status
-             * @description The HTTP status
+             * @description The HTTP status.
              */
             status: number;
             /**
              * Detail
-             * @description What is wrong here, why, and what to do next
+             * @description What is wrong here, why, and what to do next.
              */
             detail: string;
             /**
              * Code
-             * @description Stable word for programs
+             * @description Stable word for programs.
              */
             code: string;
             /**
              * Errors
-             * @description Each fault of the request
+             * @description Each fault of the request.
              * @default null
              */
             errors: components["schemas"]["Fault"][] | null;

@@ -28,14 +28,13 @@ class RecognitionRequest(Body):
     language_id: Identifier
     start: Seconds | None = None
     end: Seconds | None = None
-    profile: Annotated[str, Field(max_length=32)] | None = Field(
-        default=None, description="Null: the language's own"
-    )
-    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
+    profile: Annotated[str, Field(max_length=32)] | None = None
+    """Null: the language's own."""
+    tuning: TuningEntry | None = None
+    """Null: as the language says."""
     expected: Label | None = None
-    trial: GestureTrial | None = Field(
-        default=None, description="Recognise with this change; the language is not edited"
-    )
+    trial: GestureTrial | None = None
+    """Recognise with this change; the language is not edited."""
 
 
 class RecognitionView(RecognitionEntry):
