@@ -16,7 +16,6 @@ from urllib.parse import quote
 
 import uvicorn
 from fastapi import APIRouter, FastAPI
-from fastapi.openapi.utils import get_openapi
 from starlette.routing import BaseRoute
 
 from app import __version__, resources
@@ -117,7 +116,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
                     each.cancel()
                 await asyncio.to_thread(registry.close)
 
-    app = FastAPI(
+    app = _DescribedApp(
         title="OSG Studio",
         version=__version__,
         summary="Gesture languages for divers and underwater robots",
@@ -135,7 +134,6 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     app.router.routes.extend(_build_routes())
     _serve_page(app)
     problems.install(app)
-    _describe(app)
     _guard(app, settings, metrics)
     return app
 
@@ -293,19 +291,13 @@ def _serve_page(app: FastAPI) -> None:
     app.get(f"{INVITATION_ADDRESS}/{{path:path}}", include_in_schema=False)(invited_page.read_file)
 
 
-def _describe(app: FastAPI) -> None:
-    """Add the schemas of problem documents to ``/openapi.json``."""
+class _DescribedApp(FastAPI):
+    """App whose ``/openapi.json`` has the schemas of problem documents too."""
 
-    def generate_openapi() -> dict[str, Any]:
-        if app.openapi_schema is None:
-            schema = get_openapi(
-                title=app.title, version=app.version, summary=app.summary, routes=app.routes
-            )
-            schema["components"]["schemas"].update(problems.schemas())
-            app.openapi_schema = schema
-        return app.openapi_schema
-
-    app.openapi = generate_openapi  # type: ignore[method-assign]
+    def openapi(self) -> dict[str, Any]:
+        schema = super().openapi()
+        schema["components"]["schemas"].update(problems.schemas())
+        return schema
 
 
 def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Collection, Sequence
 from datetime import timedelta
 
-from sqlalchemy import ColumnElement, or_
+from sqlalchemy import ColumnElement, and_, or_
 from sqlmodel import Session, col, func, select
 
 from app.store.database import Database, DatabaseStore, moment_of
@@ -88,23 +88,17 @@ class JobStore(DatabaseStore):
         """
         with self._database.writing() as session:
             mine = or_(col(Job.server) == self._server, col(Job.server).is_(None))
-            for job in session.exec(select(Job).where(_RUNNING, or_(mine, _overdue(session)))):
-                _queue_again(session, job)
-            session.flush()
-            return _waiting(session)
+            return _requeue(session, or_(mine, _overdue(session)))
 
     def take_over(self) -> list[Job]:
         """Requeue the jobs that other servers left running; return waiting jobs, oldest first."""
+        others = col(Job.server) != self._server
         with self._database.reading() as session:
-            left = select(Job.id).where(_RUNNING, Job.server != self._server, _overdue(session))
+            left = select(Job.id).where(_RUNNING, others, _overdue(session))
             if session.exec(left).first() is None:
                 return _waiting(session)
         with self._database.writing() as session:
-            others = Job.server != self._server
-            for job in session.exec(select(Job).where(_RUNNING, others, _overdue(session))):
-                _queue_again(session, job)
-            session.flush()
-            return _waiting(session)
+            return _requeue(session, and_(others, _overdue(session)))
 
     def renew(self, job_ids: Collection[str]) -> set[str]:
         """Renew the leases of running jobs; return the ids of those that this server still owns."""
@@ -236,6 +230,14 @@ def _contradicts(stated: float | None, measured: float) -> bool:
 
 def _overdue(session: Session) -> ColumnElement[bool]:
     return or_(col(Job.lease).is_(None), col(Job.lease) < moment_of(session))
+
+
+def _requeue(session: Session, which: ColumnElement[bool]) -> list[Job]:
+    """Queue those of the running jobs again; return all that wait then, oldest first."""
+    for job in session.exec(select(Job).where(_RUNNING, which)):
+        _queue_again(session, job)
+    session.flush()
+    return _waiting(session)
 
 
 def _queue_again(session: Session, job: Job) -> None:

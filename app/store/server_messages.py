@@ -6,7 +6,7 @@ import logging
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 from app.store.database import Database
 
@@ -26,46 +26,15 @@ PAUSE_SECONDS: Final = 1.0
 logger = logging.getLogger(__name__)
 
 
-class Messages(Protocol):
-    """Protocol of messages: sends texts to the other servers and receives theirs."""
-
-    def send(self, text: str) -> None:
-        """Send a text to all servers, this one among them; from any thread, without waiting."""
-
-    def close(self) -> None:
-        """Stop sending and receiving."""
-
-
-def open_messages(
-    database: Database, hear: Callable[[str], None], missed: Callable[[], None]
-) -> Messages:
-    """Open the messages of the servers that share a database.
+class Messages:
+    """Sends texts to the other servers and receives theirs, by a thread and connection for each.
 
     Parameters
     ----------
-    database
-        The database.
-    hear
-        Called with every text, in a thread.
-    missed
-        Called when texts may have been missed, in a thread: the connection was lost for a while.
+    database, hear, missed
+        As in `open_messages`.
 
     """
-    return _PostgresMessages(database, hear, missed) if database.shared else _NoMessages()
-
-
-class _NoMessages:
-    """Messages of a database with one server: does nothing."""
-
-    def send(self, text: str) -> None:
-        pass
-
-    def close(self) -> None:
-        pass
-
-
-class _PostgresMessages:
-    """Messages over PostgreSQL: one thread and connection to receive, and one to send."""
 
     def __init__(
         self, database: Database, hear: Callable[[str], None], missed: Callable[[], None]
@@ -84,6 +53,7 @@ class _PostgresMessages:
         listening.wait(PAUSE_SECONDS)
 
     def send(self, text: str) -> None:
+        """Send a text to all servers, this one among them; from any thread, without waiting."""
         if len(text.encode()) > MOST_BYTES:
             logger.error("a message of %d bytes to the other servers is too large", len(text))
             return
@@ -91,6 +61,7 @@ class _PostgresMessages:
         self._woken.set()
 
     def close(self) -> None:
+        """Stop sending and receiving."""
         self._closed.set()
         self._woken.set()
         for thread in self._threads:
@@ -129,3 +100,21 @@ class _PostgresMessages:
                 # Removed only after it was sent, so that it is repeated after a lost connection.
                 connection.execute("SELECT pg_notify(%s, %s)", (CHANNEL, self._unsent[0]))
                 self._unsent.popleft()
+
+
+def open_messages(
+    database: Database, hear: Callable[[str], None], missed: Callable[[], None]
+) -> Messages | None:
+    """Open the messages of the servers that share a database; None for a database of one server.
+
+    Parameters
+    ----------
+    database
+        The database.
+    hear
+        Called with every text, in a thread.
+    missed
+        Called when texts may have been missed, in a thread: the connection was lost for a while.
+
+    """
+    return Messages(database, hear, missed) if database.shared else None

@@ -83,7 +83,7 @@ class Subscription:
             yield event
 
 
-Join = Callable[[Callable[[str], None], Callable[[], None]], Messages]
+Join = Callable[[Callable[[str], None], Callable[[], None]], Messages | None]
 """Opens the messages of all servers, see `app.store.server_messages.open_messages`."""
 
 

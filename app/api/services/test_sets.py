@@ -123,18 +123,15 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         for label in labels
     ]
     compared = [(take, result, take.before) for take, result in counted if take.before is not None]
+    gains = {take.id: _worth(take, now) - _worth(take, before) for take, now, before in compared}
     return schemas.TestSetView(
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
         overall=schemas.RateView(**_rate(counted)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
-        better=[
-            take.id for take, now, before in compared if _worth(take, now) > _worth(take, before)
-        ],
-        worse=[
-            take.id for take, now, before in compared if _worth(take, now) < _worth(take, before)
-        ],
+        better=[each for each, gain in gains.items() if gain > 0],
+        worse=[each for each, gain in gains.items() if gain < 0],
         upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
         waiting=sum(
             take.result is None or take.result.revision != state.revision.revision for take in takes
