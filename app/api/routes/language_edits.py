@@ -11,7 +11,7 @@ from fastapi import Depends, Response
 from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import LanguageView
 from app.api.ingest.quotas import SenderQuota
-from app.api.services.language_documents import edit_document
+from app.api.services.clip_takes import trigger_of
 from app.api.services.language_responses import announce, save_revision
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import Language
@@ -47,7 +47,7 @@ class LanguageEdit:
     @property
     def trigger(self) -> Trigger:
         """Trigger of the language's newest revision; NotFound without such a language."""
-        return self.studio.language(self.studio.languages.get(self.language_id)).trigger
+        return trigger_of(self.studio, self.language_id)
 
     def save(self, words: str, change: Callable[[Language], Language]) -> LanguageState:
         """Store the revision that `change` makes of the newest one, with `words` for its history.
@@ -58,8 +58,9 @@ class LanguageEdit:
             As `LanguageStore.edit`.
 
         """
-        edit = edit_document(words, change)
-        return save_revision(self.studio, self.quota, self.language_id, edit, self.expected)
+        return save_revision(
+            self.studio, self.quota, self.language_id, words, change, self.expected
+        )
 
     def answer(self, state: LanguageState) -> LanguageView:
         """Publish that the language changed, and answer with it."""

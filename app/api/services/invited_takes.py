@@ -23,7 +23,6 @@ from app.api.services import gesture_edits
 from app.api.services.demonstration_faults import faults_of_source
 from app.api.services.demonstration_sources import find_sources, keep_source
 from app.api.services.identities import Identities
-from app.api.services.language_documents import edit_document
 from app.api.services.language_responses import save_revision
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language, OsgError, Recognition, Recognizer
@@ -190,8 +189,8 @@ def remove_take(studio: Studio, take: store.InvitedTake, quota: store.Quota) -> 
 
     language = studio.language(studio.languages.get(language_id))
     if without(language) is not language:
-        edit = edit_document(f"Remove the demonstration of {take.label} by {take.diver}", without)
-        save_revision(studio, quota, language_id, edit, None)
+        words = f"Remove the demonstration of {take.label} by {take.diver}"
+        save_revision(studio, quota, language_id, words, without)
         studio.broadcast.publish("languages", id=language_id)
     _settle(studio, take, "removed")
 
@@ -265,11 +264,9 @@ def add_take(
         shown = gesture_edits.demonstration_at(studio, draft, language.trigger)
         if not sure:
             _require_read(studio.recognizer(state), take.label, shown)
-        edit = edit_document(
-            f"Add a demonstration of {take.label} by {take.diver}",
-            lambda newest: _with_take(newest, draft, shown),
-        )
-        state = save_revision(studio, quota, invitation.language_id, edit, None)
+        words = f"Add a demonstration of {take.label} by {take.diver}"
+        changed = partial(_with_take, draft=draft, shown=shown)
+        state = save_revision(studio, quota, invitation.language_id, words, changed)
     except store.QuotaExceeded as error:
         raise Returned("The studio has no room for more. Tell whoever invited you.") from error
     except (OsgError, store.NotFound, ProblemError) as error:

@@ -13,24 +13,31 @@ from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
+from app.api.services.language_documents import edit_document
 from app.api.services.running_studio import DocumentCache, Studio
+from app.recognition import Language
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.file import seal, short_code
 from app.recognition.language.grammar_entry import grammar_to_entry
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
-from app.store import Draft, LanguageRevision, LanguageState, Quota
+from app.store import Draft, LanguageState, Quota
 
 
 def save_revision(
     studio: Studio,
     quota: Quota,
     language_id: str,
-    edit: Callable[[LanguageRevision, int], Draft],
-    expected: int | None,
+    words: str,
+    change: Callable[[Language], Language],
+    expected: int | None = None,
 ) -> LanguageState:
-    """Store the revision that `edit` makes; errors as `LanguageStore.edit`."""
+    """Store the revision that `change` makes of the newest one, with `words` for its history.
+
+    Errors as `LanguageStore.edit`.
+    """
+    edit = edit_document(words, change)
     return studio.keep_within(
         quota, lambda: studio.languages.edit(language_id, edit, expected, quota)
     )

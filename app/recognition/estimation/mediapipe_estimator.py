@@ -118,19 +118,17 @@ class MediaPipeEstimator:
         """Start a landmarker for bodies and one for hands."""
         vision = self._mediapipe.tasks.vision
         try:
+            pose = vision.PoseLandmarkerOptions(
+                base_options=self._base_options(self._pose_bundle), running_mode=mode
+            )
+            hand = vision.HandLandmarkerOptions(
+                base_options=self._base_options(self._hand_bundle),
+                running_mode=mode,
+                num_hands=MOST_HANDS,
+            )
             return (
-                vision.PoseLandmarker.create_from_options(
-                    vision.PoseLandmarkerOptions(
-                        base_options=self._base_options(self._pose_bundle), running_mode=mode
-                    )
-                ),
-                vision.HandLandmarker.create_from_options(
-                    vision.HandLandmarkerOptions(
-                        base_options=self._base_options(self._hand_bundle),
-                        running_mode=mode,
-                        num_hands=MOST_HANDS,
-                    )
-                ),
+                vision.PoseLandmarker.create_from_options(pose),
+                vision.HandLandmarker.create_from_options(hand),
             )
         except (OSError, RuntimeError, ValueError) as error:
             raise EstimatorError(
