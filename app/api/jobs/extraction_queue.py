@@ -45,9 +45,7 @@ def job_event(job: store.Job) -> Event:
 
 def options_of(clip: store.Clip) -> ReadOptions:
     """Return how the file of a stored clip is read."""
-    options = ReadOptions()
-    if clip.options is not None:
-        options = ReadOptions.model_validate_json(clip.options)
+    options = ReadOptions.model_validate_json(clip.options or "{}")
     return options.model_copy(update={"topic": clip.topic})
 
 

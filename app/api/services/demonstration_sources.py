@@ -9,7 +9,6 @@ from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstrati
 from app.api.services.demonstration_faults import count_triggers_in_clip, faults_of_source
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language
-from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recording.clip_range import Demonstration
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
@@ -105,10 +104,9 @@ def view_faults(
 
 def _key(gesture: Gesture) -> str | None:
     """Return a digest of the demonstration's trajectory; None without one."""
-    return None if gesture.trajectory is None else _digest(gesture.trajectory)
-
-
-def _digest(trajectory: Trajectory) -> str:
+    trajectory = gesture.trajectory
+    if trajectory is None:
+        return None
     digest = hashlib.sha256(json.dumps([trajectory.landmarks, trajectory.unit]).encode())
     for values in (trajectory.time, trajectory.xy):
         digest.update(values.astype("<f8").tobytes())

@@ -71,15 +71,11 @@ def compare_gestures(older: Language | None, newer: Language) -> list[Change]:
 
 def describe_changes(older: Language, newer: Language) -> list[str]:
     """Describe the changes of a language apart from its gestures."""
-    words = [
-        f"{what} was {_quote(old)}, is {_quote(new)}"
-        for what, old, new in (
-            ("name", older.name, newer.name),
-            ("author", older.author, newer.author),
-            ("profile", older.profile, newer.profile),
-        )
-        if old != new
-    ]
+    words = _tell_differences(
+        ("name", older.name, newer.name),
+        ("author", older.author, newer.author),
+        ("profile", older.profile, newer.profile),
+    )
     if older.tuning != newer.tuning:
         words.append(f"was recognised {older.tuning.words}, is {newer.tuning.words}")
     if older.most_refused != newer.most_refused:
@@ -91,6 +87,11 @@ def describe_changes(older: Language, newer: Language) -> list[str]:
     if shared != [label for label in older.labels if label in newer.labels]:
         words.append("the gestures are in another order")
     return words + _describe_grammar(older.grammar, newer.grammar)
+
+
+def _tell_differences(*named: tuple[str, str, str]) -> list[str]:
+    """Tell which texts, each with its name, its old and its new value, were changed."""
+    return [f"{what} was {_quote(old)}, is {_quote(new)}" for what, old, new in named if old != new]
 
 
 def _describe_grammar(older: Grammar | None, newer: Grammar | None) -> list[str]:
@@ -122,20 +123,16 @@ def _same_demonstration(gesture: Gesture, candidates: dict[str, Gesture]) -> str
 
 
 def _describe_gesture(before: Gesture, after: Gesture) -> tuple[str, ...]:
-    words = [
-        f"{what} was {_quote(old)}, is {_quote(new)}"
-        for what, old, new in (
-            ("label", before.label, after.label),
-            ("description", before.description, after.description),
-            ("command", _command_text(before), _command_text(after)),
-            ("diver", before.diver, after.diver),
-            *(
-                (f"switch for {name}", value, getattr(after.switches, name))
-                for name, value in vars(before.switches).items()
-            ),
-        )
-        if old != new
-    ]
+    words = _tell_differences(
+        ("label", before.label, after.label),
+        ("description", before.description, after.description),
+        ("command", _command_text(before), _command_text(after)),
+        ("diver", before.diver, after.diver),
+        *(
+            (f"switch for {name}", value, getattr(after.switches, name))
+            for name, value in vars(before.switches).items()
+        ),
+    )
     words += _describe_salient(before, after)
     if further := _describe_further(before, after):
         words += further

@@ -323,8 +323,22 @@ async def open_studio(settings: Settings, metrics: Metrics | None = None) -> Asy
 
     """
     with _opened(settings) as database:
-        async with _studio(settings, database, metrics or Metrics()) as studio:
+        studio = Studio(settings, database, metrics or Metrics())
+        beside = studio.metrics.watch_loop(), keep_trimmed(), _keep_clean(studio)
+        watching = [asyncio.create_task(each) for each in beside]
+        try:
+            await run_in_threadpool(_prepare, studio, database)
+            await studio.extractions.start()
             yield studio
+        finally:
+            for each in watching:
+                each.cancel()
+            studio.broadcast.close()
+            await studio.runner.stop()
+            await studio.extractions.stop()
+            await studio.workers.close()
+            studio.exports.clear()
+            await run_in_threadpool(studio.broadcast.leave)
 
 
 def check_store(settings: Settings) -> None:
@@ -344,28 +358,6 @@ def _opened(settings: Settings) -> Iterator[store.Database]:
         if (file := database.file) is not None and file.parent != settings.data_dir:
             locks.enter_context(store.FolderLock(file.parent, remedy=ONE_SERVER))
         yield database
-
-
-@asynccontextmanager
-async def _studio(
-    settings: Settings, database: store.Database, metrics: Metrics
-) -> AsyncIterator[Studio]:
-    studio = Studio(settings, database, metrics)
-    beside = metrics.watch_loop(), keep_trimmed(), _keep_clean(studio)
-    watching = [asyncio.create_task(each) for each in beside]
-    try:
-        await run_in_threadpool(_prepare, studio, database)
-        await studio.extractions.start()
-        yield studio
-    finally:
-        for each in watching:
-            each.cancel()
-        studio.broadcast.close()
-        await studio.runner.stop()
-        await studio.extractions.stop()
-        await studio.workers.close()
-        studio.exports.clear()
-        await run_in_threadpool(studio.broadcast.leave)
 
 
 def _prepare(studio: Studio, database: store.Database) -> None:

@@ -93,11 +93,11 @@ def wrist_speeds(recording: Recording) -> tuple[dict[str, FloatArray], str]:
     NaN where a wrist was not seen, and throughout if nobody is in view or the wrist is missing.
     """
     count = len(recording.poses)
+    speeds = {name: np.full(count, np.nan) for name in WRISTS}
     try:
         trajectory = Trajectory.from_poses(recording.poses)
     except PoseError:
-        return {name: np.full(count, np.nan) for name in WRISTS}, "torso_length"
-    speeds = {name: np.full(count, np.nan) for name in WRISTS}
+        return speeds, "torso_length"
     # Other programs' keypoints may have no wrist.
     for name in set(WRISTS) & set(trajectory.landmarks):
         path = trajectory.xy[:, trajectory.landmarks.index(name)]

@@ -39,7 +39,7 @@ class PlanarModel:
 
     Attributes
     ----------
-    path, purpose
+    path
         See above.
     input_size
         Width and height of the image it takes, pixels.
@@ -57,7 +57,7 @@ class PlanarModel:
         self, path: Path, purpose: str, *, side: int, threads: int, provider: Provider
     ) -> None:
         check_provider(provider)
-        self.path, self.purpose = path, purpose
+        self.path = path
         needed = f"{purpose} is needed"
         if not path.is_file():
             raise ModelError(f"no model file {path}; {needed}")

@@ -44,10 +44,6 @@ class OneEuroFilter:
         self._speed_cutoff = speed_cutoff
         self._memory: _Memory | None = None
 
-    def reset(self) -> None:
-        """Forget the signal; the next value passes unchanged."""
-        self._memory = None
-
     def apply(self, values: FloatArray, time: float, scale: float = 1.0) -> FloatArray:
         """Smooth the next values of the signal.
 
@@ -88,10 +84,6 @@ class ExponentialFilter:
     def __init__(self, weight: float) -> None:
         self._weight = weight
         self._filtered: FloatArray | None = None
-
-    def reset(self) -> None:
-        """Forget the signal; the next value passes unchanged."""
-        self._filtered = None
 
     def apply(self, values: FloatArray) -> FloatArray:
         """Smooth the next values (any shape, the same in every call); return a new array."""

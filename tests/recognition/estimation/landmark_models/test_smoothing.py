@@ -92,16 +92,6 @@ def test_what_was_returned_or_given_can_be_changed_by_the_caller() -> None:
         values[:] = result[:] = 1e6
 
 
-def test_reset_forgets() -> None:
-    smoother, exponential = OneEuroFilter(0.05, 1.0), ExponentialFilter(0.1)
-    smoother.apply(np.zeros(2), 0.0)
-    exponential.apply(np.zeros(2))
-    smoother.reset()
-    exponential.reset()
-    np.testing.assert_array_equal(smoother.apply(np.ones(2), 1.0), np.ones(2))
-    np.testing.assert_array_equal(exponential.apply(np.ones(2)), np.ones(2))
-
-
 @given(SIGNALS, st.floats(0.01, 1))
 def test_exponential_smoothing_takes_its_weight_of_the_new(
     signal: FloatArray, weight: float
