@@ -21,6 +21,7 @@ from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.recording.clip_range import Demonstration
 from app.recognition.text.look_alikes import find_confusable
 from app.recognition.triggers.trigger import SALUTE, Trigger
+from app.store import DemonstrationSource
 
 UNNAMED = "this gesture"
 """Name in messages for a gesture that has no label yet."""
@@ -30,9 +31,9 @@ WORDS = frozenset({"label", "description", "command", "diver"})
 
 
 def demonstration_at(
-    studio: Studio, where: NewDemonstration, trigger: Trigger = SALUTE
+    studio: Studio, where: NewDemonstration | DemonstrationSource, trigger: Trigger = SALUTE
 ) -> Demonstration:
-    """Find the demonstration that a request names, in takes by a language's trigger.
+    """Find the demonstration that a request or a source names, in takes by a language's trigger.
 
     Raises
     ------

@@ -172,13 +172,7 @@ def locate_cuts(
         source = sources[values["label"]][0] if values["demonstration"] == 0 else None
         if source is None:
             continue
-        begin = demonstration_in(
-            studio.recording(source.clip_id),
-            source.start,
-            source.end,
-            keep_transit=source.keep_transit,
-            trigger=language.trigger,
-        ).start
+        begin = demonstration_at(studio, source, language.trigger).start
         located = {
             "clip_id": source.clip_id,
             "clip_start": begin + values["start"],
