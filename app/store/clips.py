@@ -456,8 +456,9 @@ class ClipStore(DatabaseStore):
         if stored is not None:
             return self.get(clip.id)
         self._files.remove([clip.id])
-        earlier = isinstance(error, IntegrityError) and self._same_upload(clip)
-        if not earlier:
+        key = clip.idempotency_key if isinstance(error, IntegrityError) else None
+        earlier = None if key is None else self.by_idempotency_key(key)
+        if earlier is None:
             raise error
         return earlier
 
@@ -467,10 +468,6 @@ class ClipStore(DatabaseStore):
         busy = exists().where(col(Job.clip_id) == Clip.id, col(Job.status).in_(opened))
         with self._database.reading() as session:
             return set(session.exec(select(Clip.id).where(col(Clip.id).in_(clip_ids), ~busy)))
-
-    def _same_upload(self, clip: Clip) -> ClipWithJob | None:
-        key = clip.idempotency_key
-        return None if key is None else self.by_idempotency_key(key)
 
 
 def _load(session: Session, clip_id: str) -> Clip:
