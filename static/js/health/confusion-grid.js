@@ -1,6 +1,6 @@
 // A confusion matrix: a grid whose cells are walked by the arrow keys and opened by Enter.
 
-import { html, live } from "../core/templates.js";
+import { html, live } from "../templates.js";
 
 /** @typedef {{ label: string, image?: string }} Head */
 

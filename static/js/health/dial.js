@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 import { currentLanguage } from "../core/state.js";
-import { html, live } from "../core/templates.js";
+import { html, live } from "../templates.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { edit } from "../languages/revision-edit.js";

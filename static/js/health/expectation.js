@@ -1,7 +1,7 @@
 // What to expect of a language: its test set first, then what its demonstrations foretell.
 
 import { plural } from "../core/format.js";
-import { html, nothing } from "../core/templates.js";
+import { html, nothing } from "../templates.js";
 import { runTestSet } from "../languages/test-set.js";
 import { invitationsPart } from "./invitations.js";
 import { curvePart } from "./people-curve.js";

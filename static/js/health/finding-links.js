@@ -1,7 +1,7 @@
 // Links of a finding: to the editor of a gesture, or to two gestures side by side.
 
 import { state, update } from "../core/state.js";
-import { html, nothing } from "../core/templates.js";
+import { html, nothing } from "../templates.js";
 import { address, go, here, knows } from "../core/views.js";
 
 /**

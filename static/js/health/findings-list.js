@@ -1,7 +1,7 @@
 // The findings, the worst first, each with links to where it can be mended.
 
 import { state, update } from "../core/state.js";
-import { html, nothing } from "../core/templates.js";
+import { html, nothing } from "../templates.js";
 import { go } from "../core/views.js";
 import { compare, editLink } from "./finding-links.js";
 import { changeButton } from "./replacements.js";

@@ -1,7 +1,7 @@
 // The table of what is known of each gesture, measured takes first.
 
 import { duration, readable } from "../core/format.js";
-import { html } from "../core/templates.js";
+import { html } from "../templates.js";
 import { compare, editLink } from "./finding-links.js";
 import { intervalText, percent } from "./rates.js";
 

@@ -4,7 +4,7 @@ import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
-import { guard, html, ifDefined, nothing, render } from "../core/templates.js";
+import { guard, html, ifDefined, nothing, render } from "../templates.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { takeFilesIn } from "../upload/upload-list.js";

@@ -5,7 +5,7 @@ import { copy } from "../core/clipboard.js";
 import { byId } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
-import { elementOf, guard, html, nothing, repeat, until } from "../core/templates.js";
+import { elementOf, guard, html, nothing, repeat, until } from "../templates.js";
 import { MAX_DEMONSTRATIONS } from "../core/text-limit.js";
 import { complain, toast } from "../core/toasts.js";
 

@@ -1,6 +1,6 @@
 // The map of the language: similar gestures are close; overlapping thumbnails are moved apart.
 
-import { html, svg } from "../core/templates.js";
+import { html, svg } from "../templates.js";
 
 /** @import { HealthReport } from "../core/types.d.ts" */
 

@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
-import { html, iconOf, nothing, render } from "../core/templates.js";
+import { html, iconOf, nothing, render } from "../templates.js";
 import { attempt } from "../core/toasts.js";
 import { editLink, pairOf } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";

@@ -1,6 +1,6 @@
 // The curve of takes read right, over the number of people who have shown the language.
 
-import { html, svg } from "../core/templates.js";
+import { html, svg } from "../templates.js";
 import { percent, rateText } from "./rates.js";
 
 /** @import { Forecast } from "../core/types.d.ts" */

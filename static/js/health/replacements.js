@@ -5,7 +5,7 @@ import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
 import { byId, h } from "../core/dom.js";
 import { currentLanguage, state } from "../core/state.js";
-import { html, nothing, render } from "../core/templates.js";
+import { html, nothing, render } from "../templates.js";
 import { showDone } from "../core/undo.js";
 import { labelOf, withoutGesture } from "../gestures/gesture-rows.js";
 import { edit } from "../languages/revision-edit.js";

@@ -3,7 +3,7 @@
 import { statusText } from "../clips/clip-store.js";
 import { askWhich } from "../core/format.js";
 import { state } from "../core/state.js";
-import { html, ifDefined, iconOf, live } from "../core/templates.js";
+import { html, ifDefined, iconOf, live } from "../templates.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake } from "../languages/test-set.js";
 import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";

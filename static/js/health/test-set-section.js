@@ -4,7 +4,7 @@ import { olderClipsButton } from "../clips/older-clips.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
-import { guard, html, live, nothing, repeat } from "../core/templates.js";
+import { guard, html, live, nothing, repeat } from "../templates.js";
 import { go } from "../core/views.js";
 import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";

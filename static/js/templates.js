@@ -1,16 +1,16 @@
 // Templates: what lit-html draws from the state is changed in place, so that focus survives.
 
-import { html, render } from "../../vendor/lit-html/lit-html.js";
-import { ICONS } from "./dom.js";
+import { html, render } from "../vendor/lit-html/lit-html.js";
+import { ICONS } from "./core/dom.js";
 
-export { guard } from "../../vendor/lit-html/directives/guard.js";
-export { ifDefined } from "../../vendor/lit-html/directives/if-defined.js";
-export { live } from "../../vendor/lit-html/directives/live.js";
-export { repeat } from "../../vendor/lit-html/directives/repeat.js";
-export { until } from "../../vendor/lit-html/directives/until.js";
-export { html, nothing, render, svg } from "../../vendor/lit-html/lit-html.js";
+export { guard } from "../vendor/lit-html/directives/guard.js";
+export { ifDefined } from "../vendor/lit-html/directives/if-defined.js";
+export { live } from "../vendor/lit-html/directives/live.js";
+export { repeat } from "../vendor/lit-html/directives/repeat.js";
+export { until } from "../vendor/lit-html/directives/until.js";
+export { html, nothing, render, svg } from "../vendor/lit-html/lit-html.js";
 
-/** @import { TemplateResult } from "../../vendor/lit-html/lit-html.js" */
+/** @import { TemplateResult } from "../vendor/lit-html/lit-html.js" */
 
 /**
  * One of the line icons; it is decoration, so its button needs a label of its own.
