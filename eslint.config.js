@@ -2,7 +2,17 @@ import js from "@eslint/js";
 import globals from "globals";
 
 export default [
-  { ignores: ["htmlcov/", "**/*.d.ts", "test-output/", "build/", "dist/", ".venv*/"] },
+  {
+    ignores: [
+      "htmlcov/",
+      "**/*.d.ts",
+      "static/vendor/",
+      "test-output/",
+      "build/",
+      "dist/",
+      ".venv*/",
+    ],
+  },
   js.configs.recommended,
   {
     languageOptions: { ecmaVersion: 2024, sourceType: "module" },

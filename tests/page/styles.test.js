@@ -30,7 +30,7 @@ test("only tokens.css has colours", async () => {
 test("every custom property that is used is defined, and the page loads every sheet", async () => {
   const sources = [...sheets, ...recognitionPage, ...(await filesIn("js/", ".js"))];
   const text = (await Promise.all(sources.map(read))).join("\n");
-  const defined = new Set([...text.matchAll(/["\s{](--[\w-]+)"?:/g)].map(([, name]) => name));
+  const defined = new Set([...text.matchAll(/["`\s{](--[\w-]+)"?:/g)].map(([, name]) => name));
   const used = new Set([...text.matchAll(/var\((--[\w-]+)/g)].map(([, name]) => name));
   assert.deepEqual(
     [...used].filter((name) => !defined.has(name)),

@@ -1,7 +1,11 @@
 // Creating DOM elements. Text becomes text nodes only: nothing a user wrote is parsed as markup.
 
-/** @type {Record<string, string>} */
-const ICONS = {
+/**
+ * The strokes of the line icons, in a box of 20 by 20.
+ *
+ * @type {Record<string, string>}
+ */
+export const ICONS = {
   back: "M15 4v12L7 10zM5 4v12",
   chevron: "M12 4l-6 6 6 6",
   close: "M5 5l10 10M15 5L5 15",

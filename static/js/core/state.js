@@ -52,6 +52,8 @@ const values = {
   loaded: false,
   health: null,
   checking: null,
+  unfolded: null,
+  invitations: null,
   exporting: null,
   tabling: null,
   testSet: null,

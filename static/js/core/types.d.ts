@@ -341,6 +341,10 @@ export interface State {
   loaded: boolean;
   health: HealthState | null;
   checking: CheckProgress | null;
+  /** The findings of which the health view shows all, not only the first. */
+  unfolded: Finding[] | null;
+  /** The invitations of a language, the newest first. */
+  invitations: { language: string; kept: Invitation[] } | null;
   exporting: ExportProgress | null;
   /** The progress of a table of takes; its id is the table's. */
   tabling: ExportProgress | null;

@@ -1,6 +1,6 @@
 // A confusion matrix: a grid whose cells are walked by the arrow keys and opened by Enter.
 
-import { h } from "../core/dom.js";
+import { html, live } from "../templates.js";
 
 /** @typedef {{ label: string, image?: string }} Head */
 
@@ -19,11 +19,9 @@ const STEPS = {
   End: [0, Infinity],
 };
 
-/**
- * @param {HTMLTableElement} table
- * @param {KeyboardEvent} event
- */
-function walk(table, event) {
+/** @param {KeyboardEvent} event */
+function walk(event) {
+  const table = /** @type {HTMLTableElement} */ (event.currentTarget);
   const target = /** @type {HTMLElement} */ (event.target);
   const cells = [...table.tBodies[0].rows].map(
     (row) => /** @type {HTMLElement[]} */ ([...row.querySelectorAll("[role=gridcell]")]),
@@ -51,80 +49,65 @@ function walk(table, event) {
   next.focus();
 }
 
-/** @param {Cell} cell */
-function drawCell({ text, amount, label, className = "", open = null }) {
-  return h(
-    "td",
-    {
-      role: "gridcell",
-      tabIndex: -1,
-      className: `${className}${open ? " opens" : ""}`,
-      "aria-label": label,
-      title: label,
-      style: { "--amount": `${(STRONGEST * Math.sqrt(amount)).toFixed(1)}%` },
-      onclick: open,
-    },
-    text,
-  );
-}
-
 /**
- * @param {"rowheader" | "columnheader"} role
- * @param {Head} head
+ * @param {Cell} cell
+ * @param {boolean} first
  */
-const head = (role, { label, image }) =>
-  h(
-    "th",
-    { role, scope: role === "rowheader" ? "row" : "col", title: label },
-    h(
-      "div",
-      {},
-      image ? h("img", { src: image, alt: "", width: 32, height: 32, loading: "lazy" }) : null,
-      h("span", {}, label),
-    ),
-  );
+const drawCell = ({ text, amount, label, className = "", open = null }, first) =>
+  html`<td
+    role="gridcell"
+    .tabIndex=${live(first ? 0 : -1)}
+    class="${className}${open ? " opens" : ""}"
+    aria-label=${label}
+    title=${label}
+    .style=${`--amount: ${(STRONGEST * Math.sqrt(amount)).toFixed(1)}%`}
+    @click=${open}
+  >
+    ${text}
+  </td>`;
+
+/** @param {Head} head */
+const content = ({ label, image }) =>
+  html`<div>
+    ${image ? html`<img loading="lazy" src=${image} alt="" width="32" height="32" />` : ""}<span
+      >${label}</span
+    >
+  </div>`;
 
 /**
- * Make a grid. `rows` and `columns` are `{ label, image }`; `cell(row, column)` gets their indices
+ * Draw a grid. `rows` and `columns` are `{ label, image }`; `cell(row, column)` gets their indices
  * and returns `{ text, amount, label, className, open }`, `amount` in [0, 1].
  *
  * @param {{ label: string, corner: string, rows: Head[], columns: Head[], cell: (row: number, column: number) => Cell }} grid
  */
 export function confusionGrid({ label, corner, rows, columns, cell }) {
-  const table = h(
-    "table",
-    {
-      role: "grid",
-      className: `confusion${columns.length > MANY ? " many" : ""}`,
-      "aria-label": label,
-    },
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        { role: "row" },
-        h("th", { role: "columnheader", className: "corner" }, corner),
-        columns.map((column) => head("columnheader", column)),
-      ),
-    ),
-    h(
-      "tbody",
-      {},
-      rows.map((row, index) =>
-        h(
-          "tr",
-          { role: "row" },
-          head("rowheader", row),
-          columns.map((_, column) => drawCell(cell(index, column))),
-        ),
-      ),
-    ),
-  );
-  const first =
-    /** @type {HTMLElement | null} */ (table.querySelector("td.opens")) ??
-    table.querySelector("td");
-  if (first) first.tabIndex = 0;
-  table.onkeydown = (event) => walk(table, event);
-  return h("div", { className: "confusion-scroll" }, table);
+  const cells = rows.map((_, row) => columns.map((_, column) => cell(row, column)));
+  const first = cells.flat().find(({ open }) => open) ?? cells[0]?.[0];
+  return html`<div class="confusion-scroll">
+    <table
+      role="grid"
+      class="confusion ${columns.length > MANY ? "many" : ""}"
+      aria-label=${label}
+      @keydown=${walk}
+    >
+      <thead>
+        <tr role="row">
+          <th role="columnheader" class="corner">${corner}</th>
+          ${columns.map(
+            (each) =>
+              html`<th role="columnheader" scope="col" title=${each.label}>${content(each)}</th>`,
+          )}
+        </tr>
+      </thead>
+      <tbody>
+        ${rows.map(
+          (row, index) =>
+            html`<tr role="row">
+              <th role="rowheader" scope="row" title=${row.label}>${content(row)}</th>
+              ${cells[index].map((each) => drawCell(each, each === first))}
+            </tr>`,
+        )}
+      </tbody>
+    </table>
+  </div>`;
 }

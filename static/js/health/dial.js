@@ -1,12 +1,14 @@
 // The dial: how many right takes may be refused, with both costs of the limit that follows from it.
 
 import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
-import { currentLanguage, follow } from "../core/state.js";
+import { currentLanguage } from "../core/state.js";
+import { html, live } from "../templates.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { edit } from "../languages/revision-edit.js";
 import { costWords, percent } from "./rates.js";
+
+/** @import { HealthReport, State } from "../core/types.d.ts" */
 
 const SHARES = [0.02, 0.05, 0.1, 0.2];
 
@@ -21,51 +23,46 @@ async function turn(share) {
   }
 }
 
-/** Make the section, and keep it in step with the language and its report. */
-export function dialSection() {
-  const select = h("select", { id: "dial", ...WRITES });
-  select.onchange = async () => {
-    await turn(Number(select.value));
-    choose(currentLanguage().most_refused); // Also where the change was refused.
-  };
-  /** @param {number} share */
-  const choose = (share) => {
-    const shares = [...new Set([...SHARES, share])].sort((one, other) => one - other);
-    if (shares.length !== select.options.length || !shares.includes(Number(select.value)))
-      select.replaceChildren(
-        ...shares.map((each) => h("option", { value: each }, `${percent(each)} %`)),
-      );
-    select.value = String(share);
-  };
-  const costs = h("div", { className: "dial-costs", role: "status" });
-  const section = h(
-    "section",
-    { className: "health-section dial", "aria-labelledby": "dial-title", hidden: true },
-    h(
-      "div",
-      { className: "section-head" },
-      h("h2", { id: "dial-title" }, "What is rejected"),
-      h(
-        "p",
-        { className: "dim" },
-        "The limit trades right takes that are refused for other signs that are accepted.",
-      ),
-    ),
-    h("label", { for: "dial" }, "Right takes refused, at most ", select),
-    costs,
-  );
-  let drawn = "";
-  follow(["gestures", "health"], ({ gestures, health }) => {
-    const limit = gestures && health?.id === gestures.id ? health.report?.limit : null;
-    section.hidden = !limit || !gestures?.gestures.length;
-    if (!gestures || !limit) return;
-    choose(gestures.most_refused);
-    select.disabled = !limit.measured;
-    costs.classList.toggle("stale", health?.status !== "done");
-    const words = costWords(limit);
-    if (words.join() === drawn) return; // A status that is written again is read out again.
-    drawn = words.join();
-    costs.replaceChildren(...words.map((each) => h("p", {}, each)));
-  });
-  return section;
+/** @param {Event & { target: HTMLSelectElement }} event */
+async function choose({ target }) {
+  await turn(Number(target.value));
+  target.value = String(currentLanguage().most_refused); // Also where the change was refused.
+}
+
+/**
+ * The section, as the language and its report have it.
+ *
+ * @param {State} state
+ * @param {HealthReport | null} report
+ */
+export function dialSection({ gestures, health }, report) {
+  const limit = report?.limit;
+  const now = gestures?.most_refused ?? SHARES[0];
+  const shares = [...new Set([...SHARES, now])].sort((one, other) => one - other);
+  return html`<section
+    class="health-section dial"
+    aria-labelledby="dial-title"
+    ?hidden=${!limit || !gestures?.gestures.length}
+  >
+    <div class="section-head">
+      <h2 id="dial-title">What is rejected</h2>
+      <p class="dim">
+        The limit trades right takes that are refused for other signs that are accepted.
+      </p>
+    </div>
+    <label for="dial"
+      >Right takes refused, at most
+      <select id="dial" data-writes ?disabled=${!limit?.measured} @change=${choose}>
+        ${shares.map(
+          (share) =>
+            html`<option value=${share} .selected=${live(share === now)}>
+              ${percent(share)} %
+            </option>`,
+        )}
+      </select></label
+    >
+    <div class="dial-costs ${health?.status === "done" ? "" : "stale"}" role="status">
+      ${limit ? costWords(limit).map((each) => html`<p>${each}</p>`) : ""}
+    </div>
+  </section>`;
 }

@@ -1,14 +1,13 @@
 // What to expect of a language: its test set first, then what its demonstrations foretell.
 
-import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
-import { follow } from "../core/state.js";
+import { html, nothing } from "../templates.js";
 import { runTestSet } from "../languages/test-set.js";
 import { invitationsPart } from "./invitations.js";
 import { curvePart } from "./people-curve.js";
 import { rateText } from "./rates.js";
 
-/** @import { HealthReport, TestSet } from "../core/types.d.ts" */
+/** @import { HealthReport, State, TestSet } from "../core/types.d.ts" */
 
 const ENOUGH_PEOPLE = 3; // From which on a forecast is promised.
 
@@ -26,18 +25,6 @@ export function testWords(testSet) {
     ? ` Not by revision ${testSet.revision}: ${plural(testSet.waiting, "take")}.`
     : "";
   return `Of the test set ${right} of ${asked} takes are read right${share}.${older}`;
-}
-
-/**
- * The gestures of which the test set reads less than half right, as words; empty: none.
- *
- * @param {TestSet | null} testSet
- */
-export function failingWords(testSet) {
-  const failing = (testSet?.gestures ?? []).filter(
-    ({ right, asked }) => asked > 1 && 2 * right < asked,
-  );
-  return failing.map(({ label, right, asked }) => `${label} ${right} of ${asked}`).join(", ");
 }
 
 /**
@@ -64,47 +51,45 @@ export function forecastWords({ people, words, asks_more: more, right, asked, re
 }
 
 /**
- * The button that recognises the takes again that an older revision has read; null without any.
+ * The button that recognises the takes again that an older revision has read.
  *
  * @param {TestSet | null} testSet
  */
 const againButton = (testSet) =>
   testSet?.waiting && testSet.overall.asked
-    ? h(
-        "button",
-        { type: "button", className: "link", ...WRITES, onclick: () => runTestSet() },
-        "Recognise again",
-      )
-    : null;
+    ? html`<button type="button" class="link" data-writes @click=${() => runTestSet()}>
+        Recognise again
+      </button>`
+    : nothing;
 
-/** Make the section, and keep it in step with the report and the test set. */
-export function expectation() {
-  const lines = h("div", { className: "expectation-lines", role: "status" });
-  const section = h(
-    "section",
-    { className: "health-section expectation", "aria-labelledby": "expect-title", hidden: true },
-    h("h2", { id: "expect-title" }, "What to expect"),
-    lines,
-    curvePart(),
-    invitationsPart(),
-  );
-  let drawn = "";
-  follow(["gestures", "health", "testSet"], ({ gestures, health, testSet }) => {
-    const report = gestures && health?.id === gestures.id ? health.report : null;
-    const measured = testWords(testSet?.language_id === gestures?.id ? testSet : null);
-    const words = [
-      ...(measured ? [measured] : []),
-      ...(report?.gestures.length ? forecastWords(report.forecast) : []),
-    ];
-    section.hidden = !words.length;
-    lines.classList.toggle("stale", Boolean(report) && health?.status !== "done");
-    if (words.join() === drawn) return; // A status that is written again is read out again.
-    drawn = words.join();
-    lines.replaceChildren(
-      ...words.map((each, index) =>
-        h("p", { className: index ? "" : "first" }, each, index ? null : againButton(testSet)),
-      ),
-    );
-  });
-  return section;
+/**
+ * The section, as the report and the test set have it.
+ *
+ * @param {State} state
+ * @param {HealthReport | null} report
+ * @param {TestSet | null} testSet
+ */
+export function expectation(state, report, testSet) {
+  const measured = testWords(testSet);
+  const words = [
+    ...(measured ? [measured] : []),
+    ...(report?.gestures.length ? forecastWords(report.forecast) : []),
+  ];
+  const stale = state.health?.status === "done" ? "" : "stale";
+  return html`<section
+    class="health-section expectation"
+    aria-labelledby="expect-title"
+    ?hidden=${!words.length}
+  >
+    <h2 id="expect-title">What to expect</h2>
+    <div class="expectation-lines ${report && stale}" role="status">
+      ${words.map(
+        (each, index) =>
+          html`<p class=${index ? "" : "first"}>
+            ${each}${index ? nothing : againButton(testSet)}
+          </p>`,
+      )}
+    </div>
+    ${curvePart(report?.forecast.curve ?? [], stale)}${invitationsPart(state, report)}
+  </section>`;
 }

@@ -1,7 +1,7 @@
 // Links of a finding: to the editor of a gesture, or to two gestures side by side.
 
-import { h } from "../core/dom.js";
 import { state, update } from "../core/state.js";
+import { html, nothing } from "../templates.js";
 import { address, go, here, knows } from "../core/views.js";
 
 /**
@@ -37,21 +37,18 @@ export function pairOf(name) {
 export const compare = (one, other) => update({ pair: pairName(one, other) });
 
 /**
- * A link to the editor of a gesture; null where the language has no such gesture.
+ * A link to the editor of a gesture; nothing where the language has no such gesture.
  *
  * @param {string} label
  * @param {string} [text]
  */
 export function editLink(label, text = `Edit ${label}`) {
-  if (!knows("gesture") || !state.gestures?.labels.includes(label)) return null;
-  return h(
-    "a",
-    {
-      className: "button",
-      title: text,
-      href: address("gesture", { gesture: label }),
-      onclick: here(() => go("gesture", { gesture: label })),
-    },
-    text,
-  );
+  if (!knows("gesture") || !state.gestures?.labels.includes(label)) return nothing;
+  return html`<a
+    class="button"
+    title=${text}
+    href=${address("gesture", { gesture: label })}
+    @click=${here(() => go("gesture", { gesture: label }))}
+    >${text}</a
+  >`;
 }

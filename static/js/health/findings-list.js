@@ -1,6 +1,7 @@
 // The findings, the worst first, each with links to where it can be mended.
 
-import { h } from "../core/dom.js";
+import { state, update } from "../core/state.js";
+import { html, nothing } from "../templates.js";
 import { go } from "../core/views.js";
 import { compare, editLink } from "./finding-links.js";
 import { changeButton } from "./replacements.js";
@@ -16,28 +17,35 @@ const AT_FIRST = 5; // Findings shown before the table and the map; the worst co
 function finding({ kind, gestures, message, error }, compared) {
   const [one, other] = gestures;
   const two = gestures.length === 2 && !compared;
-  return h(
-    "li",
-    { className: `finding ${error ? "error" : "note"}` },
-    h("span", { className: "mark", "aria-hidden": "true" }, error ? "!" : "i"),
-    h(
-      "div",
-      { className: "finding-text" },
-      h("p", {}, h("b", {}, error ? "Error: " : "Note: "), message),
-      h(
-        "div",
-        { className: "finding-links" },
-        kind.startsWith("phrases_")
-          ? h("button", { type: "button", onclick: () => go("phrases") }, "To the phrases")
-          : null,
-        two
-          ? h("button", { type: "button", onclick: () => compare(one, other) }, "Compare the two")
-          : null,
-        two && kind !== "look_alike" ? changeButton(one, other) : null,
-        gestures.map((label) => editLink(label)),
-      ),
-    ),
-  );
+  const links = [
+    kind.startsWith("phrases_")
+      ? html`<button type="button" @click=${() => go("phrases")}>To the phrases</button>`
+      : nothing,
+    two
+      ? html`<button type="button" @click=${() => compare(one, other)}>Compare the two</button>`
+      : nothing,
+    two && kind !== "look_alike" ? changeButton(one, other) : nothing,
+    gestures.map((label) => editLink(label)),
+  ];
+  return html`<li class="finding ${error ? "error" : "note"}">
+    <span class="mark" aria-hidden="true">${error ? "!" : "i"}</span>
+    <div class="finding-text">
+      <p><b>${error ? "Error: " : "Note: "}</b>${message}</p>
+      <div class="finding-links">${links}</div>
+    </div>
+  </li>`;
+}
+
+/**
+ * Show all findings, and go to the first that was not shown.
+ *
+ * @param {Event} event
+ * @param {Finding[]} unfolded
+ */
+function showAll({ target }, unfolded) {
+  const list = /** @type {HTMLElement} */ (target).previousElementSibling;
+  update({ unfolded });
+  /** @type {HTMLElement | null} */ (list?.children[AT_FIRST].querySelector("button, a"))?.focus();
 }
 
 /**
@@ -53,20 +61,22 @@ export function findingsList(findings, only = null) {
           gestures.length === only.length && gestures.every((label) => only.includes(label)),
       )
     : findings;
-  if (!shown.length) return null;
-  /** @param {Finding} each */
-  const draw = (each) => finding(each, only !== null);
-  const list = h(
-    "ul",
-    { className: "findings", "aria-label": "Findings" },
-    shown.slice(0, AT_FIRST).map(draw),
-  );
+  if (!shown.length) return nothing;
+  const part = state.unfolded === findings ? shown : shown.slice(0, AT_FIRST);
+  const list = html`<ul class="findings" aria-label="Findings">
+    ${part.map((each) => finding(each, only !== null))}
+  </ul>`;
   if (shown.length <= AT_FIRST) return list;
-  const rest = h("button", { type: "button" }, `Show all ${shown.length} findings`);
-  rest.onclick = () => {
-    list.append(...shown.slice(AT_FIRST).map(draw));
-    /** @type {HTMLElement | null} */ (list.children[AT_FIRST].querySelector("button, a"))?.focus();
-    rest.remove();
-  };
-  return h("div", {}, list, rest);
+  return html`<div>
+    ${list}${
+      part.length < shown.length
+        ? html`<button
+            type="button"
+            @click=${(/** @type {Event} */ event) => showAll(event, findings)}
+          >
+            Show all ${shown.length} findings
+          </button>`
+        : nothing
+    }
+  </div>`;
 }

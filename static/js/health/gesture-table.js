@@ -1,7 +1,7 @@
 // The table of what is known of each gesture, measured takes first.
 
-import { h } from "../core/dom.js";
 import { duration, readable } from "../core/format.js";
+import { html } from "../templates.js";
 import { compare, editLink } from "./finding-links.js";
 import { intervalText, percent } from "./rates.js";
 
@@ -11,25 +11,21 @@ import { intervalText, percent } from "./rates.js";
 const COUNTING = ["direction", "tempo", "hand_shape"];
 const NEWS = 0.02; // Share from which on a number is worth its place.
 
+const UNKNOWN = html`<td class="dim">–</td>`;
+
 /**
  * How many takes were right, with bar and interval; a dash where none is known.
  *
  * @param {CountedRate | null} right
  */
 function share(right) {
-  if (!right) return h("td", { className: "dim" }, "\u2013");
+  if (!right) return UNKNOWN;
   const interval = intervalText(right);
-  return h(
-    "td",
-    { className: "rate" },
-    h("span", { className: "num" }, `${Math.round(right.rate * right.n)} of ${right.n}`),
-    h("span", {
-      className: "rate-bar",
-      "aria-hidden": "true",
-      style: { "--share": `${100 * right.rate}%` },
-    }),
-    h("small", { className: "dim num" }, interval && `${interval} %`),
-  );
+  return html`<td class="rate">
+    <span class="num">${Math.round(right.rate * right.n)} of ${right.n}</span
+    ><span class="rate-bar" aria-hidden="true" .style=${`--share: ${100 * right.rate}%`}></span
+    ><small class="dim num">${interval && `${interval} %`}</small>
+  </td>`;
 }
 
 /**
@@ -55,44 +51,30 @@ const missing = ({ landmarks }) => landmarks.filter(({ visible }) => 1 - visible
 /** @param {GestureHealth} gesture */
 function unseen(gesture) {
   const landmarks = missing(gesture);
-  if (!landmarks.length) return h("td", { className: "dim" }, "\u2013");
-  return h(
-    "td",
-    {},
-    h(
-      "ul",
-      { className: "seen" },
-      landmarks.map(({ landmark, visible }) =>
-        h(
-          "li",
-          {},
-          readable(landmark),
-          " ",
-          h("b", { className: "num" }, `${percent(1 - visible)} %`),
-        ),
-      ),
-    ),
-  );
+  if (!landmarks.length) return UNKNOWN;
+  return html`<td>
+    <ul class="seen">
+      ${landmarks.map(
+        ({ landmark, visible }) =>
+          html`<li>${readable(landmark)} <b class="num">${percent(1 - visible)} %</b></li>`,
+      )}
+    </ul>
+  </td>`;
 }
 
 /** @param {GestureHealth} gesture */
 function nearest({ label, nearest: other }) {
-  if (!other) return h("td", { className: "dim" }, "\u2013");
-  return h(
-    "td",
-    { className: "nearest" },
-    h(
-      "button",
-      {
-        type: "button",
-        className: "link",
-        title: `Compare ${label} and ${other.label}`,
-        onclick: () => compare(label, other.label),
-      },
-      other.label,
-    ),
-    h("small", { className: "dim num" }, ` ${other.distance.toFixed(2)}`),
-  );
+  if (!other) return UNKNOWN;
+  return html`<td class="nearest">
+    <button
+      type="button"
+      class="link"
+      title="Compare ${label} and ${other.label}"
+      @click=${() => compare(label, other.label)}
+    >
+      ${other.label}</button
+    ><small class="dim num"> ${other.distance.toFixed(2)}</small>
+  </td>`;
 }
 
 /** @param {GestureHealth["counts"]} counts */
@@ -104,39 +86,23 @@ const counting = (counts) =>
 /**
  * @param {GestureHealth} gesture
  * @param {string} image
- * @param {Node[]} measured
- * @param {Node[]} more
+ * @param {unknown} measured
+ * @param {unknown} more
  */
-function row(gesture, image, measured, more) {
-  const { label, seconds } = gesture;
-  return h(
-    "tr",
-    {},
-    h(
-      "th",
-      { scope: "row" },
-      h(
-        "div",
-        {},
-        h("img", { src: image, alt: "", width: 40, height: 40, loading: "lazy" }),
-        h(
-          "span",
-          {},
-          label,
-          h(
-            "small",
-            { className: "dim" },
-            seconds === null ? "no demonstration" : duration(seconds),
-          ),
-        ),
-      ),
-    ),
-    measured,
-    nearest(gesture),
-    more,
-    h("td", { className: "edit" }, editLink(label, "Edit")),
-  );
-}
+const row = (gesture, image, measured, more) =>
+  html`<tr>
+    <th scope="row">
+      <div>
+        <img loading="lazy" src=${image} alt="" width="40" height="40" /><span
+          >${gesture.label}<small class="dim"
+            >${gesture.seconds === null ? "no demonstration" : duration(gesture.seconds)}</small
+          ></span
+        >
+      </div>
+    </th>
+    ${measured}${nearest(gesture)}${more}
+    <td class="edit">${editLink(gesture.label, "Edit")}</td>
+  </tr>`;
 
 /**
  * Draw the table of all gestures; columns that would tell nothing of any are left out.
@@ -158,40 +124,32 @@ export function gestureTable({ gestures, forecast }, testSet, imageOf) {
     ...(misses ? ["Keypoints not seen"] : []),
     "",
   ];
-  return h(
-    "div",
-    { className: "confusion-scroll" },
-    h(
-      "table",
-      { className: "estimates" },
-      h("caption", { className: "visually-hidden" }, "What is known of each gesture"),
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          heads.map((text) => h(text ? "th" : "td", text ? { scope: "col" } : {}, text)),
-        ),
-      ),
-      h(
-        "tbody",
-        {},
-        gestures.map((gesture) =>
+  return html`<div class="confusion-scroll">
+    <table class="estimates">
+      <caption class="visually-hidden">
+        What is known of each gesture
+      </caption>
+      <thead>
+        <tr>
+          ${heads.map((text) => (text ? html`<th scope="col">${text}</th>` : html`<td></td>`))}
+        </tr>
+      </thead>
+      <tbody>
+        ${gestures.map((gesture) =>
           row(
             gesture,
             imageOf(gesture.label),
             [
-              ...(tested ? [share(testedShare(testSet, gesture.label))] : []),
-              ...(forecast.right ? [share(gesture.right)] : []),
+              tested ? share(testedShare(testSet, gesture.label)) : "",
+              forecast.right ? share(gesture.right) : "",
             ],
             [
-              ...(counts ? [h("td", {}, counting(gesture.counts))] : []),
-              ...(misses ? [unseen(gesture)] : []),
+              counts ? html`<td>${counting(gesture.counts)}</td>` : "",
+              misses ? unseen(gesture) : "",
             ],
           ),
-        ),
-      ),
-    ),
-  );
+        )}
+      </tbody>
+    </table>
+  </div>`;
 }

@@ -1,21 +1,25 @@
 // The health view: what to expect of a language, the findings of its check, and its test set.
 
 import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
+import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, follow, state } from "../core/state.js";
+import { guard, html, ifDefined, nothing, render } from "../templates.js";
 import { attempt } from "../core/toasts.js";
 import { go } from "../core/views.js";
-import { batchSection } from "./test-set-section.js";
+import { takeFilesIn } from "../upload/upload-list.js";
 import { dialSection } from "./dial.js";
-import { expectation, failingWords } from "./expectation.js";
+import { expectation } from "./expectation.js";
 import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { gestureTable } from "./gesture-table.js";
 import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
+import { loadInvitations } from "./invitations.js";
 import { languageMap, narrow } from "./language-map.js";
 import { showPair } from "./pair-page.js";
-import { percent } from "./rates.js";
+import { failingWords, percent } from "./rates.js";
+import { addTestClips, workOff } from "./test-set-clips.js";
+import { batchSection } from "./test-set-section.js";
 
 /** @import { HealthReport, State, TestSet } from "../core/types.d.ts" */
 
@@ -47,14 +51,26 @@ function verdict({ ok, warnings: findings }, testSet) {
   const notes = findings.length - errors;
   const failing = failingWords(testSet);
   const well = ok && !failing;
-  return h(
-    "p",
-    { className: `verdict ${well ? "well" : "unwell"}`, role: "status" },
-    h("span", { className: "mark", "aria-hidden": "true" }, well ? "\u2713" : "!"),
-    errors || !failing ? h("b", {}, ok ? "No errors" : plural(errors, "error")) : null,
-    failing ? h("b", { title: "Of the test set read right" }, failing) : null,
-    notes ? h("span", { className: "dim" }, plural(notes, "note")) : null,
-  );
+  return html`<p class="verdict ${well ? "well" : "unwell"}" role="status">
+    <span class="mark" aria-hidden="true">${well ? "\u2713" : "!"}</span>${
+      errors || !failing ? html`<b>${ok ? "No errors" : plural(errors, "error")}</b>` : nothing
+    }${failing && html`<b title="Of the test set read right">${failing}</b>`}${
+      notes ? html`<span class="dim">${plural(notes, "note")}</span>` : nothing
+    }
+  </p>`;
+}
+
+/**
+ * How far the check of the revision on display is, in words and as a share if that is known.
+ *
+ * @param {State} state
+ */
+function advanceOf({ health, checking }) {
+  if (!checking || checking.id !== health?.id || checking.revision !== health.revision)
+    return { words: "Beginning" };
+  const { stage, done, total } = checking;
+  const words = `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`;
+  return total ? { words, total, done } : { words };
 }
 
 /**
@@ -62,68 +78,33 @@ function verdict({ ok, warnings: findings }, testSet) {
  *
  * @param {State} state
  */
-function progress({ health }) {
-  if (!health || !isCurrent(health) || health.status === "done") return null;
-  const again = h(
-    "button",
-    { type: "button", className: "primary", onclick: check },
-    "Check again",
-  );
+function progress(state) {
+  const { health, gestures } = state;
+  if (!gestures?.gestures.length || !health || !isCurrent(health) || health.status === "done")
+    return nothing;
+  const again = html`<button type="button" class="primary" @click=${check}>Check again</button>`;
   if (health.status === "cancelled")
-    return h(
-      "div",
-      { className: "checking" },
-      h(
-        "p",
-        {},
-        h("b", {}, "The check was cancelled."),
-        " What is shown below, if anything, is of an older revision.",
-      ),
-      again,
-    );
+    return html`<div class="checking">
+      <p>
+        <b>The check was cancelled.</b> What is shown below, if anything, is of an older revision.
+      </p>
+      ${again}
+    </div>`;
   if (health.status === "failed")
-    return h(
-      "div",
-      { className: "checking", role: "alert" },
-      h("p", {}, h("b", {}, "The check failed. "), health.error),
-      again,
-    );
-  return h(
-    "div",
-    { className: "checking" },
-    h(
-      "p",
-      {},
-      h("b", {}, `Checking revision ${health.revision}`),
-      h("span", { className: "dim num" }, "Beginning"),
-    ),
-    h("progress", { "aria-label": "Progress of the check" }),
-    h(
-      "button",
-      { type: "button", ...WRITES, onclick: () => attempt("Cancelling", cancel) },
-      "Cancel",
-    ),
-  );
-}
-
-/**
- * Show the progress of the check in place, so that its button stays under the pointer.
- *
- * @param {HTMLElement} bar
- * @param {State} state
- */
-function advance(bar, { health, checking }) {
-  const running = bar.querySelector("progress");
-  if (!running || !checking || checking.id !== health?.id || checking.revision !== health.revision)
-    return;
-  const { stage, done, total } = checking;
-  bar
-    .querySelector(".num")
-    ?.replaceChildren(
-      `${STAGES[stage] ?? stage}, ${total ? `${done} of ${total}` : `${done} so far`}`,
-    );
-  if (total) Object.assign(running, { max: total, value: done });
-  else running.removeAttribute("value");
+    return html`<div class="checking" role="alert">
+      <p><b>The check failed. </b>${health.error}</p>
+      ${again}
+    </div>`;
+  const { words, total, done } = advanceOf(state);
+  return html`<div class="checking">
+    <p><b>Checking revision ${health.revision}</b><span class="dim num">${words}</span></p>
+    <progress
+      aria-label="Progress of the check"
+      max=${total ?? 1}
+      value=${ifDefined(done)}
+    ></progress>
+    <button type="button" data-writes @click=${() => attempt("Cancelling", cancel)}>Cancel</button>
+  </div>`;
 }
 
 /**
@@ -141,15 +122,16 @@ function openNearest(report, label) {
 /**
  * @param {string} title
  * @param {string} hint
- * @param {...Node} content
+ * @param {unknown} content
  */
-const section = (title, hint, ...content) =>
-  h(
-    "section",
-    { className: "health-section" },
-    h("div", { className: "section-head" }, h("h2", {}, title), h("p", { className: "dim" }, hint)),
-    ...content,
-  );
+const section = (title, hint, content) =>
+  html`<section class="health-section">
+    <div class="section-head">
+      <h2>${title}</h2>
+      <p class="dim">${hint}</p>
+    </div>
+    ${content}
+  </section>`;
 
 /**
  * @param {HealthReport} report
@@ -180,27 +162,19 @@ function drawReport(report, testSet) {
             open: (label) => openNearest(report, label),
           }),
         )
-      : null,
-  ].filter((each) => each !== null);
+      : nothing,
+  ];
 }
 
-function nothing() {
-  return h(
-    "div",
-    { className: "health-empty" },
-    h("p", {}, h("b", {}, state.gestures ? "No gestures to check yet" : "No language yet")),
-    h(
-      "p",
-      { className: "dim" },
-      "Save a gesture from a clip. Shown by three people, its language tells here what others will reach, before the dive.",
-    ),
-    h(
-      "button",
-      { type: "button", className: "primary", onclick: () => go("studio") },
-      "To the clips",
-    ),
-  );
-}
+const empty = () =>
+  html`<div class="health-empty">
+    <p><b>${state.gestures ? "No gestures to check yet" : "No language yet"}</b></p>
+    <p class="dim">
+      Save a gesture from a clip. Shown by three people, its language tells here what others will
+      reach, before the dive.
+    </p>
+    <button type="button" class="primary" @click=${() => go("studio")}>To the clips</button>
+  </div>`;
 
 /**
  * The report of the language on display, possibly of an older revision.
@@ -236,64 +210,46 @@ function showTest() {
   title?.focus({ preventScroll: true });
 }
 
-function overview() {
-  const name = h("h1");
-  const about = h("small", { className: "dim" });
-  const says = h("div", { className: "verdict-place" });
-  const bar = h("div");
-  const body = h("div", { className: "report" });
-  const head = () => {
-    const { gestures, health } = state;
-    const report = reportOf(state);
-    name.textContent = gestures ? `Health of ${gestures.name}` : "Health";
-    about.textContent = report ? `Revision ${health?.shown}${triggerText(report)}` : "";
-    says.replaceChildren(
-      ...(report && isCurrent(health) && health?.status === "done"
-        ? [verdict(report, testSetOf(state))]
-        : []),
-    );
-    bar.replaceChildren(
-      ...[gestures?.gestures.length ? progress(state) : null].filter((each) => each !== null),
-    );
-    advance(bar, state);
-  };
-  /** @type {HealthReport | "nothing" | null} */
-  let drawn = null;
-  let tested = "";
-  const draw = () => {
-    const { gestures, health, loaded } = state;
-    const report = reportOf(state);
-    const testSet = testSetOf(state);
-    const now = gestures?.gestures.length ? report : "nothing";
-    const tests = JSON.stringify(testSet?.gestures ?? []);
-    body.classList.toggle("stale", Boolean(report) && health?.status !== "done");
-    if ((now === drawn && tests === tested) || (now === "nothing" && !loaded)) return;
-    drawn = now;
-    tested = tests;
-    body.replaceChildren(
-      ...(now === "nothing" ? [nothing()] : report ? drawReport(report, testSet) : []),
-    );
-  };
-  follow(["gestures", "health", "testSet"], head);
-  follow(["checking"], () => advance(bar, state));
-  follow(["gestures", "health", "loaded", "testSet"], draw);
-  return h(
-    "div",
-    { className: "health-page" },
-    h(
-      "div",
-      { className: "health-head" },
-      h("div", {}, name, about),
-      says,
-      h("button", { type: "button", onclick: showTest }, "Test with clips"),
-    ),
-    bar,
-    expectation(),
-    body,
-    dialSection(),
-    batchSection(),
-  );
+/**
+ * @param {State} state
+ * @param {HealthReport | null} report
+ * @param {TestSet | null} testSet
+ */
+function head({ gestures, health }, report, testSet) {
+  const says = report && isCurrent(health) && health?.status === "done";
+  return html`<div class="health-head">
+    <div>
+      <h1>${gestures ? `Health of ${gestures.name}` : "Health"}</h1>
+      <small class="dim">${report && `Revision ${health?.shown}${triggerText(report)}`}</small>
+    </div>
+    <div class="verdict-place">${says ? verdict(report, testSet) : nothing}</div>
+    <button type="button" @click=${showTest}>Test with clips</button>
+  </div>`;
 }
+
+/**
+ * All of the view, as the state has it.
+ *
+ * @param {State} state
+ */
+function overview(state) {
+  const { gestures, health, loaded, unfolded } = state;
+  const report = reportOf(state);
+  const testSet = testSetOf(state);
+  const stale = report && health?.status !== "done" ? "stale" : "";
+  const parts = () => (report ? drawReport(report, testSet) : nothing);
+  const body = gestures?.gestures.length
+    ? guard([report, testSet, gestures, unfolded], parts)
+    : loaded && empty();
+  return html`${head(state, report, testSet)}
+    <div>${progress(state)}</div>
+    ${expectation(state, report, testSet)}
+    <div class="report ${stale}">${body || nothing}</div>
+    ${dialSection(state, report)}${batchSection(testSet)}`;
+}
+
+/** @type {any} */
+const ALL = Object.keys(state); // A name that is left out here would be a part that goes stale.
 
 /**
  * Build the view.
@@ -301,12 +257,16 @@ function overview() {
  * @param {HTMLElement} root
  */
 export function open(root) {
-  const all = overview();
+  const all = h("div", { className: "health-page" });
   const two = h("div", { className: "health-page pair-page", hidden: true });
   root.append(all, two);
   /** @type {string | null} */
   let shown = null;
+  takeFilesIn("health", addTestClips);
+  follow(["pending", "clips", "gestures"], workOff);
   follow(["view", "gestures", "returns"], keepChecked);
+  follow(["view", "gestures", "clips", "health"], loadInvitations);
+  follow(ALL, () => state.view === "health" && render(overview(state), all));
   follow(["pair", "gestures"], ({ pair, gestures }) => {
     const opens = pair !== null && gestures !== null;
     all.hidden = opens;

@@ -2,13 +2,14 @@
 
 import * as api from "../core/api.js";
 import { copy } from "../core/clipboard.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
-import { currentLanguage, follow, state } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
+import { elementOf, guard, html, nothing, repeat, until } from "../templates.js";
 import { MAX_DEMONSTRATIONS } from "../core/text-limit.js";
 import { complain, toast } from "../core/toasts.js";
 
-/** @import { Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook } from "../core/types.d.ts" */
+/** @import { HealthReport, Invitation, NewInvitation, ReceivedTake, ReceivedTakeOutlook, State } from "../core/types.d.ts" */
 
 const PEOPLE = 2; // With whoever wrote the language they are three, from which on it is foretold.
 const DAYS = [1, 7, 30];
@@ -55,21 +56,8 @@ export const forecast = ({ known, repaired, broken }) =>
     ? `Of ${plural(known, "known take")} this repairs ${repaired} and breaks ${broken}.`
     : "No take of the test set or of practice tells what it changes.";
 
-/** @type {Map<string, Promise<ReceivedTakeOutlook>>} */
-const outlooks = new Map(); // by take and revision: each takes seconds to compute
-
-/**
- * @param {string} invitation
- * @param {string} take
- */
-function outlookOf(invitation, take) {
-  const { id: language, revision } = currentLanguage();
-  const key = `${take} ${revision}`;
-  const found = outlooks.get(key) ?? api.invitations.outlook(language, invitation, take);
-  outlooks.set(key, found);
-  found.catch(() => outlooks.delete(key));
-  return found;
-}
+/** @type {Map<string, Promise<unknown>>} */
+const drawings = new Map(); // by take and revision: each takes seconds to compute
 
 /**
  * A held take as it was shown, its drawing beside that of the gesture, and what it would change.
@@ -77,30 +65,40 @@ function outlookOf(invitation, take) {
  * @param {string} invitation
  * @param {ReceivedTake} take
  */
-async function showTake(invitation, { id, label, clip_id: clip }) {
+function drawingOf(invitation, { id, label, clip_id: clip }) {
   const { id: language, revision } = currentLanguage();
-  const outlook = await outlookOf(invitation, id);
-  const drawing = (/** @type {string} */ src, /** @type {string} */ words) =>
-    h(
-      "figure",
-      {},
-      h("img", { src, alt: "", width: 112, height: 112 }),
-      h("figcaption", {}, words),
-    );
-  return [
-    h("video", {
-      src: `${api.clips.video({ id: clip })}#t=${outlook.start},${outlook.end}`,
-      controls: true,
-      muted: true,
-      playsInline: true,
-      preload: "metadata",
-      "aria-label": `The take of ${label}`,
-    }),
-    drawing(outlook.image, "This take"),
-    drawing(api.languages.image(language, label, revision), label),
-    h("p", {}, forecast(outlook)),
-  ];
+  const key = `${id} ${revision}`;
+  /** @param {ReceivedTakeOutlook} outlook */
+  const draw = (outlook) =>
+    html`<video
+        src="${api.clips.video({ id: clip })}#t=${outlook.start},${outlook.end}"
+        controls
+        .muted=${true}
+        playsinline
+        preload="metadata"
+        aria-label="The take of ${label}"
+      ></video
+      >${figure(outlook.image, "This take")}${figure(
+        api.languages.image(language, label, revision),
+        label,
+      )}
+      <p>${forecast(outlook)}</p>`;
+  const drawing =
+    drawings.get(key) ??
+    api.invitations.outlook(language, invitation, id).then(draw, (error) => {
+      drawings.delete(key);
+      return html`<p class="dim">${error.message}</p>`;
+    });
+  drawings.set(key, drawing);
+  return until(drawing, nothing);
 }
+
+/** @type {(src: string, words: string) => unknown} */
+const figure = (src, words) =>
+  html`<figure>
+    <img src=${src} alt="" width="112" height="112" />
+    <figcaption>${words}</figcaption>
+  </figure>`;
 
 /**
  * One take that came in, with what can be done about it.
@@ -113,31 +111,21 @@ function takeRow(invitation, take, settle) {
   const { label, diver, status } = take;
   const held = isHeld(take);
   const button = (/** @type {"added" | "removed"} */ next, /** @type {string} */ words) =>
-    h(
-      "button",
-      {
-        type: "button",
-        ...WRITES,
-        "aria-label": `${words} ${label} by ${diver}`,
-        onclick: () => settle(take, next),
-      },
-      words,
-    );
-  const shown = h("div", { className: "received-take" });
-  if (held)
-    showTake(invitation, take).then(
-      (parts) => shown.replaceChildren(...parts),
-      (error) => shown.replaceChildren(h("p", { className: "dim" }, error.message)),
-    );
-  return h(
-    "li",
-    { className: `received ${held ? "held" : status}` },
-    h("span", {}, h("b", {}, label), ` by ${diver}`),
-    h("span", { className: "dim" }, outcome(take)),
-    held || status === "removed" ? button("added", "Add") : null,
-    held || status === "added" ? button("removed", "Remove") : null,
-    held ? shown : null,
-  );
+    html`<button
+      type="button"
+      data-writes
+      aria-label="${words} ${label} by ${diver}"
+      @click=${() => settle(take, next)}
+    >
+      ${words}
+    </button>`;
+  return html`<li class="received ${held ? "held" : status}">
+    <span><b>${label}</b> by ${diver}</span><span class="dim">${outcome(take)}</span>${
+      held || status === "removed" ? button("added", "Add") : nothing
+    }${held || status === "added" ? button("removed", "Remove") : nothing}${
+      held ? html`<div class="received-take">${drawingOf(invitation, take)}</div>` : nothing
+    }
+  </li>`;
 }
 
 /** @param {NewInvitation} made */
@@ -145,183 +133,195 @@ function showLink({ link, qr, expires, most_takes: takes }) {
   const dialog = byId("dialog");
   const warning = hindrance(link);
   dialog.replaceChildren(
-    h(
-      "div",
-      { className: "invitation-link" },
-      h("h2", { id: "dialog-title" }, "Let others scan this"),
-      h("img", {
-        src: `data:image/svg+xml,${encodeURIComponent(qr)}`,
-        alt: "QR code of the link",
-        width: 260,
-        height: 260,
-      }),
-      h("p", { className: "link-text num" }, link),
-      warning ? h("p", { className: "hindrance" }, warning) : null,
-      h(
-        "p",
-        { className: "dim" },
-        `Who has it sees these gestures and adds takes, ${takes} in all, until ${dateAndTime(expires)}; nothing else. It is shown only now.`,
-      ),
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
-        h(
-          "button",
-          { type: "button", className: "primary", onclick: () => copy(link, "Link copied", "") },
-          "Copy the link",
-        ),
-      ),
+    elementOf(
+      html`<div class="invitation-link">
+        <h2 id="dialog-title">Let others scan this</h2>
+        <img
+          src="data:image/svg+xml,${encodeURIComponent(qr)}"
+          alt="QR code of the link"
+          width="260"
+          height="260"
+        />
+        <p class="link-text num">${link}</p>
+        ${warning && html`<p class="hindrance">${warning}</p>`}
+        <p class="dim">
+          Who has it sees these gestures and adds takes, ${takes} in all, until
+          ${dateAndTime(expires)}; nothing else. It is shown only now.
+        </p>
+        <div class="dialog-actions">
+          <button type="button" @click=${() => dialog.close()}>Close</button>
+          <button type="button" class="primary" @click=${() => copy(link, "Link copied", "")}>
+            Copy the link
+          </button>
+        </div>
+      </div>`,
     ),
   );
 }
 
-/** @param {() => void} made Called when there is a new invitation. */
-function openForm(made) {
+/**
+ * @param {string} id
+ * @param {string} name
+ * @param {number[]} values
+ * @param {number} chosen
+ */
+const choice = (id, name, values, chosen) =>
+  html`<div class="field">
+    <label for=${id}>${name}</label>
+    <select id=${id}>
+      ${values.map((each) => html`<option ?selected=${each === chosen}>${each}</option>`)}
+    </select>
+  </div>`;
+
+function openForm() {
   const dialog = byId("dialog");
   const { id, name } = currentLanguage();
-  /** @type {(id: string, values: number[], chosen: number) => HTMLSelectElement} */
-  const choice = (id, values, chosen) =>
-    h(
-      "select",
-      { id },
-      values.map((each) => h("option", { value: each, selected: each === chosen }, each)),
-    );
   const counts = Array.from({ length: MAX_DEMONSTRATIONS - 1 }, (_, index) => index + 1);
-  const people = choice("invited-people", counts, PEOPLE);
-  const days = choice("invited-days", DAYS, DAYS[1]);
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const button = h("button", { type: "submit", className: "primary" }, "Make the link");
-  const form = h(
-    "form",
-    {},
-    h("h2", { id: "dialog-title" }, `Invite people to ${name}`),
-    h(
-      "p",
-      { className: "dim" },
-      "They open a link on their phones and show each gesture once. Every take is checked, and added as theirs, returned with the reason, or held for you.",
-    ),
-    h("div", { className: "field" }, h("label", { for: "invited-people" }, "People"), people),
-    h("div", { className: "field" }, h("label", { for: "invited-days" }, "Days"), days),
-    problem,
-    h(
-      "div",
-      { className: "dialog-actions" },
-      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-      button,
-    ),
-  );
-  form.onsubmit = async (event) => {
+  const numberOf = (/** @type {string} */ field) => Number(byId(field).value);
+  /** @param {SubmitEvent} event */
+  const make = async (event) => {
     event.preventDefault();
+    const { submitter: button } = /** @type {any} */ (event);
     button.disabled = true;
     try {
-      const limits = { people: Number(people.value), days: Number(days.value) };
+      const limits = { people: numberOf("invited-people"), days: numberOf("invited-days") };
       showLink(await api.invitations.make(id, limits));
-      made();
+      loadInvitations(state);
     } catch (error) {
+      const problem = dialog.querySelector(".field-problem");
       problem.textContent = error.message;
       problem.hidden = false;
       button.disabled = false;
     }
   };
-  dialog.replaceChildren(form);
+  dialog.replaceChildren(
+    elementOf(
+      html`<form @submit=${make}>
+        <h2 id="dialog-title">Invite people to ${name}</h2>
+        <p class="dim">
+          They open a link on their phones and show each gesture once. Every take is checked, and
+          added as theirs, returned with the reason, or held for you.
+        </p>
+        ${choice("invited-people", "People", counts, PEOPLE)}${choice(
+          "invited-days",
+          "Days",
+          DAYS,
+          DAYS[1],
+        )}
+        <p class="field-problem" role="alert" hidden></p>
+        <div class="dialog-actions">
+          <button type="button" @click=${() => dialog.close()}>Cancel</button>
+          <button type="submit" class="primary">Make the link</button>
+        </div>
+      </form>`,
+    ),
+  );
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = null;
   dialog.showModal();
 }
 
 /**
- * One invitation with what came in by it.
+ * Load the invitations of the language on display.
  *
- * @param {Invitation} invitation
- * @param {() => void} withdraw
- * @param {(status: "added" | "removed", ...takes: ReceivedTake[]) => void} settle
+ * @param {Pick<State, "view" | "gestures">} state
  */
-function row({ id, created, expires, closed, most_takes: most, takes, shown }, withdraw, settle) {
-  const end = closed ?? `valid until ${dateAndTime(expires)}`;
-  const kept = shown.filter((take) => isHeld(take) || take.status === "added");
-  const button = (/** @type {string} */ words, /** @type {() => void} */ onclick) =>
-    h("button", { type: "button", ...WRITES, onclick }, words);
-  return h(
-    "li",
-    { className: `invitation ${closed ? "closed" : ""}` },
-    h(
-      "p",
-      {},
-      `Made ${ago(created)}, ${closed === "expired" ? "over" : end}. ${takes} of ${most} takes sent.`,
-    ),
-    closed ? null : button("Withdraw", withdraw),
-    closed && kept.length
-      ? button("Take back what came in", () => settle("removed", ...kept))
-      : null,
-    h(
-      "ul",
-      { "aria-label": "Takes" },
-      shown.map((take) => takeRow(id, take, (each, status) => settle(status, each))),
-    ),
-  );
+export async function loadInvitations({ view, gestures }) {
+  if (view !== "health" || !gestures?.gestures.length) return;
+  const language = gestures.id;
+  const found = await api.invitations.list(language).catch(() => null); // Asked again later.
+  if (!found || language !== state.gestures?.id) return;
+  const kept = found.filter(({ closed, takes }) => !closed || takes).slice(0, MOST_SHOWN);
+  update({ invitations: { language, kept } });
 }
 
-/** Make the part of the health view that invites people, and keep it in step. */
-export function invitationsPart() {
-  const list = h("ul", { className: "invitations", "aria-label": "Invitations" });
-  const button = h(
-    "button",
-    { type: "button", ...WRITES, onclick: () => openForm(load) },
-    "Invite people",
-  );
-  const part = h("div", { className: "invite" }, button, list);
-  let drawn = "";
+/**
+ * @param {string} language
+ * @param {string} invitation
+ * @param {"added" | "removed"} status
+ * @param {...ReceivedTake} takes
+ */
+async function settle(language, invitation, status, ...takes) {
+  try {
+    for (const take of takes) await api.invitations.settle(language, invitation, take.id, status);
+  } catch (error) {
+    complain(error, status === "added" ? "Adding the take" : "Removing the take");
+  }
+  loadInvitations(state);
+}
 
-  async function load() {
-    const language = state.gestures?.id;
-    if (!language) return;
-    const found = await api.invitations.list(language).catch(() => null); // Asked again later.
-    if (!found || language !== state.gestures?.id) return;
-    const kept = found.filter(({ closed, takes }) => !closed || takes).slice(0, MOST_SHOWN);
-    const now = JSON.stringify([language, kept]);
-    if (now === drawn) return;
-    drawn = now;
-    list.hidden = !kept.length;
-    list.replaceChildren(
-      ...kept.map((each) => row(each, () => withdraw(language, each), settling(language, each))),
+/**
+ * @param {string} language
+ * @param {string} invitation
+ */
+async function withdraw(language, invitation) {
+  try {
+    await api.invitations.withdraw(language, invitation);
+    toast(
+      "Invitation withdrawn",
+      "Its link does nothing any more. What was added stays, until you take it back.",
     );
+  } catch (error) {
+    complain(error, "Withdrawing the invitation");
   }
+  loadInvitations(state);
+}
 
-  /** @type {(language: string, invitation: Invitation) => (status: "added" | "removed", ...takes: ReceivedTake[]) => Promise<void>} */
-  const settling =
-    (language, { id }) =>
-    async (status, ...takes) => {
-      try {
-        for (const take of takes) await api.invitations.settle(language, id, take.id, status);
-      } catch (error) {
-        complain(error, status === "added" ? "Adding the take" : "Removing the take");
-      }
-      load();
-    };
-
-  /**
-   * @param {string} language
-   * @param {Invitation} invitation
-   */
-  async function withdraw(language, invitation) {
-    try {
-      await api.invitations.withdraw(language, invitation.id);
-      toast(
-        "Invitation withdrawn",
-        "Its link does nothing any more. What was added stays, until you take it back.",
-      );
-    } catch (error) {
-      complain(error, "Withdrawing the invitation");
+/**
+ * One invitation with what came in by it.
+ *
+ * @param {string} language
+ * @param {Invitation} invitation
+ */
+function row(language, { id, created, expires, closed, most_takes: most, takes, shown }) {
+  const end = closed ?? `valid until ${dateAndTime(expires)}`;
+  const kept = shown.filter((take) => isHeld(take) || take.status === "added");
+  const button = (/** @type {string} */ words, /** @type {() => void} */ run) =>
+    html`<button type="button" data-writes @click=${run}>${words}</button>`;
+  return html`<li class="invitation ${closed ? "closed" : ""}">
+    <p>
+      Made ${ago(created)}, ${closed === "expired" ? "over" : end}. ${takes} of ${most} takes sent.
+    </p>
+    ${closed ? nothing : button("Withdraw", () => withdraw(language, id))}${
+      closed && kept.length
+        ? button("Take back what came in", () => settle(language, id, "removed", ...kept))
+        : nothing
     }
-    load();
-  }
+    <ul aria-label="Takes">
+      ${repeat(
+        shown,
+        (take) => take.id,
+        (take) => takeRow(id, take, (each, status) => settle(language, id, status, each)),
+      )}
+    </ul>
+  </li>`;
+}
 
-  follow(["view", "gestures", "clips", "health"], ({ view, gestures, health }) => {
-    const forecast = health?.id === gestures?.id ? health?.report?.forecast : null;
-    button.classList.toggle("primary", Boolean(forecast?.asks_more));
-    part.hidden = !gestures?.gestures.length;
-    if (view === "health" && gestures?.gestures.length) load();
-  });
-  return part;
+/**
+ * The part of the health view that invites people.
+ *
+ * @param {State} state
+ * @param {HealthReport | null} report
+ */
+export function invitationsPart({ gestures, invitations }, report) {
+  const kept = invitations && invitations.language === gestures?.id ? invitations.kept : [];
+  const rows = () =>
+    repeat(
+      kept,
+      ({ id }) => id,
+      (each) => row(gestures?.id ?? "", each),
+    );
+  return html`<div class="invite" ?hidden=${!gestures?.gestures.length}>
+    <button
+      type="button"
+      class=${report?.forecast.asks_more ? "primary" : ""}
+      data-writes
+      @click=${openForm}
+    >
+      Invite people
+    </button>
+    <ul class="invitations" aria-label="Invitations" ?hidden=${!kept.length}>
+      ${guard([JSON.stringify(kept)], rows)}
+    </ul>
+  </div>`;
 }

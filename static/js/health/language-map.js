@@ -1,6 +1,6 @@
 // The map of the language: similar gestures are close; overlapping thumbnails are moved apart.
 
-import { h, svg } from "../core/dom.js";
+import { html, svg } from "../templates.js";
 
 /** @import { HealthReport } from "../core/types.d.ts" */
 
@@ -119,39 +119,26 @@ export function languageMap({ points, same, imageOf, open }) {
   const at = new Map(points.map(({ label }, index) => [label, moved[index]]));
   const lines = same.flatMap((labels) => {
     const [one, other] = labels.map((label) => at.get(label));
-    return one && other ? [svg("line", { x1: one.x, y1: one.y, x2: other.x, y2: other.y })] : [];
+    return one && other ? [svg`<line x1=${one.x} y1=${one.y} x2=${other.x} y2=${other.y} />`] : [];
   });
-  const leaders = places.map((place, index) =>
-    svg("path", {
-      class: "leader",
-      d: `M${place.x} ${place.y}L${moved[index].x} ${moved[index].y}`,
-    }),
+  const leaders = places.map(
+    ({ x, y }, index) =>
+      svg`<path class="leader" d="M${x} ${y}L${moved[index].x} ${moved[index].y}" />`,
   );
-  return h(
-    "div",
-    { className: "map" },
-    svg("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, "aria-hidden": "true" }, ...leaders, ...lines),
-    h(
-      "ul",
-      { "aria-label": "Map of the language" },
-      points.map(({ label }, index) =>
-        h(
-          "li",
-          {
-            style: {
-              left: `${(100 * moved[index].x) / WIDTH}%`,
-              top: `${(100 * moved[index].y) / HEIGHT}%`,
-              width: `${(100 * size) / WIDTH}%`,
-            },
-          },
-          h(
-            "button",
-            { type: "button", title: label, onclick: () => open(label) },
-            h("img", { src: imageOf(label), alt: "", loading: "lazy" }),
-            h("span", {}, label),
-          ),
-        ),
-      ),
-    ),
-  );
+  /** @param {Point} place */
+  const style = ({ x, y }) =>
+    `left: ${(100 * x) / WIDTH}%; top: ${(100 * y) / HEIGHT}%; width: ${(100 * size) / WIDTH}%`;
+  return html`<div class="map">
+    <svg viewBox="0 0 ${WIDTH} ${HEIGHT}" aria-hidden="true">${leaders}${lines}</svg>
+    <ul aria-label="Map of the language">
+      ${points.map(
+        ({ label }, index) =>
+          html`<li .style=${style(moved[index])}>
+            <button type="button" title=${label} @click=${() => open(label)}>
+              <img loading="lazy" src=${imageOf(label)} alt="" /><span>${label}</span>
+            </button>
+          </li>`,
+      )}
+    </ul>
+  </div>`;
 }

@@ -1,9 +1,9 @@
 // Two gestures side by side: their images, their movements on one time cursor, and how they differ.
 
 import * as api from "../core/api.js";
-import { h, icon } from "../core/dom.js";
 import { bind } from "../core/key-bindings.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
+import { html, iconOf, nothing, render } from "../templates.js";
 import { attempt } from "../core/toasts.js";
 import { editLink, pairOf } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
@@ -28,26 +28,18 @@ bind({
  * @param {PairDifference} pair
  */
 function sentences([one, other], { differs, alignment }) {
-  /**
-   * @param {string | null} words
-   * @param {string} from
-   * @param {string} to
-   */
-  const difference = (words, from, to) =>
-    words ? h("li", {}, `${from} differs from ${to} by: ${words}.`) : null;
-  return h(
-    "ul",
-    { className: "pair-words" },
+  const words = [
+    differs[0] && `${one} differs from ${other} by: ${differs[0]}.`,
+    differs[1] && `${other} differs from ${one} by: ${differs[1]}.`,
     differs[0] || differs[1]
-      ? [difference(differs[0], one, other), difference(differs[1], other, one)]
-      : h(
-          "li",
-          {},
-          "The difference is not known: one of them has no demonstration, or follows other keypoints.",
-        ),
-    alignment?.mirrored ? h("li", {}, `${other} is compared as its mirror image.`) : null,
-    alignment?.backward ? h("li", {}, `${other} is compared from its end to its start.`) : null,
-  );
+      ? null
+      : "The difference is not known: one of them has no demonstration, or follows other keypoints.",
+    alignment?.mirrored && `${other} is compared as its mirror image.`,
+    alignment?.backward && `${other} is compared from its end to its start.`,
+  ];
+  return html`<ul class="pair-words">
+    ${words.filter(Boolean).map((each) => html`<li>${each}</li>`)}
+  </ul>`;
 }
 
 /**
@@ -55,24 +47,16 @@ function sentences([one, other], { differs, alignment }) {
  * @param {string} image
  * @param {SVGElement | undefined} drawing
  */
-function figure(gesture, image, drawing) {
-  return h(
-    "figure",
-    { className: "pair-gesture" },
-    h("figcaption", {}, h("b", {}, gesture.label), editLink(gesture.label)),
-    h(
-      "div",
-      { className: "pair-drawings" },
-      drawing ??
-        h(
-          "p",
-          { className: "dim no-paths" },
-          "Without a demonstration there is no movement to show.",
-        ),
-      h("img", { src: image, alt: `Trajectory image of ${gesture.label}`, width: 96, height: 96 }),
-    ),
-  );
-}
+const figure = ({ label }, image, drawing) =>
+  html`<figure class="pair-gesture">
+    <figcaption><b>${label}</b>${editLink(label)}</figcaption>
+    <div class="pair-drawings">
+      ${
+        drawing ??
+        html`<p class="dim no-paths">Without a demonstration there is no movement to show.</p>`
+      }<img src=${image} alt="Trajectory image of ${label}" width="96" height="96" />
+    </div>
+  </figure>`;
 
 /**
  * @param {PairDifference} found
@@ -90,22 +74,19 @@ function sideBySide(found, imageOf) {
         moving.forEach(({ show }, index) => show(seconds[index])),
       )
     : null;
-  return [
-    h(
-      "div",
-      { className: "pair-gestures" },
-      gestures.map((gesture, index) =>
+  return html`<div class="pair-gestures">
+      ${gestures.map((gesture, index) =>
         figure(gesture, imageOf(gesture.label), moving[index]?.drawing),
-      ),
-    ),
-    ...(cursor ? [cursor.element] : []),
-  ];
+      )}
+    </div>
+    ${cursor?.element}`;
 }
 
-/** @type {(() => void) | null} */
-let fill = null; // Draws the findings; the report may arrive after the gestures.
+/** @type {(() => unknown) | null} */
+let draw = null; // Draws the page anew; the report may arrive after the gestures.
+let calls = 0; // of `showPair`; only the last one draws.
 
-follow(["health"], () => fill?.());
+follow(["health", "unfolded"], () => draw?.());
 
 /**
  * Draw two gestures into a box, as soon as they are loaded.
@@ -116,47 +97,49 @@ follow(["health"], () => fill?.());
 export async function showPair(box, imageOf) {
   const { pair } = state;
   const language = currentLanguage();
-  fill = null;
+  const call = (calls += 1);
+  draw = null;
   const labels = pairOf(pair);
   const known = labels !== null && labels.every((label) => language.labels.includes(label));
-  const title = h(
-    "h1",
-    { tabIndex: -1 },
-    known ? `${labels[0]} and ${labels[1]}` : "No such two gestures",
-  );
-  const head = h(
-    "div",
-    { className: "page-head" },
-    h(
-      "button",
-      { type: "button", className: "back", onclick: close },
-      icon("chevron"),
-      "All gestures",
-    ),
-    title,
-  );
-  box.replaceChildren(head);
-  title.focus();
-  if (!known)
-    return box.append(
-      h(
-        "p",
-        { className: "dim" },
-        "The link names gestures that this language does not have, or no longer has.",
-      ),
+  /**
+   * @param {unknown} change the button that proposes other movements
+   * @param {unknown} content
+   */
+  const page = (change, content) =>
+    render(
+      html`<div class="page-head">
+          <button type="button" class="back" @click=${close}>
+            ${iconOf("chevron")}All gestures
+          </button>
+          <h1 tabindex="-1">${known ? `${labels[0]} and ${labels[1]}` : "No such two gestures"}</h1>
+          ${change}
+        </div>
+        ${content}`,
+      box,
     );
+  page(
+    nothing,
+    known
+      ? nothing
+      : html`<p class="dim">
+          The link names gestures that this language does not have, or no longer has.
+        </p>`,
+  );
+  box.querySelector("h1")?.focus();
+  if (!known) return undefined;
   const found = await attempt("Comparing the gestures", () =>
     api.languages.contrast(language.id, ...labels, language.revision),
   );
-  if (!found || state.pair !== pair || !head.isConnected) return undefined;
-  const findings = h("div", { className: "pair-findings" });
-  box.append(...[sentences(labels, found), ...sideBySide(found, imageOf), findings]);
-  head.append(changeButton(...labels));
-  fill = () => {
+  if (!found || state.pair !== pair || call !== calls) return undefined;
+  const words = sentences(labels, found);
+  const two = sideBySide(found, imageOf);
+  draw = () => {
     const report = state.health?.id === language.id ? state.health.report : null;
-    findings.replaceChildren(
-      ...[findingsList(report?.warnings ?? [], labels)].filter((each) => each !== null),
+    page(
+      changeButton(...labels),
+      html`${words}${two}
+        <div class="pair-findings">${findingsList(report?.warnings ?? [], labels)}</div>`,
     );
   };
-  return fill();
+  return draw();
 }

@@ -3,8 +3,9 @@
 import { labelInName } from "../clips/clip-label.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { byId, h } from "../core/dom.js";
 import { currentLanguage, state } from "../core/state.js";
+import { html, nothing, render } from "../templates.js";
 import { showDone } from "../core/undo.js";
 import { labelOf, withoutGesture } from "../gestures/gesture-rows.js";
 import { edit } from "../languages/revision-edit.js";
@@ -45,11 +46,9 @@ async function spareTakes(language) {
  * @param {string} other
  */
 export const changeButton = (one, other) =>
-  h(
-    "button",
-    { type: "button", ...WRITES, onclick: () => propose([one, other]) },
-    "Change one of the two",
-  );
+  html`<button type="button" data-writes @click=${() => propose([one, other])}>
+    Change one of the two
+  </button>`;
 
 /**
  * @param {Replacement} replacement
@@ -57,20 +56,14 @@ export const changeButton = (one, other) =>
  */
 function card(replacement, take) {
   const { gesture, sign, image } = replacement;
-  return h(
-    "li",
-    {},
-    h(
-      "button",
-      { type: "button", className: "replacement", ...WRITES, onclick: take },
-      h("img", { src: image, alt: "", width: 96, height: 96 }),
-      h("b", {}, gesture),
-      h("span", {}, effectText(replacement)),
-      sign === null
-        ? null
-        : h("span", { className: "warns" }, `Divers mean \u201c${sign}\u201d by it.`),
-    ),
-  );
+  return html`<li>
+    <button type="button" class="replacement" data-writes @click=${take}>
+      <img src=${image} alt="" width="96" height="96" /><b>${gesture}</b
+      ><span>${effectText(replacement)}</span>${
+        sign === null ? nothing : html`<span class="warns">Divers mean “${sign}” by it.</span>`
+      }
+    </button>
+  </li>`;
 }
 
 /**
@@ -82,16 +75,38 @@ async function propose(labels) {
   const dialog = byId("dialog");
   const language = currentLanguage();
   const leaving = new AbortController();
-  const note = h("p", { className: "dim", role: "status" });
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const progress = h("progress", { "aria-label": "Comparing movements" });
-  const lists = h("div", { className: "replacements" });
+  /** @type {{ label: string, cards: unknown[] }[]} */
+  const lists = [];
+  const now = { note: "", problem: "", trying: true, taking: false };
+  const form = h("form", { method: "dialog", className: "replacements-dialog" });
+  /** @param {Partial<typeof now>} change */
+  const draw = (change) => {
+    const { note, problem, trying, taking } = Object.assign(now, change);
+    render(
+      html`<h2 id="dialog-title">Change ${labels[0]} or ${labels[1]}</h2>
+        <p class="dim" role="status">${note}</p>
+        ${trying ? html`<progress aria-label="Comparing movements"></progress>` : nothing}
+        <p class="field-problem" role="alert" ?hidden=${!problem}>${problem}</p>
+        <div class="replacements" ?inert=${taking}>
+          ${lists.map(
+            ({ label, cards }) =>
+              html`<h3>Instead of ${label}</h3>
+                <ul>
+                  ${cards}
+                </ul>`,
+          )}
+        </div>
+        <div class="dialog-actions">
+          <button type="button" @click=${() => dialog.close()}>Cancel</button>
+        </div>`,
+      form,
+    );
+  };
   /** @param {any} error */
   const show = (error) => {
     if (leaving.signal.aborted) return;
     if (error.code === "cancelled") dialog.close();
-    problem.textContent = error.message;
-    problem.hidden = false;
+    draw({ problem: error.message });
   };
   /**
    * @param {string} label
@@ -99,8 +114,7 @@ async function propose(labels) {
    * @param {TakeDraft[]} takes
    */
   const take = async (label, { sample, gesture, index }, takes) => {
-    lists.inert = true;
-    problem.hidden = true;
+    draw({ taking: true, problem: "" });
     const shown = index === null ? null : takes[index];
     const movement = shown
       ? { label, demonstration: { ...shown, label: undefined } }
@@ -117,35 +131,20 @@ async function propose(labels) {
     } catch (error) {
       show(error);
     } finally {
-      lists.inert = false;
+      draw({ taking: false });
     }
   };
-  dialog.replaceChildren(
-    h(
-      "form",
-      { method: "dialog", className: "replacements-dialog" },
-      h("h2", { id: "dialog-title" }, `Change ${labels[0]} or ${labels[1]}`),
-      note,
-      progress,
-      problem,
-      lists,
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-      ),
-    ),
-  );
+  draw({ note: "Looking for other movements." });
+  dialog.replaceChildren(form);
   dialog.setAttribute("aria-labelledby", "dialog-title");
   dialog.onclose = () => leaving.abort();
   dialog.showModal();
   try {
-    note.textContent = "Looking for other movements.";
     const takes = await spareTakes(language);
     let known = "";
     for (const label of labels) {
       if (leaving.signal.aborted) return;
-      note.textContent = `Trying other movements for ${label}.`;
+      draw({ note: `Trying other movements for ${label}.` });
       const found = await api.languages.replacements(
         language,
         { label, gestures: takes },
@@ -154,13 +153,13 @@ async function propose(labels) {
       known ||= found.people ?? "";
       if (!found.replacements.length) continue;
       const cards = found.replacements.map((each) => card(each, () => take(label, each, takes)));
-      lists.append(h("h3", {}, `Instead of ${label}`), h("ul", {}, cards));
+      lists.push({ label, cards });
     }
-    note.textContent = known || "No candidate is told apart better.";
+    draw({ note: known || "No candidate is told apart better." });
   } catch (error) {
-    note.textContent = "";
+    draw({ note: "" });
     show(error);
   } finally {
-    progress.remove();
+    draw({ trying: false });
   }
 }

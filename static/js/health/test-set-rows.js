@@ -1,18 +1,18 @@
 // The rows of the test with clips: uploads, clips that wait for a label, and tested takes.
 
 import { statusText } from "../clips/clip-store.js";
-import { h, iconButton, WRITES } from "../core/dom.js";
 import { askWhich } from "../core/format.js";
 import { state } from "../core/state.js";
+import { html, ifDefined, iconOf, live } from "../templates.js";
 import { address, go, here } from "../core/views.js";
 import { labelTake } from "../languages/test-set.js";
-import { leaveOut, leaveWaiting, means, waitingClips } from "./test-set-clips.js";
+import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
 
 /** @import { Upload } from "../core/types.d.ts" */
 
 /** @import { TestedTake } from "./test-set-results.js" */
 
-/** @typedef {ReturnType<typeof waitingClips>[number]} WaitingClip */
+/** @typedef {ReturnType<typeof import("./test-set-clips.js").waitingClips>[number]} WaitingClip */
 
 export const REFUSED = "refused";
 export const ASKED = "asked back";
@@ -32,119 +32,96 @@ export const rankOf = ({ right, pair }) => (right ? 2 : pair ? 1 : 0);
 /**
  * @param {string} name
  * @param {string} value
- * @param {(label: string) => void} onchange
+ * @param {(label: string) => void} choose
  */
-function labelSelect(name, value, onchange) {
+function labelSelect(name, value, choose) {
   const known = value && !labels().includes(value) ? [value] : [];
-  const select = h(
-    "select",
-    { "aria-label": `What ${name} shows`, ...WRITES, onchange: () => onchange(select.value) },
-    value ? null : h("option", { value: "" }, "choose\u2026"),
-    [...labels(), ...known].map((label) =>
-      h("option", { value: label, selected: label === value }, label),
-    ),
-  );
-  return select;
+  return html`<select
+    aria-label="What ${name} shows"
+    data-writes
+    @change=${(/** @type {any} */ { target }) => choose(target.value)}
+  >
+    ${value ? "" : html`<option value="">choose…</option>`}
+    ${[...labels(), ...known].map(
+      (label) => html`<option value=${label} .selected=${live(label === value)}>${label}</option>`,
+    )}
+  </select>`;
 }
+
+/**
+ * @param {string} label
+ * @param {() => unknown} run
+ * @param {boolean} [writes]
+ */
+const closeButton = (label, run, writes = false) =>
+  html`<button
+    type="button"
+    class="quiet icon"
+    title=${label}
+    aria-label=${label}
+    ?data-writes=${writes}
+    @click=${run}
+  >
+    ${iconOf("close")}
+  </button>`;
 
 export const uploadsHere = () => state.uploads.filter(({ uploaded }) => uploaded);
 
-/** The progress of each clip that is not in the test yet, as `{ key, text, total, done }`. */
-function advances() {
-  const uploads = uploadsHere().map(({ key, status, error, total, loaded }) => ({
-    key: `upload ${key}`,
+/**
+ * A row of a clip that is not in the test yet.
+ *
+ * @param {string} name
+ * @param {{ shows: unknown, text: string | null | undefined, progress: unknown, close: unknown }} cells
+ */
+const waiting = (name, { shows, text, progress, close }) =>
+  html`<tr class="waiting">
+    <td>${name}</td>
+    <td>${shows}</td>
+    <td colspan="2"><span class="stage-text">${text}</span>${progress}</td>
+    <td>${close}</td>
+  </tr>`;
+
+/**
+ * @param {string} label
+ * @param {number | undefined} done
+ * @param {number | undefined} total
+ */
+const bar = (label, done, total) =>
+  html`<progress
+    aria-label=${label}
+    max=${total || 1}
+    value=${ifDefined(total ? done : undefined)}
+  ></progress>`;
+
+/** @param {WaitingClip} waiting */
+export function waitingRow({ clip, expected, busy }) {
+  const job = state.jobs.get(clip.job_id);
+  return waiting(clip.name, {
+    shows: labelSelect(clip.name, expected, (label) => means(clip.id, label)),
+    text:
+      clip.status !== "done"
+        ? statusText(clip, job)
+        : expected
+          ? "Recognising"
+          : "Choose its label",
+    progress: busy ? bar(`Poses of ${clip.name}`, job?.done, job?.total) : "",
+    close: closeButton(`Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
+  });
+}
+
+/** @param {Upload} upload */
+export const uploadRow = ({ file, status, cancel, error, loaded, total }) =>
+  waiting(file.name, {
+    shows: "",
     text:
       status === "failed"
         ? error
         : status === "waiting"
           ? "Waiting for the other uploads"
           : "Uploading",
-    total: Math.max(1, total),
-    done: loaded,
-  }));
-  const clips = waitingClips().map(({ clip, expected }) => {
-    const job = state.jobs.get(clip.job_id);
-    return {
-      key: clip.id,
-      text:
-        clip.status === "done"
-          ? expected
-            ? "Recognising"
-            : "Choose its label"
-          : statusText(clip, job),
-      total: job?.total,
-      done: job?.done,
-    };
+    progress: status === "failed" ? "" : bar(`Upload of ${file.name}`, loaded, Math.max(1, total)),
+    close: status === "uploading" && cancel ? closeButton(`Cancel ${file.name}`, cancel) : "",
   });
-  return [...uploads, ...clips];
-}
-
-/**
- * Update texts and bars in the existing rows, so that a control being pressed stays in place.
- *
- * @param {HTMLElement} content
- */
-export function advance(content) {
-  const rows = new Map(
-    /** @type {HTMLElement[]} */ ([...content.querySelectorAll("tr.waiting")]).map((row) => [
-      row.dataset.key,
-      row,
-    ]),
-  );
-  for (const { key, text, total, done } of advances()) {
-    const row = rows.get(key);
-    if (!row) continue;
-    row.querySelector(".stage-text")?.replaceChildren(text ?? "");
-    const bar = row.querySelector("progress");
-    if (bar && total) Object.assign(bar, { max: total, value: done });
-  }
-}
-
-/** @param {WaitingClip} waiting */
-export function waitingRow({ clip, expected, busy }) {
-  return h(
-    "tr",
-    { className: "waiting", "data-key": clip.id },
-    h("td", {}, clip.name),
-    h(
-      "td",
-      {},
-      labelSelect(clip.name, expected, (label) => means(clip.id, label)),
-    ),
-    h(
-      "td",
-      { colSpan: 2 },
-      h("span", { className: "stage-text" }),
-      busy ? h("progress", { "aria-label": `Poses of ${clip.name}` }) : null,
-    ),
-    h(
-      "td",
-      {},
-      iconButton("close", `Leave ${clip.name} out of the test`, () => leaveWaiting(clip)),
-    ),
-  );
-}
-
-/** @param {Upload} upload */
-export function uploadRow({ key, file, status, cancel }) {
-  return h(
-    "tr",
-    { className: "waiting", "data-key": `upload ${key}` },
-    h("td", {}, file.name),
-    h("td", {}),
-    h(
-      "td",
-      { colSpan: 2 },
-      h("span", { className: "stage-text" }),
-      status === "failed" ? null : h("progress", { "aria-label": `Upload of ${file.name}` }),
-    ),
-    h(
-      "td",
-      {},
-      status === "uploading" && cancel ? iconButton("close", `Cancel ${file.name}`, cancel) : null,
-    ),
-  );
-}
 
 /**
  * The address that shows a take and its recognition.
@@ -185,21 +162,18 @@ function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
  * @param {TestedTake} take
  */
 function outcomeOf(take) {
-  if (!take.known) return [h("span", { className: "dim" }, "not recognised yet")];
-  const { pair } = take;
-  const extra = notesOf(take);
+  if (!take.known) return html`<span class="dim">not recognised yet</span>`;
+  const { pair, change } = take;
+  const extra = notesOf(take).join(", ");
   const [sign, word] = [
     ["\u2260", "wrong: "],
     ["?", "asked back: "],
     ["\u2713", "right: "],
   ][rankOf(take)];
-  return [
-    h("span", { className: "outcome-sign", "aria-hidden": "true" }, sign),
-    h("span", {}, word),
-    h("b", {}, pair ? askWhich(pair) : readAs(take)),
-    extra.length ? h("small", { className: "dim" }, `, ${extra.join(", ")}`) : null,
-    take.change ? h("span", { className: `tag ${take.change}` }, take.change) : null,
-  ];
+  return html`<span class="outcome-sign" aria-hidden="true">${sign}</span><span>${word}</span
+    ><b>${pair ? askWhich(pair) : readAs(take)}</b>${
+      extra && html`<small class="dim">, ${extra}</small>`
+    }${change && html`<span class="tag ${change}">${change}</span>`}`;
 }
 
 /**
@@ -210,41 +184,20 @@ export function takeRow(take, takes) {
   const several = takes.filter((each) => each.clip_id === take.clip_id);
   const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
   const place = placeOf(take, takes);
-  return h(
-    "tr",
-    {
-      className:
-        take.demonstration || !take.known ? "demonstration" : ["wrong", "asked", ""][rankOf(take)],
-    },
-    h(
-      "td",
-      {},
-      h(
-        "a",
-        {
-          href: address("studio", place),
-          title: "Show the clip and why",
-          onclick: here(() => go("studio", place)),
-        },
-        name,
-      ),
-      take.added_by ? h("small", { className: "dim" }, ` by ${take.added_by}`) : null,
-    ),
-    h(
-      "td",
-      {},
-      labelSelect(name, take.expected, (label) => labelTake(take.id, label)),
-    ),
-    h("td", {}, outcomeOf(take)),
-    h(
-      "td",
-      { className: "num" },
-      take.recognition_id ? `${Math.round(100 * take.confidence)} %` : "",
-    ),
-    h(
-      "td",
-      {},
-      iconButton("close", `Leave ${name} out of the test`, () => leaveOut(take, name), WRITES),
-    ),
-  );
+  const kind =
+    take.demonstration || !take.known ? "demonstration" : ["wrong", "asked", ""][rankOf(take)];
+  return html`<tr class=${kind}>
+    <td>
+      <a
+        href=${address("studio", place)}
+        title="Show the clip and why"
+        @click=${here(() => go("studio", place))}
+        >${name}</a
+      >${take.added_by && html`<small class="dim"> by ${take.added_by}</small>`}
+    </td>
+    <td>${labelSelect(name, take.expected, (label) => labelTake(take.id, label))}</td>
+    <td>${outcomeOf(take)}</td>
+    <td class="num">${take.recognition_id ? `${Math.round(100 * take.confidence)} %` : ""}</td>
+    <td>${closeButton(`Leave ${name} out of the test`, () => leaveOut(take, name), true)}</td>
+  </tr>`;
 }

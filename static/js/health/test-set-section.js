@@ -1,15 +1,14 @@
 // The section of the test with clips: dropping clips, correcting labels, confusion matrix, list.
 
 import { olderClipsButton } from "../clips/older-clips.js";
-import { h, WRITES } from "../core/dom.js";
+import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
-import { currentLanguage, follow, state, update } from "../core/state.js";
+import { currentLanguage, state, update } from "../core/state.js";
+import { guard, html, live, nothing, repeat } from "../templates.js";
 import { go } from "../core/views.js";
-import { takeFilesIn } from "../upload/upload-list.js";
 import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";
 import {
-  advance,
   ASKED,
   labels,
   placeOf,
@@ -21,51 +20,34 @@ import {
   uploadsHere,
   waitingRow,
 } from "./test-set-rows.js";
-import {
-  addLibraryClips,
-  addTestClips,
-  candidates,
-  waitingClips,
-  workOff,
-} from "./test-set-clips.js";
+import { addLibraryClips, addTestClips, candidates, waitingClips } from "./test-set-clips.js";
 import { confusionGrid } from "./confusion-grid.js";
 import { pairName, pairOf } from "./finding-links.js";
 import { rateText } from "./rates.js";
 
-/** @import { TestSet, Upload } from "../core/types.d.ts" */
+/** @import { TestSet } from "../core/types.d.ts" */
 
 /** @import { TestedTake } from "./test-set-results.js" */
 
 const SAVED_BY = 60000; // ms. A busy browser may read the file long after the click.
 
-function drop() {
-  const input = h("input", {
-    type: "file",
-    id: "test-clips",
-    ...WRITES,
-    multiple: true,
-    accept: "video/*,.mkv",
-    className: "visually-hidden",
-  });
-  input.onchange = () => {
-    addTestClips([...(input.files ?? [])]);
-    input.value = "";
-  };
-  return h(
-    "div",
-    { className: "drop" },
-    input,
-    h(
-      "label",
-      { for: "test-clips", ...WRITES },
-      h("b", {}, "Drop labelled clips"),
-      h(
-        "span",
-        {},
-        "or choose files. \u201ccircle-2.mp4\u201d is labelled circle; you can change the label.",
-      ),
-    ),
-  );
+/** @type {Map<string, boolean>} */
+const ticks = new Map(); // Clips of the library that the user has chosen or not.
+
+/**
+ * Draw what follows from the takes only if they change: progress comes many times a second.
+ *
+ * @param {() => unknown} draw
+ */
+function onChange(draw) {
+  const { testSet, gestures, pending, clips, cell } = state;
+  return guard([testSet, gestures, pending, clips, cell], draw);
+}
+
+/** @param {Event & { target: HTMLInputElement }} event */
+function takeFiles({ target }) {
+  addTestClips([...(target.files ?? [])]);
+  target.value = "";
 }
 
 /**
@@ -140,18 +122,15 @@ const pairsText = ({ pairs, pairs_right: right }) =>
  * @param {TestSet} testSet
  */
 const rates = ({ gestures }) =>
-  h(
-    "ul",
-    { className: "test-rates", "aria-label": "Rate of each gesture" },
-    gestures.map((share) =>
-      h(
-        "li",
-        {},
-        h("b", {}, share.label),
-        ` ${share.right} of ${share.asked}${shareText(share)}${pairsText(share)}`,
-      ),
-    ),
-  );
+  html`<ul class="test-rates" aria-label="Rate of each gesture">
+    ${gestures.map(
+      (share) =>
+        html`<li>
+          <b>${share.label}</b> ${share.right} of
+          ${share.asked}${shareText(share)}${pairsText(share)}
+        </li>`,
+    )}
+  </ul>`;
 
 /**
  * The note on takes that are not counted.
@@ -159,54 +138,39 @@ const rates = ({ gestures }) =>
  * @param {number} count
  */
 const leftOutNote = (count) =>
-  count
-    ? h(
-        "p",
-        { className: "dim" },
-        `${plural(count, "take")} of the list ${count > 1 ? "are demonstrations" : "is a demonstration"} of the language and ${count > 1 ? "do" : "does"} not count.`,
-      )
-    : null;
+  html`<p class="dim">
+    ${plural(count, "take")} of the list ${count > 1 ? "are demonstrations" : "is a demonstration"}
+    of the language and ${count > 1 ? "do" : "does"} not count.
+  </p>`;
 
-/**
- * The choice among the clips of the library that can be tested.
- *
- * @param {Map<string, boolean>} ticks Clips that the user has chosen or not; more are added.
- */
-function libraryChoice(ticks) {
+const olderClips = olderClipsButton();
+
+/** The choice among the clips of the library that can be tested. */
+function libraryChoice() {
   const clips = candidates();
-  if (!clips.length) return null;
-  const boxes = clips.map(({ clip, expected }) => {
-    const box = h("input", {
-      type: "checkbox",
-      value: clip.id,
-      checked: ticks.get(clip.id) ?? Boolean(expected),
-      onchange: () => ticks.set(clip.id, box.checked),
-    });
-    return { box, row: h("label", { className: "check" }, box, h("span", {}, clip.name)) };
-  });
-  const add = h(
-    "button",
-    {
-      type: "button",
-      className: "primary",
-      ...WRITES,
-      onclick: () =>
-        addLibraryClips(boxes.filter(({ box }) => box.checked).map(({ box }) => box.value)),
-    },
-    "Test the chosen clips",
-  );
-  return h(
-    "details",
-    { className: "library-choice" },
-    h("summary", {}, `Choose from the ${plural(clips.length, "clip")} of this studio`),
-    h(
-      "div",
-      { className: "library-boxes" },
-      boxes.map(({ row }) => row),
-      olderClipsButton(),
-    ),
-    add,
-  );
+  if (!clips.length) return nothing;
+  /** @param {typeof clips[number]} candidate */
+  const chosen = ({ clip, expected }) => ticks.get(clip.id) ?? Boolean(expected);
+  const add = () => addLibraryClips(clips.filter(chosen).map(({ clip }) => clip.id));
+  return html`<details class="library-choice">
+    <summary>Choose from the ${plural(clips.length, "clip")} of this studio</summary>
+    <div class="library-boxes">
+      ${repeat(
+        clips,
+        ({ clip }) => clip.id,
+        (each) =>
+          html`<label class="check"
+            ><input
+              type="checkbox"
+              value=${each.clip.id}
+              .checked=${live(chosen(each))}
+              @change=${(/** @type {any} */ { target }) => ticks.set(each.clip.id, target.checked)}
+            /><span>${each.clip.name}</span></label
+          >`,
+      )}${olderClips}
+    </div>
+    <button type="button" class="primary" data-writes @click=${add}>Test the chosen clips</button>
+  </details>`;
 }
 
 /**
@@ -216,25 +180,20 @@ function libraryChoice(ticks) {
  */
 function runControl({ waiting }) {
   const { testing } = state;
-  if (!testing)
-    return waiting
-      ? h(
-          "button",
-          { type: "button", className: "primary", ...WRITES, onclick: () => runTestSet() },
-          `Recognise ${plural(waiting, "take")} again`,
-        )
-      : null;
-  return h(
-    "span",
-    { className: "test-run", role: "status" },
-    `${testing.done} of ${plural(testing.total, "take")} recognised`,
-    h("progress", {
-      "aria-label": "Progress of the test",
-      max: Math.max(1, testing.total),
-      value: testing.done,
-    }),
-    h("button", { type: "button", ...WRITES, onclick: cancelTestRun }, "Cancel"),
-  );
+  if (testing)
+    return html`<span class="test-run" role="status"
+      >${testing.done} of ${plural(testing.total, "take")} recognised<progress
+        aria-label="Progress of the test"
+        max=${Math.max(1, testing.total)}
+        value=${testing.done}
+      ></progress
+      ><button type="button" data-writes @click=${cancelTestRun}>Cancel</button></span
+    >`;
+  return waiting
+    ? html`<button type="button" class="primary" data-writes @click=${() => runTestSet()}>
+        Recognise ${plural(waiting, "take")} again
+      </button>`
+    : nothing;
 }
 
 /**
@@ -244,156 +203,118 @@ function runControl({ waiting }) {
 function summary(testSet, takes) {
   const { overall, waiting, upgraded } = testSet;
   const change = changeWords(testSet);
-  return h(
-    "div",
-    { className: "test-summary" },
-    h(
-      "p",
-      {},
-      overall.asked
-        ? [
-            h("b", { className: "num" }, `${overall.right} of ${overall.asked}`),
-            ` recognised as labelled${shareText(overall)}${pairsText(overall)}`,
-          ]
-        : "Nothing is recognised yet",
-      change ? `; since the revision before: ${change}` : null,
-      upgraded ? ". The program was upgraded in between, which may change answers too" : null,
-      waiting
-        ? h("span", { className: "dim" }, `, ${plural(waiting, "take")} not by the newest revision`)
-        : null,
-    ),
-    h("span", { className: "spacer" }),
-    runControl(testSet),
-    h("button", { type: "button", onclick: () => download(takes) }, "Export as CSV"),
-  );
+  const counted = html`<b class="num">${overall.right} of ${overall.asked}</b> recognised as
+    labelled${shareText(overall)}${pairsText(overall)}`;
+  const older = html`<span class="dim"
+    >, ${plural(waiting, "take")} not by the newest revision</span
+  >`;
+  return html`<div class="test-summary">
+    <p>
+      ${overall.asked ? counted : "Nothing is recognised yet"}${
+        change ? `; since the revision before: ${change}` : ""
+      }${
+        upgraded ? ". The program was upgraded in between, which may change answers too" : ""
+      }${waiting ? older : ""}
+    </p>
+    <span class="spacer"></span>${runControl(testSet)}
+    <button type="button" @click=${() => download(takes)}>Export as CSV</button>
+  </div>`;
 }
 
 /**
  * The takes of the chosen cell, or all; the wrong ones first.
  *
  * @param {TestedTake[]} takes
- * @param {Upload[]} uploads
  */
-function list(takes, uploads) {
+function list(takes) {
   const cell = pairOf(state.cell);
   const shown = cell
     ? takes.filter((take) => take.expected === cell[0] && readAs(take) === cell[1])
     : [...takes].sort((one, other) => rankOf(one) - rankOf(other));
-  return [
-    cell
-      ? h(
-          "p",
-          { className: "test-filter", role: "status" },
-          `Only takes of ${cell[0]} ${cell[1] === ASKED ? "" : "read as "}${cell[1]}`,
-          h(
-            "button",
-            { type: "button", className: "link", onclick: () => update({ cell: null }) },
-            "Show all",
-          ),
-        )
-      : null,
-    h(
-      "div",
-      { className: "confusion-scroll" },
-      h(
-        "table",
-        { className: "takes" },
-        h("caption", { className: "visually-hidden" }, "The test clips"),
-        h(
-          "thead",
-          {},
-          h(
-            "tr",
-            {},
-            ["Clip", "Shows", "Read as", "Confidence"].map((text) =>
-              h("th", { scope: "col" }, text),
+  const filter =
+    cell &&
+    html`<p class="test-filter" role="status">
+      Only takes of ${cell[0]} ${cell[1] === ASKED ? "" : "read as "}${cell[1]}<button
+        type="button"
+        class="link"
+        @click=${() => update({ cell: null })}
+      >
+        Show all
+      </button>
+    </p>`;
+  return html`${filter}
+    <div class="confusion-scroll">
+      <table class="takes">
+        <caption class="visually-hidden">
+          The test clips
+        </caption>
+        <thead>
+          <tr>
+            ${["Clip", "Shows", "Read as", "Confidence"].map(
+              (text) => html`<th scope="col">${text}</th>`,
+            )}
+            <td></td>
+          </tr>
+        </thead>
+        <tbody>
+          ${cell ? "" : repeat(uploadsHere(), ({ key }) => key, uploadRow)}
+          ${cell ? "" : repeat(waitingClips(), ({ clip }) => clip.id, waitingRow)}
+          ${onChange(() =>
+            repeat(
+              shown,
+              ({ id }) => id,
+              (take) => takeRow(take, takes),
             ),
-            h("td", {}),
-          ),
-        ),
-        h(
-          "tbody",
-          {},
-          cell ? [] : uploads.map(uploadRow),
-          cell ? [] : waitingClips().map(waitingRow),
-          shown.map((take) => takeRow(take, takes)),
-        ),
-      ),
-    ),
-  ];
+          )}
+        </tbody>
+      </table>
+    </div>`;
 }
 
-/** Make the section, and keep it in step. */
-export function batchSection() {
-  const content = h("div", { className: "test-content" });
-  const choice = h("div");
-  const stages = () =>
-    uploadsHere()
-      .map(({ key, status }) => `${key} ${status}`)
-      .join();
-  let drawn = "";
-  let offered = "";
-  /** @type {Map<string, boolean>} */
-  const ticks = new Map();
-  /** Offer the clips of the library; what is chosen among them stays when others come and go. */
-  const drawChoice = () => {
-    const now = candidates()
-      .map(({ clip }) => clip.id)
-      .join();
-    if (now === offered) return;
-    offered = now;
-    const open = choice.querySelector("details")?.open ?? false;
-    const drawnAnew = libraryChoice(ticks);
-    if (drawnAnew) drawnAnew.open = open;
-    choice.replaceChildren(drawnAnew ?? "");
-  };
-  const draw = () => {
-    /** @type {HTMLElement | null} */ (content.querySelector("select:focus"))?.blur();
-    const testSet = state.testSet?.language_id === state.language ? state.testSet : null;
-    // The event about a take may arrive before the answer to the request that added its clip.
-    const waiting = new Set(waitingClips().map(({ clip }) => clip.id));
-    const takes = testedOf(testSet).filter(({ clip_id: clip }) => !waiting.has(clip));
-    const demonstrations = takes.filter(({ demonstration }) => demonstration).length;
-    const counted = takes.filter(({ demonstration, known }) => known && !demonstration);
-    drawChoice();
-    const uploads = uploadsHere();
-    const empty = !takes.length && !waiting.size && !uploads.length;
-    content.replaceChildren(
-      ...(empty || !state.gestures
-        ? []
-        : [
-            ...(testSet && takes.length ? [summary(testSet, takes)] : []),
-            ...(testSet && counted.length ? [matrix(counted), rates(testSet)] : []),
-            leftOutNote(demonstrations),
-            ...list(takes, uploads),
-          ].filter((each) => each !== null)),
-    );
-    drawn = stages();
-    advance(content);
-  };
-  takeFilesIn("health", addTestClips);
-  follow(["pending", "clips", "gestures"], workOff);
-  follow(["testSet", "testing", "pending", "clips", "gestures", "cell"], draw);
-  // Progress comes many times a second.
-  follow(["jobs", "uploads"], () => {
-    if (stages() === drawn) advance(content);
-    else draw();
-  });
-  return h(
-    "section",
-    { className: "health-section", "aria-labelledby": "test-title" },
-    h(
-      "div",
-      { className: "section-head" },
-      h("h2", { id: "test-title", tabIndex: -1 }, "Test with clips"),
-      h(
-        "p",
-        { className: "dim" },
-        "Clips whose gesture you know, by other divers if you can: recognised again after every change of the language. A cell opens its clips.",
-      ),
-    ),
-    drop(),
-    choice,
-    content,
-  );
+/** @param {TestSet | null} testSet */
+function content(testSet) {
+  // The event about a take may arrive before the answer to the request that added its clip.
+  const waiting = new Set(waitingClips().map(({ clip }) => clip.id));
+  const takes = testedOf(testSet).filter(({ clip_id: clip }) => !waiting.has(clip));
+  const demonstrations = takes.filter(({ demonstration }) => demonstration).length;
+  const counted = takes.filter(({ demonstration, known }) => known && !demonstration);
+  if (!state.gestures || !(takes.length || waiting.size || uploadsHere().length)) return nothing;
+  const counts = onChange(() => matrix(counted));
+  return html`${testSet && takes.length ? summary(testSet, takes) : ""}
+  ${testSet && counted.length ? [counts, rates(testSet)] : ""}
+  ${demonstrations ? leftOutNote(demonstrations) : ""} ${list(takes)}`;
 }
+
+/**
+ * The section, as the state has it.
+ *
+ * @param {TestSet | null} testSet of the language on display
+ */
+export const batchSection = (testSet) =>
+  html`<section class="health-section" aria-labelledby="test-title">
+    <div class="section-head">
+      <h2 id="test-title" tabindex="-1">Test with clips</h2>
+      <p class="dim">
+        Clips whose gesture you know, by other divers if you can: recognised again after every
+        change of the language. A cell opens its clips.
+      </p>
+    </div>
+    <div class="drop">
+      <input
+        type="file"
+        id="test-clips"
+        class="visually-hidden"
+        data-writes
+        multiple
+        accept="video/*,.mkv"
+        @change=${takeFiles}
+      /><label for="test-clips" data-writes
+        ><b>Drop labelled clips</b
+        ><span
+          >or choose files. “circle-2.mp4” is labelled circle; you can change the label.</span
+        ></label
+      >
+    </div>
+    <div>${libraryChoice()}</div>
+    <div class="test-content">${content(testSet)}</div>
+  </section>`;

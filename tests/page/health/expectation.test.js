@@ -1,8 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { failingWords, forecastWords, testWords } from "../../../static/js/health/expectation.js";
+import { forecastWords, testWords } from "../../../static/js/health/expectation.js";
 import { testedShare } from "../../../static/js/health/gesture-table.js";
+import { failingWords } from "../../../static/js/health/rates.js";
 
 const rate = (value) => ({ rate: value, low: value / 2, high: (1 + value) / 2, n: 12 });
 const share = { label: "circle", right: 3, asked: 4, rate: 0.75, low: 0.3, high: 0.95 };
