@@ -16,7 +16,7 @@ from cyclonedx.model.tool import ToolRepository
 from cyclonedx.output.json import JsonV1Dot6
 from packageurl import PackageURL
 
-from app.recognition.models.catalogue import HAND_FINDER, PACKAGED_FILES
+from app.recognition.models.catalogue import PACKAGED_FILES, TAUGHT_FILES
 from release.licences import Licensed
 
 NAMESPACE: Final = uuid.UUID("6ba7b811-9dad-11d1-80b4-00c04fd430c8")
@@ -65,7 +65,7 @@ def build_bill(version: str, seconds: int, packages: list[Licensed]) -> str:
             hashes=[HashType(alg=HashAlgorithm.SHA_256, content=file.sha256)],
             licenses=[licences.make_from_string("Apache-2.0")],
         )
-        for file in (*PACKAGED_FILES, HAND_FINDER)
+        for file in (*PACKAGED_FILES, *TAUGHT_FILES)
     ]
     metadata = BomMetaData(
         component=root,

@@ -1,11 +1,11 @@
-"""Makes the finder of divers' hands: ``python -m release.hand_finder draw`` and ``teach``."""
+"""Makes the models of divers' hands: `python -m release.hand_finder draw|teach|landmarks`."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from release.hand_finder.pictures import read_pictures, write_pictures
+from release.hand_finder.pictures import read_joints, read_pictures, write_pictures
 
 
 def main() -> None:
@@ -16,6 +16,14 @@ def main() -> None:
     draw.add_argument("folder", type=Path)
     draw.add_argument("--divers", type=int, default=1500, help="two stills each")
     draw.add_argument("--seed", type=int, default=0, help="of the first diver")
+    draw.add_argument("--salutes", type=float, default=0.0, help="share of hands that salute")
+    joints = steps.add_parser("landmarks", help="teach the hand landmark model gloved hands")
+    joints.add_argument("model", type=Path, help="the ONNX file to begin with")
+    joints.add_argument("folders", type=Path, nargs="+", help="drawn stills with joints.npz")
+    joints.add_argument("--steps", type=int, default=900, help="of 16 crops each")
+    joints.add_argument("--seed", type=int, default=0, help="of the crops")
+    joints.add_argument("--tips", type=float, default=1.0, help="how much more finger tips count")
+    joints.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
     teach = steps.add_parser("teach", help="teach the palm detector, or a finder, further")
     teach.add_argument("detector", type=Path, help="the ONNX file to begin with")
     teach.add_argument("folders", type=Path, nargs="+", help="pictures with boxes.csv")
@@ -26,9 +34,28 @@ def main() -> None:
     teach.add_argument("--output", type=Path, required=True, help="the ONNX file to write")
     arguments = parser.parse_args()
     if arguments.step == "draw":
-        write_pictures(arguments.folder, range(arguments.seed, arguments.seed + arguments.divers))
+        seeds = range(arguments.seed, arguments.seed + arguments.divers)
+        write_pictures(arguments.folder, seeds, arguments.salutes)
+    elif arguments.step == "landmarks":
+        _teach_landmarks(arguments)
     else:
         _teach(arguments)
+
+
+def _teach_landmarks(arguments: argparse.Namespace) -> None:
+    """Import PyTorch only now: drawing needs none."""
+    from release.hand_finder.landmarks import teach_landmarks
+
+    stills = [still for folder in arguments.folders for still in read_joints(folder)]
+    print(f"{len(stills)} stills", flush=True)
+    teach_landmarks(
+        arguments.model,
+        stills,
+        arguments.output,
+        steps=arguments.steps,
+        seed=arguments.seed,
+        tips=arguments.tips,
+    )
 
 
 def _teach(arguments: argparse.Namespace) -> None:

@@ -1,4 +1,4 @@
-"""Network: the palm detector's ONNX graph as a PyTorch module that can be taught, and back.
+"""Network: an ONNX graph of MediaPipe's hands as a PyTorch module that can be taught, and back.
 
 The taught weights are written into the graph they came from, as half precision: the finder has the
 shapes and the size of the detector and runs where it runs.
@@ -94,19 +94,23 @@ def _resize(given: Sequence[Any], constants: Sequence[Any], _: Mapping[str, Any]
 
 OPERATORS: dict[str, Operator] = {
     "Add": lambda given, _, __: given[0] + given[1],
+    "Clip": lambda given, bounds, _: given[0].clamp(bounds[1].item(), bounds[2].item()),
     "Cast": lambda given, _, __: given[0],
     "Concat": lambda given, _, settings: torch.cat(list(given), settings["axis"]),
     "Conv": _convolve,
+    "Gemm": lambda given, _, __: given[0] @ given[1].T + given[2],
     "Identity": lambda given, _, __: given[0],
     "MaxPool": lambda given, _, settings: functional.max_pool2d(
         given[0], settings["kernel_shape"], settings["strides"]
     ),
     "PRelu": lambda given, _, __: functional.prelu(given[0], given[1].reshape(-1)),
     "Pad": _pad,
+    "ReduceMean": lambda given, _, settings: given[0].mean(dim=list(settings["axes"])),
     "Reshape": lambda given, constants, _: given[0].reshape(
         -1, *(int(size) for size in constants[1][1:])
     ),
     "Resize": _resize,
+    "Sigmoid": lambda given, _, __: torch.sigmoid(given[0].clamp(-15, 15)),
     "Transpose": lambda given, _, settings: given[0].permute(*settings["perm"]),
 }
-"""The operators of MediaPipe's palm detector."""
+"""The operators of MediaPipe's palm detector and hand landmark model."""

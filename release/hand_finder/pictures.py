@@ -3,6 +3,7 @@
 Rows of `boxes.csv`: image, what, x0, y0, x1, y1 and, where they are known, x and y of the wrist and
 of the middle finger's knuckle, all in pixels. What is ``Hand``, or ``Unclear`` where nothing is
 taught; other rows only say that the picture is there. Any tool that boxes photographs can write it.
+Beside drawn stills lies `joints.npz`, with the joints of all hands (`read_joints`).
 """
 
 from __future__ import annotations
@@ -40,24 +41,56 @@ class Picture:
     unclear: npt.NDArray[np.float64]
 
 
-def write_pictures(folder: Path, seeds: Iterable[int]) -> None:
+@dataclass(frozen=True)
+class Hands:
+    """A drawn still and the joints of the diver's two hands.
+
+    Attributes
+    ----------
+    image
+        ``(height, width, 3)`` RGB.
+    joints
+        ``(2, 21, 2)`` pixels of the left and the right hand.
+    seen
+        ``(2,)`` share of each that is seen.
+
+    """
+
+    image: npt.NDArray[np.uint8]
+    joints: npt.NDArray[np.float64]
+    seen: npt.NDArray[np.float64]
+
+
+def write_pictures(folder: Path, seeds: Iterable[int], salutes: float = 0.0) -> None:
     """Draw the stills of each seed into a folder; its table grows with every picture."""
     # Only who draws stills needs the renderer.
     from release.hand_finder.stills import draw_stills
 
     (folder / "images").mkdir(parents=True, exist_ok=True)
+    names, joints, shares = [], [], []
     with (folder / "boxes.csv").open("w", newline="") as file:
         table = csv.writer(file)
         table.writerow(("image", "what", *EDGES, *JOINTS))
         for seed in seeds:
-            for number, still in enumerate(draw_stills(seed)):
+            for number, still in enumerate(draw_stills(seed, salutes)):
                 name = f"diver{seed:05}_{number}.jpg"
+                names.append(name)
+                joints.append(still.joints)
+                shares.append(still.seen)
                 bgr = cv2.cvtColor(still.image, cv2.COLOR_RGB2BGR)
                 cv2.imwrite(str(folder / "images" / name), bgr, [cv2.IMWRITE_JPEG_QUALITY, 92])
                 table.writerow((name, "Picture", 0, 0, 0, 0))
                 for what, boxes in (("Hand", still.hands), ("Unclear", still.unclear)):
                     table.writerows((name, what, *box.round(1).tolist()) for box in boxes)
             file.flush()
+    np.savez(folder / "joints.npz", names=names, joints=joints, seen=shares)
+
+
+def read_joints(folder: Path) -> list[Hands]:
+    """Return the drawn stills of a folder with the joints of their hands, in the order drawn."""
+    with np.load(folder / "joints.npz") as kept:
+        rows = zip(kept["names"].tolist(), kept["joints"], kept["seen"], strict=True)
+        return [Hands(_read_rgb(folder / "images" / name), *row) for name, *row in rows]
 
 
 def read_pictures(folder: Path, without: Sequence[str] = ()) -> list[Picture]:
@@ -77,14 +110,19 @@ def read_pictures(folder: Path, without: Sequence[str] = ()) -> list[Picture]:
     ]
 
 
-def _read(path: Path, hands: list[list[float]], unclear: list[list[float]]) -> Picture:
+def _read_rgb(path: Path) -> npt.NDArray[np.uint8]:
     bgr = cv2.imread(str(path))
     if bgr is None:
         raise FileNotFoundError(f"{path} is no picture")
-    scale = min(LONGEST_SIDE / max(bgr.shape[:2]), 1.0)
-    small = cv2.resize(bgr, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.asarray(cv2.cvtColor(bgr, cv2.COLOR_BGR2RGB), np.uint8)
+
+
+def _read(path: Path, hands: list[list[float]], unclear: list[list[float]]) -> Picture:
+    image = _read_rgb(path)
+    scale = min(LONGEST_SIDE / max(image.shape[:2]), 1.0)
+    small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
     return Picture(
-        np.asarray(cv2.cvtColor(small, cv2.COLOR_BGR2RGB), np.uint8),
+        np.asarray(small, np.uint8),
         np.array(hands).reshape(-1, 8) * scale,
         np.array(unclear).reshape(-1, 8) * scale,
     )

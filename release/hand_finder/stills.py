@@ -54,16 +54,32 @@ class Still:
         the wrist and of the middle finger's knuckle.
     unclear
         ``(M, 8)`` of the hands of which too little is seen.
+    joints
+        ``(2, 21, 2)`` pixels, in MediaPipe's order, of the diver's left and right hand, also where
+        they are hidden or beside the picture.
+    seen
+        ``(2,)`` which share of each is seen, 0 to 1.
 
     """
 
     image: npt.NDArray[np.uint8]
     hands: Array
     unclear: Array
+    joints: Array
+    seen: Array
 
 
-def draw_stills(seed: int) -> list[Still]:
-    """Draw the stills of one diver at one place; the same number gives the same stills."""
+def draw_stills(seed: int, salutes: float = 0.0) -> list[Still]:
+    """Draw the stills of one diver at one place; the same numbers give the same stills.
+
+    Parameters
+    ----------
+    seed
+        Of the diver.
+    salutes
+        Share of hands that salute, or nearly so; the fingers of the others are anyhow.
+
+    """
     random = np.random.default_rng(seed)
     water = _water(random)
     diver = Diver({}, _suit(random), _kit(random))
@@ -80,21 +96,24 @@ def draw_stills(seed: int) -> list[Still]:
     scene = Scene(diver, water, view, bubbles, seed, body=body, fineness=1, light=light)
     if diver.suit.gloves and random.random() < 0.4:
         _paint_palms(scene, random)
-    return [_draw(scene, random) for _ in range(POSES)]
+    return [_draw(scene, random, salutes) for _ in range(POSES)]
 
 
-def _draw(scene: Scene, random: np.random.Generator) -> Still:
+def _draw(scene: Scene, random: np.random.Generator, salutes: float) -> Still:
     body = scene.body
-    joints = pose_body(body, _stance(random), _arm(random), _arm(random))
+    joints = pose_body(body, _stance(random), *(_arm(random, salutes) for _ in "LR"))
+    points = np.array([scene.pixels(hand_points(body, joints, side)) for side in "LR"])
+    shares = np.zeros(2)
     boxes: dict[bool, list[Array]] = {True: [], False: []}
-    for side in "LR":
-        box, inside = _box_of(scene.pixels(hand_points(body, joints, side)))
+    for number, side in enumerate("LR"):
+        box, inside = _box_of(points[number])
         if inside:
-            seen = inside * scene.measure_seen(joints, side)
-            boxes[seen >= SEEN].append(box)
+            shares[number] = inside * scene.measure_seen(joints, side)
+            boxes[bool(shares[number] >= SEEN)].append(box)
     clear = scene.render(joints, random.uniform(0, 2)).astype(np.float32)
     image = _spoil(clear, scene.water, random)
-    return Still(image, *(np.array(boxes[seen]).reshape(-1, 8) for seen in (True, False)))
+    found, unclear = (np.array(boxes[seen]).reshape(-1, 8) for seen in (True, False))
+    return Still(image, found, unclear, points, shares)
 
 
 @lru_cache(maxsize=1)
@@ -207,7 +226,7 @@ def _stance(random: np.random.Generator) -> BodyMotion:
     )
 
 
-def _arm(random: np.random.Generator) -> ArmTarget:
+def _arm(random: np.random.Generator, salutes: float) -> ArmTarget:
     """Choose where one arm is: a quarter hang, the others are anywhere in reach."""
     shapes = list(HAND_SHAPES.values())
     one, other = (shapes[random.integers(len(shapes))] for _ in range(2))
@@ -221,7 +240,11 @@ def _arm(random: np.random.Generator) -> ArmTarget:
             if REACH[0] < np.linalg.norm(wrist) < REACH[1]:
                 break
     pointing = unit(unit(wrist - [-0.1, 0.05, -0.25]) + unit(random.normal(size=3)) * 0.95)
-    return ArmTarget(wrist, pointing, unit(random.normal(size=3)), fingers)
+    palm = unit(random.normal(size=3))
+    if salutes and random.random() < salutes:
+        share = random.uniform(0.8, 1.0)
+        fingers = share * HAND_SHAPES["salute"] + (1 - share) * fingers
+    return ArmTarget(wrist, pointing, palm, fingers)
 
 
 def _box_of(points: Array) -> tuple[Array, float]:

@@ -170,7 +170,7 @@ def draw_crop(
     shift = SIDE / 2 - turn @ middle
     smooth = cv2.INTER_LINEAR if scale > 1 else cv2.INTER_AREA
     crop = cv2.warpAffine(picture.image, np.c_[turn, shift], (SIDE, SIDE), flags=smooth)
-    coloured = _recolour(crop.astype(np.float32), random)
+    coloured = recolour(crop.astype(np.float32), random)
     hands, unclear = (_move(rows, turn, shift) for rows in (picture.hands, picture.unclear))
     return coloured, _target(hands, unclear)
 
@@ -184,7 +184,7 @@ def _move(rows: Array, turn: Array, shift: Array) -> Array:
     return np.concatenate([moved[:, 0], side[:, None], moved[:, 1], moved[:, 2]], axis=1)
 
 
-def _recolour(crop: Values, random: np.random.Generator) -> Values:
+def recolour(crop: Values, random: np.random.Generator) -> Values:
     """Balance, stretch, brighten and roughen the colours, as corrections and cameras do."""
     if random.random() < 0.5:
         means = crop.mean(axis=(0, 1))

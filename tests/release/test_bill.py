@@ -9,7 +9,7 @@ pytest.importorskip("cyclonedx", reason="needs cyclonedx-python-lib")
 from cyclonedx.schema import SchemaVersion
 from cyclonedx.validation.json import JsonStrictValidator
 
-from app.recognition.models.catalogue import HAND_FINDER, PACKAGED_FILES
+from app.recognition.models.catalogue import PACKAGED_FILES, TAUGHT_FILES
 from release.bill import build_bill
 from release.licences import list_licences
 
@@ -21,7 +21,7 @@ def test_it_names_every_package_and_model_and_is_valid() -> None:
     text = build_bill("0.2.0", SECONDS, packages)
     assert JsonStrictValidator(SchemaVersion.V1_6).validate_str(text) is None
     bill = json.loads(text)
-    files = (*PACKAGED_FILES, HAND_FINDER)
+    files = (*PACKAGED_FILES, *TAUGHT_FILES)
     named = {each["name"] for each in bill["components"]}
     assert named == {each.name for each in packages} | {file.filename for file in files}
     models = [each for each in bill["components"] if each["type"] == "machine-learning-model"]

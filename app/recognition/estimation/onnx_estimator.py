@@ -25,7 +25,7 @@ from app.recognition.estimation.landmark_models.onnx_session import (
     Signature,
     check_provider,
 )
-from app.recognition.models import ModelName, finder_path, model_path
+from app.recognition.models import ModelName, finder_path, gloves_path, model_path
 from app.recognition.poses.frame import FrameLandmarks, Image
 
 DEFAULT_THREADS: Final = 2
@@ -156,12 +156,17 @@ def hand_tracker(
     """Load MediaPipe's hand models; see `OnnxPoseEstimator` for parameters and errors."""
     load = partial(_session, models, threads, provider)
     palms = Detector(load("palm_detection_full", PALM_LAYOUT.signature), PALM_LAYOUT)
-    model = HandModel(load("hand_landmark_full", HAND_SIGNATURE))
-    taught = finder_path() if search == "pose" else None
-    if taught is None:
-        return HandTracker(palms, model, search)
-    session = ModelSession(taught, PALM_LAYOUT.signature, threads=threads, provider=provider)
-    return HandTracker(palms, model, search, HandFinder(Detector(session, PALM_LAYOUT)))
+    model = load("hand_landmark_full", HAND_SIGNATURE)
+    open_taught = partial(ModelSession, threads=threads, provider=provider)
+    finder, gloves = (finder_path(), gloves_path()) if search == "pose" else (None, None)
+    return HandTracker(
+        palms,
+        HandModel(model, open_taught(gloves, HAND_SIGNATURE) if gloves else None),
+        search,
+        HandFinder(Detector(open_taught(finder, PALM_LAYOUT.signature), PALM_LAYOUT))
+        if finder
+        else None,
+    )
 
 
 def _session(

@@ -8,6 +8,7 @@ from app.recognition.models.catalogue import ModelName, TaskBundleName
 from app.recognition.models.storage import (
     export_models,
     finder_path,
+    gloves_path,
     install_models,
     installed_models,
     model_path,

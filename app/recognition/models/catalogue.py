@@ -59,6 +59,16 @@ HAND_FINDER: Final = InstalledFile(
 )
 """The finder of divers' hands, part of the package itself; its card lies beside it."""
 
+GLOVED_HANDS: Final = InstalledFile(
+    "hand_landmark_gloved",
+    "hand_landmark_gloved.onnx",
+    "5c8a7e31c422f48d5ab0d476bf657d7fb18708feeeb8eb60d723f9800bfebd59",
+)
+"""The landmark model of gloved hands, in the same way."""
+
+TAUGHT_FILES: Final = (HAND_FINDER, GLOVED_HANDS)
+"""What the project has taught itself."""
+
 TASK_BUNDLES: Final[dict[TaskBundleName, InstalledFile]] = _name_files(
     ".task",
     {

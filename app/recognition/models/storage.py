@@ -13,11 +13,13 @@ from typing import Final, Literal
 
 from app.recognition.errors import ModelError
 from app.recognition.models.catalogue import (
+    GLOVED_HANDS,
     HAND_FINDER,
     INSTALLED_FILES,
     MODELS,
     PACKAGED_FILES,
     TASK_BUNDLES,
+    TAUGHT_FILES,
     InstalledFile,
     ModelName,
     TaskBundleName,
@@ -109,8 +111,8 @@ def task_bundle_path(name: TaskBundleName, directory: Path | None = None) -> Pat
     return verify_models(TASK_BUNDLES[name], directory or models_dir())
 
 
-def finder_path() -> Path | None:
-    """Return the path of the finder of divers' hands; None where there is none.
+def taught_path(file: InstalledFile) -> Path | None:
+    """Return the path of one of `TAUGHT_FILES`; None where there is none.
 
     One in the models folder, taught by a team itself, comes before the package's own.
 
@@ -120,23 +122,31 @@ def finder_path() -> Path | None:
         When the package's own is truncated or altered.
 
     """
-    own = models_dir() / HAND_FINDER.filename
+    own = models_dir() / file.filename
     if own.exists():
         return own
-    if file_state(HAND_FINDER, TAUGHT) == "missing":
-        return None
-    return verify_models(HAND_FINDER, TAUGHT)
+    return None if file_state(file, TAUGHT) == "missing" else verify_models(file, TAUGHT)
+
+
+def finder_path() -> Path | None:
+    """Return the path of the finder of divers' hands; see `taught_path`."""
+    return taught_path(HAND_FINDER)
+
+
+def gloves_path() -> Path | None:
+    """Return the path of the landmark model of gloved hands; see `taught_path`."""
+    return taught_path(GLOVED_HANDS)
 
 
 def installed_models(directory: Path | None = None) -> tuple[InstalledModel, ...]:
     """Return every file of a models folder with its state; damaged files raise no error.
 
-    The bundles, which few need, are listed where they are present. Without a folder the finder of
-    hands, which lies in the package, is listed too.
+    The bundles, which few need, are listed where they are present. Without a folder the taught
+    models, which lie in the package, are listed too.
     """
-    finder = () if directory else ((HAND_FINDER, TAUGHT),)
+    taught = () if directory else tuple((file, TAUGHT) for file in TAUGHT_FILES)
     directory = directory or models_dir()
-    files = *((file, directory) for file in INSTALLED_FILES), *finder
+    files = *((file, directory) for file in INSTALLED_FILES), *taught
     return tuple(
         InstalledModel(file.name, path, _size(path), file_state(file, place))
         for file, place in files

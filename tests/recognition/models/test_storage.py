@@ -12,13 +12,14 @@ from app.recognition.models import (
     TaskBundleName,
     export_models,
     finder_path,
+    gloves_path,
     install_models,
     installed_models,
     model_path,
     models_dir,
     task_bundle_path,
 )
-from app.recognition.models.catalogue import HAND_FINDER
+from app.recognition.models.catalogue import GLOVED_HANDS, HAND_FINDER, TAUGHT_FILES
 from app.recognition.models.storage import PACKAGED, TAUGHT, write_file
 
 NAMES: tuple[ModelName, ...] = get_args(ModelName)
@@ -34,8 +35,8 @@ def test_every_model_and_bundle_of_a_complete_folder_is_found(models: Path) -> N
 
 def test_a_complete_folder_lists_every_file_as_ok(models: Path) -> None:
     listed = installed_models()
-    finder = TAUGHT / HAND_FINDER.filename
-    assert {one.path for one in listed} == {*models.iterdir(), finder}
+    taught = {TAUGHT / file.filename for file in TAUGHT_FILES}
+    assert {one.path for one in listed} == {*models.iterdir(), *taught}
     assert {one.state for one in listed} == {"ok"}
     assert all(one.size == one.path.stat().st_size for one in listed)
 
@@ -265,10 +266,11 @@ def test_exporting_to_where_a_file_lies_says_so(models: Path, tmp_path: Path) ->
         export_models(tmp_path / "usb")
 
 
-def test_the_finder_of_hands_is_the_packages_own_and_small(models: Path) -> None:
-    path = finder_path()
-    assert path == TAUGHT / HAND_FINDER.filename
-    assert path.stat().st_size < 4_000_000
+def test_the_models_of_divers_hands_are_the_packages_own(models: Path) -> None:
+    finder, gloves = finder_path(), gloves_path()
+    assert finder == TAUGHT / HAND_FINDER.filename
+    assert finder.stat().st_size < 4_000_000
+    assert gloves == TAUGHT / GLOVED_HANDS.filename
 
 
 def test_a_finder_that_a_team_taught_comes_first(models: Path) -> None:
@@ -280,7 +282,7 @@ def test_a_finder_that_is_missing_is_none_and_a_damaged_one_is_told(
     models: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.recognition.models.storage.TAUGHT", tmp_path)
-    assert finder_path() is None
+    assert finder_path() is gloves_path() is None
     (tmp_path / HAND_FINDER.filename).write_bytes(b"cut off")
     with pytest.raises(ModelError, match="not the pinned one"):
         finder_path()

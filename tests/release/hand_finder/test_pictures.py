@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from release.hand_finder.pictures import read_pictures, write_pictures
+from release.hand_finder.pictures import read_joints, read_pictures, write_pictures
 
 rendered = pytest.mark.skipif(
     find_spec("anny") is None or find_spec("numba") is None,
@@ -53,3 +53,16 @@ def test_drawn_stills_are_the_same_again_with_their_hands_in_the_frame(tmp_path:
         boxes = np.concatenate([still.hands, still.unclear])[:, :4]
         assert (boxes >= 0).all()
         assert (boxes[:, 2:] <= (640, 480)).all()
+
+
+@rendered
+def test_joints_of_drawn_hands_lie_in_their_boxes(tmp_path: Path) -> None:
+    write_pictures(tmp_path, [5], salutes=1.0)
+    stills, pictures = read_joints(tmp_path), read_pictures(tmp_path)
+    assert len(stills) == len(pictures) == 2
+    for still, picture in zip(stills, pictures, strict=True):
+        assert (still.image == picture.image).all()
+        boxes = np.concatenate([picture.hands, picture.unclear])
+        for joints in still.joints[still.seen > 0]:
+            inside = (joints[0] >= boxes[:, :2] - 1) & (joints[0] <= boxes[:, 2:4] + 1)
+            assert inside.all(axis=1).any()

@@ -135,6 +135,11 @@ class ArmPace:
     belief: float = 0.0
 
     @property
+    def is_held_up(self) -> bool:
+        """Whether the hand is held up, as for a salute; not known in the first frame."""
+        return self.period == HELD_SECONDS
+
+    @property
     def steered(self) -> FloatArray:
         """``(2,)`` the wrist that counts: the pose's, the hand's, or on the way between them."""
         return self.wrist + self.lead * self.offset if self.lead else self.wrist

@@ -32,6 +32,12 @@ HAND_SIGNATURE: Final = Signature(
 LEAST_PRESENCE: Final = 0.5
 """Least probability of a hand; MediaPipe's default minimum presence confidence."""
 
+GLOVED_PRESENCE: Final = 0.8
+"""The same of the model of gloved hands, which sees more, and more that is none."""
+
+GLOVED_SURE: Final = 0.995
+"""Presence from which that model finds a new hand."""
+
 WORTH_A_SECOND_LOOK: Final = 0.1
 """Presence from which an arm's region is corrected by the landmarks in it and evaluated again: a
 hand that is off centre scores between this and 0.5, no hand below 0.01. Replaces the re-crop model
@@ -66,6 +72,8 @@ class SeenHand:
         lost.
     looked
         Time of the last look for the fingers of a hand of which only the place is seen.
+    gloved
+        Whether the model of gloved hands sees its landmarks.
 
     """
 
@@ -76,6 +84,7 @@ class SeenHand:
     carried: bool = False
     box: Region | None = None
     looked: float = -np.inf
+    gloved: bool = False
 
     @classmethod
     def at(cls, place: HandPlace, looked: float = -np.inf) -> Self:
@@ -100,42 +109,50 @@ class SeenHand:
 
 
 class HandModel:
-    """The hand landmark model (Zhang et al. 2020, MediaPipe Hands).
+    """The hand landmark model (Zhang et al. 2020, MediaPipe Hands), and one taught on gloves.
 
     Parameters
     ----------
     session
         The model, loaded with `HAND_SIGNATURE`.
+    gloved
+        The model of gloved hands; None: there is none, and nothing is seen with ``gloved=True``.
 
     """
 
-    def __init__(self, session: ModelSession) -> None:
+    def __init__(self, session: ModelSession, gloved: ModelSession | None = None) -> None:
         self._session = session
+        self._gloved = gloved
 
-    def look(self, image: Image, region: Region) -> SeenHand | None:
+    def look(self, image: Image, region: Region, *, gloved: bool = False) -> SeenHand | None:
         """Return the hand in a usable `region` of `image`, or None where the model finds none."""
-        seen = self._landmarks(image, region)
-        return seen if seen.hand.score >= LEAST_PRESENCE else None
+        seen = self._landmarks(image, region, gloved=gloved)
+        least = GLOVED_PRESENCE if gloved else LEAST_PRESENCE
+        return seen if seen is not None and seen.hand.score >= least else None
 
-    def look_twice(self, image: Image, region: Region) -> SeenHand | None:
+    def look_twice(self, image: Image, region: Region, *, gloved: bool = False) -> SeenHand | None:
         """Return the hand near a `region`, which need not fit it well.
 
         If the first run finds something, a second one at the region of its landmarks decides.
         """
-        first = self._landmarks(image, region)
-        if not first.hand.score >= WORTH_A_SECOND_LOOK or not first.following.usable:
+        first = self._landmarks(image, region, gloved=gloved)
+        if first is None or not first.hand.score >= WORTH_A_SECOND_LOOK:
             return None
-        return self.look(image, first.following)
+        return self.look(image, first.following, gloved=gloved) if first.following.usable else None
 
-    def _landmarks(self, image: Image, region: Region) -> SeenHand:
-        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=self._session.pixels)
-        raw, presence, right = self._session.run()
+    def _landmarks(self, image: Image, region: Region, *, gloved: bool) -> SeenHand | None:
+        session = self._gloved if gloved else self._session
+        if session is None:
+            return None
+        region.crop(image, INPUT_SIZE, REPLICATED_BORDER, out=session.pixels)
+        raw, presence, right = session.run()
         points = raw.reshape(len(HAND_LANDMARKS), 3)[:, :2].astype(np.float64)
         xy = region.to_image(points, INPUT_SIZE)
         # The model was trained on mirrored selfies and renamed since: in an unmirrored image
         # this output is the probability of the person's own right hand.
         side: Side = "right" if right[0, 0] > 0.5 else "left"
-        return SeenHand(Hand(xy, side, min(float(presence[0, 0]), 1.0)), region_of_hand(xy))
+        hand = Hand(xy, side, min(float(presence[0, 0]), 1.0))
+        return SeenHand(hand, region_of_hand(xy), gloved=gloved)
 
 
 def find_duplicates(one: Hand, other: Hand) -> bool:

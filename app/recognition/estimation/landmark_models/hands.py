@@ -29,6 +29,7 @@ from app.recognition.estimation.landmark_models.hand_finder import (
     parts_of,
 )
 from app.recognition.estimation.landmark_models.hand_model import (
+    GLOVED_SURE,
     HandModel,
     SeenHand,
     find_duplicates,
@@ -91,6 +92,10 @@ FINGERS_SCALE: Final = 1.1
 TURNS: Final = 8
 """Turns in which fingers are looked for, all of them in an examination, else another one at each
 look: a glove does not show which way it points."""
+
+GLOVE_SCORE, GLOVE_SCALE, AGREEING_TURNS = 0.6, 1.3, 5
+"""Least score of a place at which the model of gloved hands looks, side of the region over that of
+the place's box, and least number of `TURNS` in which it must see a hand."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -208,7 +213,7 @@ class HandTracker:
     def _look_again(self, image: Image, tracked: SeenHand, time: float) -> SeenHand | None:
         """Return a tracked hand in the next frame; without its fingers where these are lost."""
         if tracked.shows_fingers:
-            seen = self._model.look(image, tracked.following)
+            seen = self._model.look(image, tracked.following, gloved=tracked.gloved)
             if seen is not None:
                 return replace(seen, box=tracked.box)
         if tracked.box is None or self._finder is None:
@@ -233,7 +238,27 @@ class HandTracker:
                 continue
             if _known(seen, [SeenHand.at(place)]):
                 return replace(seen, box=box)
-        return None
+        # Under all corrections it would see one somewhere.
+        return self._look_for_glove(image, place) if turns == 1 else None
+
+    def _look_for_glove(self, image: Image, place: HandPlace) -> SeenHand | None:
+        """Return the gloved hand at a place, None where it is not seen in most turns.
+
+        Where fingers are seen already, the others are no gloves.
+        """
+        fingers = any(one.shows_fingers for one in self._tracked)
+        if fingers or place.hand.score < GLOVE_SCORE:
+            return None
+        side, turns = GLOVE_SCALE * place.box.side, np.linspace(0, 2 * np.pi, TURNS, endpoint=False)
+        regions = [
+            replace(place.box, side=side, rotation=place.box.rotation + turn) for turn in turns
+        ]
+        looks = [self._model.look_twice(image, region, gloved=True) for region in regions]
+        seen = [one for one in looks if one and _known(one, [SeenHand.at(place)])]
+        best = max(seen, key=lambda one: one.hand.score, default=None)
+        if best is None or len(seen) < AGREEING_TURNS or best.hand.score < GLOVED_SURE:
+            return None
+        return replace(best, box=place.box)
 
     def _find_places(
         self, image: Image, regions: Iterable[Region], least: float
@@ -357,7 +382,8 @@ class HandTracker:
                 with_forearm = time - pace.forearm_searched >= rarer * FOREARM_SECONDS
                 if with_forearm:
                     pace.forearm_searched = time
-                seen = self._search_arm(image, body, side, with_forearm=with_forearm)
+                with_glove = pace.is_held_up and (with_forearm or rarer == 1)
+                seen = self._search_arm(image, body, side, with_forearm, with_glove)
                 others = [hand for at, hand in arms.items() if at != place]
                 if seen is not None and not _known(seen, others):
                     arms[place] = seen
@@ -377,14 +403,17 @@ class HandTracker:
         return tuple(_by_belief(seen)[: self._most])
 
     def _search_arm(
-        self, image: Image, body: Body, side: Side, *, with_forearm: bool
+        self, image: Image, body: Body, side: Side, with_forearm: bool, with_glove: bool
     ) -> SeenHand | None:
         """Return the hand at the end of an arm, from the pose's fingers, or from its forearm."""
         region = region_of_wrist(body, side)
         if region is not None:
-            seen = self._model.look_twice(image, region)
-            if seen is not None and wrist_distance(seen.hand, body, side) <= REACH:
-                return seen
+            for gloved in (False, True) if with_glove and not is_doubtful(body, side) else (False,):
+                seen = self._model.look_twice(image, region, gloved=gloved)
+                if seen is None or (gloved and seen.hand.score < GLOVED_SURE):
+                    continue
+                if wrist_distance(seen.hand, body, side) <= REACH:
+                    return seen
         for region in regions_of_forearm(body, side) if with_forearm else ():
             seen = self._model.look_twice(image, region)
             if seen is None or seen.hand.score < SURE:

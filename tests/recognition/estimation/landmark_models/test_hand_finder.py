@@ -93,13 +93,26 @@ def test_a_head_and_what_is_larger_than_a_body_are_no_hands() -> None:
     assert not HandPlace(hand, Region(300, 180, 100 * (LARGEST + 0.1))).fits(body)
 
 
-def test_a_picture_in_which_no_fingers_are_found_shows_where_hands_are(
+def test_fingers_of_gloved_hands_are_seen_and_followed(
     gloved_sight: WaterSight, diver: Image
 ) -> None:
     gloved_sight.reset()
-    found = gloved_sight.estimate(diver, 0.0)
-    seen = [np.nanmean(hand.xy, axis=0) for hand in (*found.hands, *found.places)]
-    assert len(seen) == 2
-    assert all(lies_in_a_hand(x, y) for x, y in seen)
-    followed = gloved_sight.estimate(diver, 0.04)
+    for time in (0.0, 0.04):
+        found = gloved_sight.estimate(diver, time)
+        assert len(found.hands) == 2
+        assert all(lies_in_a_hand(*hand.xy.mean(axis=0)) for hand in found.hands)
+        assert found.places == ()
+
+
+def test_without_the_model_of_gloved_hands_their_places_are_seen(
+    installed_models: None, diver: Image, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.recognition.estimation.onnx_estimator.gloves_path", lambda: None)
+    with closing(OnnxPoseEstimator(threads=1)) as estimator:
+        sight = WaterSight(estimator)
+        found = sight.estimate(diver, 0.0)
+        seen = [np.nanmean(hand.xy, axis=0) for hand in (*found.hands, *found.places)]
+        assert len(seen) == 2
+        assert all(lies_in_a_hand(x, y) for x, y in seen)
+        followed = sight.estimate(diver, 0.04)
     assert len(followed.hands) + len(followed.places) == 2
