@@ -144,7 +144,7 @@ def is_rejected(novelty: float) -> bool:
 def find_answer(
     scores: FloatArray, novelty: FloatArray, opinion: int | None = None
 ) -> tuple[int, ...]:
-    """Find the gestures that a take may be: one is the label, two are a pair, more a rejection.
+    """Find the gestures that a take may be: one is the label, two a pair; else none.
 
     The table that decides, in `docs/recognizer.md`.
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Protocol
 
 from app.recognition.estimation.estimator import check_image
-from app.recognition.estimation.landmark_models.hands import HandTracker
+from app.recognition.estimation.landmark_models.hand_tracker import HandTracker
 from app.recognition.poses.frame import Body, FrameLandmarks, Hand, Image
 
 

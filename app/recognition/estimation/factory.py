@@ -14,7 +14,7 @@ from app.recognition.estimation.composed_estimator import (
 )
 from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.landmark_models.diver_hands import DiverHands
-from app.recognition.estimation.landmark_models.hands import HandSearch
+from app.recognition.estimation.landmark_models.hand_tracker import HandSearch
 from app.recognition.estimation.landmark_models.onnx_session import Provider, check_provider
 from app.recognition.estimation.mediapipe_estimator import MediaPipeEstimator
 from app.recognition.estimation.onnx_estimator import (

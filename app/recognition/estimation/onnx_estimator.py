@@ -15,7 +15,7 @@ from app.recognition.estimation.landmark_models.body_model import POSE_SIGNATURE
 from app.recognition.estimation.landmark_models.detector import PALM_LAYOUT, PERSON_LAYOUT, Detector
 from app.recognition.estimation.landmark_models.hand_finder import HandFinder
 from app.recognition.estimation.landmark_models.hand_model import HAND_SIGNATURE, HandModel
-from app.recognition.estimation.landmark_models.hands import (
+from app.recognition.estimation.landmark_models.hand_tracker import (
     HandSearch,
     HandTracker,
 )

@@ -120,7 +120,7 @@ ALSO: Final[Mapping[str, str]] = {
     "begun_late": " and lacks its beginning",
     "ended_early": " and is unfinished",
 }
-"""What a take that is turned over lacks too."""
+"""Added to the sentence where a reversed, mirrored or upside-down take also lacks a part."""
 
 
 @dataclass(frozen=True, kw_only=True)

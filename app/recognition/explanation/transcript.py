@@ -81,7 +81,8 @@ VAGUE: Final = 0.5
 """Ratio of distance to path below which a curve leads nowhere."""
 
 MOST_TOLD: Final = 7
-"""Most pieces that a sentence tells of a movement, unless it first differs later."""
+"""Most pieces that a sentence tells of a movement, unless it first differs later; as many stand
+before the fold of the page (`why.js`)."""
 
 PAUSE_SECONDS: Final = 0.5
 """Shortest pause that is told."""

@@ -33,9 +33,9 @@ HANGING = 0.7
 arm floats a little beside the body."""
 
 MOST_HANGING = 0.5
-"""Largest share of a take in which both arms hang. Between two gestures they are lowered and raised
-again, which draws a V: of 59 such gaps of rendered divers a language with a V read 31 as it. Arms
-hung in 64 % and more of a gap, and in 36 % at most of a gesture."""
+"""Largest share of a take in which both arms hang; a take with more is a rest. Between two gestures
+arms are lowered and raised again: a language with a V read 31 of 59 such gaps, of rendered divers,
+as its V. Arms hung in 64 % and more of a gap, and in 36 % at most of a gesture."""
 
 HOLD_SECONDS = 0.6
 """Seconds that an arm pose must be held. Arms pass through a place as wide as the tolerance in less

@@ -162,8 +162,8 @@ class TiltOutput:
 
 Output = LightsOutput | TiltOutput
 """What shows pulses. `key` names it in the memory, `reported_by` the message that reports its
-value, `tolerance` is the largest difference of equal values; `travels`: those between are no
-pilot's."""
+value, `tolerance` is the largest difference of equal values; `travels`: it moves gradually, so that
+a value between two that were set is not the pilot's."""
 
 
 class PatternPlayer:

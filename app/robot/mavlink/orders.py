@@ -224,8 +224,9 @@ class OrderDesk:
         """Return the messages to send now."""
         if self.order is None or now < self._next or self._is_over(now) or self._watch.keeps_back:
             return ()
-        # What a vehicle has not answered waits there, and would be obeyed late, once for each. It
-        # was lost if the vehicle is heard since. An emergency may need no way back, for a while.
+        # Unanswered requests may wait in the link and all be obeyed late, so none is repeated until
+        # the vehicle is heard again. An emergency is, for `SILENT_SECONDS`: perhaps only the way
+        # back is broken.
         heard = self._clock.last
         is_urgent = self.order.emergency and now - max(heard, self._given) <= SILENT_SECONDS
         if self._sent > 0 and heard < self._next and not is_urgent:

@@ -19,7 +19,7 @@ import { recogniseWith } from "./studio-view.js";
 /** @import { Counterfactual, Explanation, Piece, Recognition, SideEffect, State } from "../core/types.d.ts" */
 
 const MOST_PARTS = 3; // Joints shown over time: those with the highest cost.
-const MOST_TOLD = 7; // Strokes told before a fold.
+const MOST_TOLD = 7; // Strokes told before a fold, as in a sentence (transcript.py).
 const UNFOLLOWED = new Set(["keypoints_jumped", "other_person", "not_seen"]);
 const LANE = 14; // Height of a joint's lane, in the drawing's own units.
 

@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from app.recognition.errors import ModelError
 from app.recognition.estimation.estimator import check_image
-from app.recognition.estimation.landmark_models.hands import MOST_HANDS
+from app.recognition.estimation.landmark_models.hand_tracker import MOST_HANDS
 from app.recognition.estimation.landmark_models.letterbox import Letterbox
 from app.recognition.estimation.landmark_models.onnx_session import Provider
 from app.recognition.estimation.landmark_models.planar_model import PlanarModel

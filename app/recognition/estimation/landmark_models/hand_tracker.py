@@ -40,14 +40,13 @@ from app.recognition.poses.frame import SIDES, Body, FrameLandmarks, Image, Side
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 
 MOST_HANDS: Final = 2
-"""Most hands of one person; each costs a run of the landmark model per frame."""
+"""Most hands of one person; each costs a run per frame."""
 
 SAME_REGION: Final = 0.5
 """Overlap above which a candidate is a hand that is tracked already (MediaPipe's default)."""
 
 PALM_PAUSE: Final = 10
-"""Frames between palm detections while a body is seen, whose arms are searched in every frame. Palm
-detection costs as much as the body model."""
+"""Frames between palm detections, which cost as much as the body model, while a body is seen."""
 
 FOREARM_SECONDS: Final = 0.4
 """Seconds between searches at the end of a forearm, which cost up to four looks."""
@@ -57,9 +56,8 @@ LONG_LOST, LOST_FACTOR = 8, 2
 to the finder."""
 
 SURE: Final = 0.8
-"""Presence from which a hand is certain. Below it, most results at the end of a forearm, or of the
-palm detector away from the body's arms, are no hands. While a tracked hand is below it, palms are
-detected even with two tracked hands, because one of them may be false."""
+"""Presence from which a hand is certain. Below it, most results at a forearm's end, or of the palm
+detector away from the body's arms, are no hands: palms are then detected even with two tracked."""
 
 PLACE_SCORE: Final = 0.5
 """Least score of a place of a hand that is new."""
@@ -90,12 +88,17 @@ FINGERS_SCALE: Final = 1.1
 """Side of the region in which fingers are looked for, over the side of the place's box."""
 
 TURNS: Final = 8
-"""Turns in which fingers are looked for, all of them in an examination, else another one at each
-look: a glove does not show which way it points."""
+"""Number of turns in which fingers are looked for, as a glove does not show which way it points: an
+examination tries all, tracking the next one at each look."""
 
-GLOVE_SCORE, GLOVE_SCALE, AGREEING_TURNS = 0.6, 1.3, 5
-"""Least score of a place at which the model of gloved hands looks, side of the region over that of
-the place's box, and least number of `TURNS` in which it must see a hand."""
+GLOVE_SCORE: Final = 0.6
+"""Least score of a place at which the model of gloved hands looks."""
+
+GLOVE_SCALE: Final = 1.3
+"""Side of the region in which it looks, over that of the place's box."""
+
+AGREEING_TURNS: Final = 5
+"""Least number of `TURNS` in which it must see a hand at a place."""
 
 HandSearch = Literal["pose", "palm"]
 """Search for untracked hands: at the ends of the body's arms and, every few frames, with the palm
@@ -238,7 +241,7 @@ class HandTracker:
                 continue
             if _known(seen, [SeenHand.at(place)]):
                 return replace(seen, box=box)
-        # Under all corrections it would see one somewhere.
+        # Not in an examination: under some correction gloves are always seen.
         return self._look_for_glove(image, place) if turns == 1 else None
 
     def _look_for_glove(self, image: Image, place: HandPlace) -> SeenHand | None:
