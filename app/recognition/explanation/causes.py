@@ -101,7 +101,7 @@ SENTENCES: Final[Mapping[str, str]] = {
     "keypoints_jumped": "Keypoints jumped in {frames}. Film nearer, or in better light.",
     "mixed": "Left and right were mixed in {frames}. Film nearer or brighter.",
     "no_hand": "No fingers are seen, but their shape counts. Gloves? Show the hand nearer.",
-    "other_person": "Another person's body was read in {frames}. Film one diver alone.",
+    "other_person": "Another body was read in at least {frames}. Film one diver alone.",
     "near_gesture": "{label} and {other} are nearly alike. Change one of the two.",
     "not_seen": "The arm is not seen in {frames}. Film all of it.",
     "not_comparable": "A keypoint that {label} needs is not seen moving. Film the whole arm.",

@@ -369,7 +369,7 @@ def _find_keypoint_faults(
     repaired = int(np.count_nonzero(repair.exchanged | repair.jumps[:, columns].any(axis=1)))
     seen = float(stroke.seen[:, columns].mean(axis=0).min(initial=1.0))
     if other > MOST_UNSTEADY * count:
-        words = f"shows another body in {other} of {count} frames"
+        words = f"shows another body in at least {other} of {count} frames"
         yield DemonstrationFault(kind=FaultKind.other_person, words=words)
     if away > MOST_UNSTEADY * count or repaired > MOST_REPAIRED * count:
         words = f"has keypoints that jump in {max(away, repaired)} of {count} frames"
