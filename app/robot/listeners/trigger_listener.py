@@ -14,7 +14,7 @@ from app.robot.events import Event, StateChanged, TakeRecognized, TakeRejected
 from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_take, reject_take
 
-SURE: Final = 0.9
+GAP_CONFIDENCE: Final = 0.9
 """Least confidence of a gesture in a gap: fewer than one salute in ten is missed, so that a gap is
 seldom a take. The 31 gaps of `arm_pose.MOST_HANGING` had 0.31 to 0.66."""
 
@@ -175,7 +175,7 @@ class TriggerListener:
         if gap is None or mostly_hang(gap.untrimmed.landmarks, gap.untrimmed.xy):
             return None
         judged = judge_take(self.language, gap, time, explain_unclosed(self.language.trigger))
-        if not isinstance(judged, TakeRecognized) or judged.confidence < SURE:
+        if not isinstance(judged, TakeRecognized) or judged.confidence < GAP_CONFIDENCE:
             return None
         self._takes.end_gap()
         self._doubtful = False
