@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from urllib.parse import quote
 
 
 def attachment(name: str, suffix: str) -> str:
@@ -16,3 +17,8 @@ def attachment(name: str, suffix: str) -> str:
     )
     stem = re.sub(r"[^\w.-]+", "-", plain, flags=re.ASCII).strip("-") or "language"
     return f'attachment; filename="{stem}{suffix}"'
+
+
+def attachment_as_written(name: str, plain: str) -> str:
+    """Return that of a file under any name; `plain` is for clients that know ASCII alone."""
+    return f"attachment; filename=\"{plain}\"; filename*=utf-8''{quote(name, safe='')}"

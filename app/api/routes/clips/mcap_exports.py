@@ -6,13 +6,13 @@ import json
 import tempfile
 from pathlib import Path
 from typing import Annotated
-from urllib.parse import quote
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.api.http.downloads import attachment_as_written
 from app.api.http.problems import ProblemError, file_responses, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
 from app.api.jobs.job import events_about, task_job
@@ -92,8 +92,7 @@ async def get_session(
     target = studio.exports.take(clip_id, name)
     if target is None:
         target = await _write(request, studio, clip_id, name, content)
-    shown = quote(_name(content), safe="")
-    disposition = f"attachment; filename=\"session.mcap\"; filename*=utf-8''{shown}"
+    disposition = attachment_as_written(_name(content), "session.mcap")
     return FileResponse(
         target,
         media_type=MEDIA_TYPE,

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from urllib.parse import quote
-
 from fastapi import APIRouter, Response
 
+from app.api.http.downloads import attachment_as_written
 from app.api.http.problems import file_responses, problem_responses
 from app.api.http.schemas.values import View
 from app.api.services.running_studio import CurrentStudio, computed
@@ -55,8 +54,7 @@ def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
     view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
     meant = record.expected
     why = None if meant is None else explain(load_context(record, studio), meant)
-    name = quote(f"{view.title}.html", safe="")
-    disposition = f"attachment; filename=\"analysis.html\"; filename*=utf-8''{name}"
+    disposition = attachment_as_written(f"{view.title}.html", "analysis.html")
     return Response(
         analysis_page(view, load_recognition(record), why),
         media_type="text/html",
