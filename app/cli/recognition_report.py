@@ -9,7 +9,6 @@ from typing import Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.recognition import Recognition, Take
-from app.recognition.decision.result import RecognitionEntry
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.text.described import DESCRIBED
@@ -17,10 +16,10 @@ from app.recognition.text.described import DESCRIBED
 Seconds = Annotated[float, Field(ge=0, description="Seconds after the clip's first frame.")]
 
 
-class TakeEntry(RecognitionEntry):
+class TakeEntry(Recognition):
     """A take and its recognition. G gestures and V voters are in the order of their lists."""
 
-    model_config = DESCRIBED
+    model_config = ConfigDict(extra="allow")
 
     start: Seconds
     end: Seconds

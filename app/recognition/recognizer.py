@@ -163,7 +163,7 @@ class Recognizer:
             fault = f"both arms hang most of the time, so that a {noun} was missed"
         else:
             return result
-        return replace(result, label=None, pair=None, fault=fault)
+        return result.model_copy(update={"label": None, "pair": None, "fault": fault})
 
     def _is_rest(self, poses: PoseSequence, result: Recognition) -> bool:
         """Return whether both arms mostly hang, as in no demonstration of the gestures named."""
@@ -199,16 +199,10 @@ class Recognizer:
         findings = (*findings, many) if many else findings
         poor = self._fault(repair, table, result.nearest) if repair else None
         poor = poor or self._find_unseen_shape(table, result.nearest)
-        if poor or findings:
-            label, pair = (None, None) if poor else (result.label, result.pair)
-            result = replace(
-                result,
-                label=label,
-                pair=pair,
-                findings=findings,
-                fault=poor.words if poor else None,
-                fault_kind=poor.kind if poor else None,
-            )
+        changes: dict[str, object] = {"findings": findings}
+        if poor:
+            changes |= {"label": None, "pair": None, "fault": poor.words, "fault_kind": poor.kind}
+        result = result.model_copy(update=changes)
         return Trace(query=query, score_table=table, result=result)
 
     def _describe_others(self, holds: Sequence[Hold]) -> str:

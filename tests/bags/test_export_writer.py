@@ -91,7 +91,7 @@ def test_everything_of_the_session_is_in_it_at_its_time(
 def test_a_pair_is_a_question_and_no_rejection(
     tmp_path: Path, recording: Recording, recognitions: list[NamedRecognition]
 ) -> None:
-    result = replace(recognitions[0].result, label=None, pair=("circle", "ring"))
+    result = recognitions[0].result.model_copy(update={"label": None, "pair": ("circle", "ring")})
     path = tmp_path / "session.mcap"
     write_bag(path, recording, [replace(recognitions[0], result=result)])
     found = checked(path)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -85,11 +84,11 @@ def test_the_verdict_says_in_words_what_came_out(
 
 
 def test_a_pair_is_a_question_and_both_gestures_are_marked() -> None:
-    asked = replace(recognition(label=None), pair=("wedge", MARKUP))
+    asked = recognition(label=None).model_copy(update={"pair": ("wedge", MARKUP)})
     words = Elements(charts.verdict(asked, "circle"))
     assert f"Between two: wedge or {MARKUP}?" in words.text
     assert "img" not in [tag for tag, _ in words.tags]
-    asked = replace(asked, pair=("wedge", "line"))
+    asked = asked.model_copy(update={"pair": ("wedge", "line")})
     table = Elements(charts.vote_table(asked, "line"))
     tagged = [cell for cell in table.rows[0] if "one of two" in cell]
     assert sorted(tagged) == ["lineone of two, expected", "wedgeone of two"]
@@ -107,7 +106,8 @@ def test_the_vote_table_has_a_row_per_voter_and_the_largest_weight_comes_first()
 
 
 def test_voters_of_weight_zero_come_last_and_do_not_count() -> None:
-    voted = replace(recognition(), weights={"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7})
+    weights = {"hu": 0.0, "aspect_ratio": 0.3, "solidity": 0.7}
+    voted = recognition().model_copy(update={"weights": weights})
     table = Elements(charts.vote_table(voted, None))
     assert [row[:2] for row in table.rows[1:]] == [
         ["solidity", "70 %"],
@@ -129,7 +129,7 @@ def test_what_cannot_be_compared_is_shown_as_infinitely_far() -> None:
     plain = recognition()
     distances = plain.distances.copy()
     distances[:, 2] = np.inf
-    uncomparable = replace(plain, distances=distances)
+    uncomparable = plain.model_copy(update={"distances": distances})
     rows = Elements(charts.vote_table(uncomparable, None)).rows
     assert [row[-1] for row in rows] == ["line", *["\N{INFINITY}"] * 3, "0 %"]
 

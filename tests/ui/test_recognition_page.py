@@ -44,7 +44,7 @@ def test_the_file_needs_nothing_from_anywhere(view: WorkspaceView) -> None:
 
 def test_the_title_of_a_pair_is_the_question(view: WorkspaceView) -> None:
     assert view.recognition is not None
-    asked = replace(view.recognition, label=None, pair=("circle", "<ring>"))
+    asked = view.recognition.model_copy(update={"label": None, "pair": ("circle", "<ring>")})
     page = analysis_page(view, asked, None)
     assert "circle or &lt;ring&gt;?</title>" in page
 

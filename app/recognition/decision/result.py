@@ -4,17 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from types import MappingProxyType
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainSerializer
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    PlainSerializer,
+    ValidatorFunctionWrapHandler,
+    model_validator,
+)
+from pydantic_core import CoreSchema, core_schema
 
 from app.recognition.decision.rejection import find_answer
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind
+from app.recognition.text.described import DESCRIBED
 from app.recognition.voters.motion_voters import SecondOpinion
 
 Outcome = Literal["recognized", "pair", "rejected"]
@@ -25,9 +34,40 @@ def _list_finite(values: Any) -> Any:
     """Return nested lists in which None stands for NaN and infinity."""
     if isinstance(values, np.ndarray):
         values = values.tolist()
-    if isinstance(values, list | tuple):
+    if isinstance(values, list):
         return [_list_finite(each) for each in values]
-    return None if isinstance(values, float) and not math.isfinite(values) else values
+    return values if math.isfinite(values) else None
+
+
+@dataclass(frozen=True)
+class InLists:
+    """Annotation of a float array that is lists of one kind in JSON, and read-only here."""
+
+    kind: Any
+    missing: float = math.nan
+    """What null is in the array."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        lists = handler.generate_schema(self.kind)
+        written = core_schema.plain_serializer_function_ser_schema(
+            _list_finite, return_schema=lists
+        )
+        return core_schema.no_info_wrap_validator_function(
+            self._read_array, lists, serialization=written
+        )
+
+    def _read_array(self, values: Any, read_lists: ValidatorFunctionWrapHandler) -> FloatArray:
+        """Return a private copy of an array, or the array of lists."""
+        array: FloatArray
+        if isinstance(values, np.ndarray):
+            array = np.array(values, dtype=np.float64)
+        else:
+            array = np.array(read_lists(values), dtype=np.float64)
+            array[np.isnan(array)] = self.missing
+        array.setflags(write=False)
+        return array
 
 
 WRITTEN = ConfigDict(json_schema_serialization_defaults_required=True)
@@ -40,7 +80,7 @@ Distance = Annotated[
 """A number that is null in JSON where it is infinite or NaN: nothing can be compared."""
 
 Number = Annotated[float | None, Field(description="null: it cannot be compared.")]
-Numbers = Annotated[list[Number], BeforeValidator(_list_finite)]
+Numbers = Annotated[FloatArray, InLists(list[Number])]
 Pair = Annotated[
     tuple[str, str] | None,
     Field(
@@ -48,164 +88,76 @@ Pair = Annotated[
         "asked back; null: it lies between no two."
     ),
 ]
+Nothing = Field(default_factory=lambda: np.empty(0))
 
 
-class RecognitionEntry(BaseModel):
-    """A recognition in JSON: the stored record, the HTTP answer, the report, the messages.
+class Recognition(BaseModel):
+    """The outcome of one recognition: here, in records, HTTP answers, reports and messages.
 
     G gestures and V voters are in the order of their lists. Results of earlier versions lack the
     keys with defaults.
     """
 
-    model_config = ConfigDict(extra="allow", from_attributes=True, **WRITTEN)
+    model_config = ConfigDict(**DESCRIBED, **WRITTEN)
 
     profile: ProfileName
-    label: Annotated[
-        str | None, Field(description="The gesture; null for a pair and where it was rejected.")
-    ]
-    pair: Pair = None
-    nearest: Annotated[str, Field(description="The best gesture even where it was rejected.")]
-    confidence: Annotated[float, Field(ge=0, le=1)]
-    votes: Annotated[dict[str, str], Field(description="Per voter the gesture nearest to it.")]
-    weights: Annotated[
-        dict[str, float],
-        Field(description="Per voter its normalised weight; 0: it does not count."),
-    ] = {}
-    findings: Annotated[
-        list[str], Field(description="Repairs of keypoints, and an unseen hand, as sentences.")
-    ] = []
-    fault: Annotated[
-        str | None,
-        Field(
-            description="Why there is no recognition: the keypoints are too poor to judge, or no "
-            "second trigger ended the take; null: there is one."
-        ),
-    ] = None
-    fault_kind: Annotated[
-        QualityFaultKind | None, Field(description="The kind of the keypoints' fault, or null.")
-    ] = None
-    voters: list[str]
-    gestures: list[str]
-    distances: Annotated[
-        list[list[Number]],
-        BeforeValidator(_list_finite),
-        Field(description="V rows of G, each voter in its own unit; smaller is more alike."),
-    ]
-    scores: Annotated[Numbers, Field(description="G fused scores, smaller is more alike.")] = []
-    novelty: Annotated[Numbers, Field(description="G values; above 1 a take is rejected.")] = []
-    novelty_by_view: Annotated[
-        dict[str, Numbers], Field(description="The same of the movement and of the hands.")
-    ] = {}
-    facing: Annotated[
-        float | None,
-        Field(
-            description="Degrees the diver is turned by, positive to the diver's left; "
-            "null: not known."
-        ),
-    ] = None
-    views: Annotated[
-        list[float],
-        BeforeValidator(_list_finite),
-        Field(
-            description="G degrees by which the demonstrations were turned to be compared; empty "
-            "in profile paper."
-        ),
-    ] = []
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Recognition:
-    """The outcome of one recognition.
-
-    Attributes
-    ----------
-    label
-        The recognised gesture, or None for a pair, when rejected (profile ``paper`` never rejects)
-        or when the poses are too poor to recognise; `outcome` tells these apart.
-    pair
-        The two gestures between which the take lies, nearest first: the diver is asked to show it
-        again. None otherwise, for profile ``paper``, and in results of earlier versions.
-    nearest
-        The best gesture even when rejected.
-    confidence
-        In [0, 1]. Profile ``full``: the estimated probability that `nearest` is the gesture
-        meant, if half of all movements are out-of-vocabulary, see `estimate_confidence`; at least
-        `confidence.SURE` with a label, at most with a pair. Profile
-        ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean
-        relative distance over that of the nearest other gesture), or 0 where the other one is
-        nearer; it is relative to the language and does not detect out-of-vocabulary movements.
-    profile
-        The recogniser's profile.
-    voters
-        V names.
-    gestures
-        G labels.
-    distances
-        ``(V, G)``, smaller = more alike, each voter in its own unit; infinite where query and
-        gesture cannot be compared because the query lacks a salient landmark or does not move it.
-    votes
-        By voter's name, the label of its nearest gesture, whether or not the vote has weight.
-    weights
-        Per voter's name its weight, summing to 1; 0 for a voter that does not separate the
-        gestures of this language. In profile ``paper`` all voters have the same weight.
-    findings
-        Repairs of the poses before recognition, as sentences with counts; and a sentence if more
-        shapes are held than a gesture has.
-    fault
-        Reason why there is no recognition, in words: the poses are too poor, no hand is seen
-        although the hand shape of `nearest` counts, or the take is not closed; `label` is then
-        None.
-    fault_kind
-        The kind of a `fault` of the poses; None without one, and in results of earlier versions.
-    scores
-        ``(G,)``, smaller = more alike, infinite where not comparable. Profile ``full``: the fused
-        distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``:
-        the mean relative distance. Empty in results of earlier versions.
-    novelty
-        ``(G,)``: score relative to the language's limit; if that of `nearest` is above 1, the take
-        is rejected (`rejection`). The second opinion's part of a score does not count; the gesture
-        that it names may be `second_opinion.AGREED` times as far. NaN in profile ``paper``.
-    novelty_by_view
-        By `rejection.NOVELTIES` the novelties ``(G,)`` of the movement and of the hand alone, of
-        which `novelty` is the larger; NaN where that is not compared. Empty for profile ``paper``,
-        and in results of earlier versions.
-    facing
-        Degrees by which the diver is turned from the camera, positive to the diver's own left; None
-        where the poses have no depth, for profile ``paper``, and in results of earlier versions.
-    views
-        ``(G,)``: degrees by which each gesture's demonstration was turned before it was compared
-        (`views.Views`); empty for profile ``paper``, and in results of earlier versions.
-
-    """
-
+    """The recogniser's."""
     label: str | None
-    pair: tuple[str, str] | None = None
+    """The gesture; null for a pair, where it was rejected (profile ``paper`` never rejects) and
+    where the poses are too poor to recognise; `outcome` tells these apart."""
+    pair: Pair = None
     nearest: str
-    confidence: float
-    profile: str
+    """The best gesture even where it was rejected."""
+    confidence: Annotated[float, Field(ge=0, le=1)]
+    # See `estimate_confidence`; a label has at least `confidence.SURE`, a pair at most.
+    """Profile ``full``: the estimated probability that `nearest` is the gesture meant, if half of
+    all movements are out-of-vocabulary. Profile ``paper``: the mean of the winner's share of the
+    votes and of its margin, 1 - (its mean relative distance over that of the nearest other
+    gesture), or 0 where the other one is nearer: relative to the language, it does not detect
+    out-of-vocabulary movements."""
+    votes: Mapping[str, str]
+    """Per voter the gesture nearest to it, whether or not the vote has weight."""
+    weights: Mapping[str, float] = {}
+    """Per voter its normalised weight; 0: it does not count, as it does not separate the gestures
+    of this language. In profile ``paper`` all voters have the same weight."""
+    findings: tuple[str, ...] = ()
+    """Repairs of keypoints, an unseen hand, more shapes held than a gesture has, as sentences."""
+    fault: str | None = None
+    """Why there is no recognition: the keypoints are too poor to judge, no hand is seen although
+    the hand shape of `nearest` counts, or no second trigger ended the take; null: there is one."""
+    fault_kind: QualityFaultKind | None = None
+    """The kind of the keypoints' fault, or null."""
     voters: tuple[str, ...]
     gestures: tuple[str, ...]
-    distances: FloatArray
-    votes: Mapping[str, str]
-    weights: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-    findings: tuple[str, ...] = ()
-    fault: str | None = None
-    fault_kind: QualityFaultKind | None = None
-    scores: FloatArray = field(default_factory=lambda: np.empty(0))
-    novelty: FloatArray = field(default_factory=lambda: np.empty(0))
-    novelty_by_view: Mapping[str, FloatArray] = field(default_factory=lambda: MappingProxyType({}))
+    distances: Annotated[FloatArray, InLists(list[list[Number]], missing=math.inf)]
+    """V rows of G, each voter in its own unit; smaller is more alike. Infinite where the take lacks
+    a salient landmark of the gesture or does not move it."""
+    scores: Numbers = Nothing
+    """G fused scores, smaller is more alike. Profile ``full``: the fused distance, whose smallest
+    one is `nearest`, about 1 for another gesture. Profile ``paper``: the mean relative distance."""
+    novelty: Numbers = Nothing
+    # `second_opinion.AGREED` says how much farther.
+    """G values, the score relative to the language's limit: if that of `nearest` is above 1, the
+    take is rejected. The second opinion's part of a score does not count; the gesture that it names
+    may be farther. NaN in profile ``paper``."""
+    novelty_by_view: Mapping[str, Numbers] = {}
+    """The same of the movement and of the hands, of which `novelty` is the larger; NaN where that
+    is not compared. Empty in profile ``paper``."""
     facing: float | None = None
-    views: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Degrees the diver is turned by, positive to the diver's left; null: not known, as in profile
+    ``paper``."""
+    views: Annotated[FloatArray, InLists(list[float])] = Nothing
+    """G degrees by which the demonstrations were turned to be compared; empty in profile paper."""
 
-    def __post_init__(self) -> None:
-        """Freeze private copies of the arrays; without weights all voters have the same."""
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__
+
+    @model_validator(mode="after")
+    def _weigh_equally(self) -> Recognition:
+        """Without weights all voters have the same."""
         if not self.weights:
-            equal = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
-            object.__setattr__(self, "weights", MappingProxyType(equal))
-        for name in ("distances", "scores", "novelty", "views"):
-            object.__setattr__(self, name, _freeze(getattr(self, name)))
-        by_view = {view: _freeze(values) for view, values in self.novelty_by_view.items()}
-        object.__setattr__(self, "novelty_by_view", MappingProxyType(by_view))
+            self.__dict__["weights"] = dict.fromkeys(self.voters, 1.0 / max(len(self.voters), 1))
+        return self
 
     @property
     def outcome(self) -> Outcome:
@@ -282,31 +234,8 @@ class Recognition:
     @classmethod
     def from_dict(cls, content: Mapping[str, Any]) -> Recognition:
         """Return the recognition of a dictionary by `to_dict`, of this or an earlier version."""
-        entry = RecognitionEntry.model_validate(content)
-        infinite = [
-            [math.inf if value is None else value for value in row] for row in entry.distances
-        ]
-        arrays = {
-            "distances": np.array(infinite, dtype=np.float64),
-            "scores": np.array(entry.scores, dtype=np.float64),
-            "novelty": np.array(entry.novelty, dtype=np.float64),
-            "novelty_by_view": {
-                view: np.array(values, dtype=np.float64)
-                for view, values in entry.novelty_by_view.items()
-            },
-            "views": np.array(entry.views, dtype=np.float64),
-        }
-        lists = {name: tuple(getattr(entry, name)) for name in ("voters", "gestures", "findings")}
-        known = {each.name: getattr(entry, each.name) for each in fields(cls)}
-        return cls(**(known | lists | arrays))
+        return cls.model_validate(content)
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types; infinite values and NaN become None."""
-        return RecognitionEntry.model_validate(self).model_dump(mode="json")
-
-
-def _freeze(values: FloatArray) -> FloatArray:
-    """Return a read-only copy."""
-    frozen = values.copy()
-    frozen.setflags(write=False)
-    return frozen
+        return self.model_dump(mode="json")

@@ -2415,12 +2415,13 @@ export interface components {
         RecognitionView: {
             /**
              * Profile
+             * @description The recogniser's.
              * @enum {string}
              */
             profile: "paper" | "full";
             /**
              * Label
-             * @description The gesture; null for a pair and where it was rejected.
+             * @description The gesture; null for a pair, where it was rejected (profile ``paper`` never rejects) and where the poses are too poor to recognise; `outcome` tells these apart.
              */
             label: string | null;
             /**
@@ -2436,18 +2437,21 @@ export interface components {
              * @description The best gesture even where it was rejected.
              */
             nearest: string;
-            /** Confidence */
+            /**
+             * Confidence
+             * @description Profile ``full``: the estimated probability that `nearest` is the gesture meant, if half of all movements are out-of-vocabulary. Profile ``paper``: the mean of the winner's share of the votes and of its margin, 1 - (its mean relative distance over that of the nearest other gesture), or 0 where the other one is nearer: relative to the language, it does not detect out-of-vocabulary movements.
+             */
             confidence: number;
             /**
              * Votes
-             * @description Per voter the gesture nearest to it.
+             * @description Per voter the gesture nearest to it, whether or not the vote has weight.
              */
             votes: {
                 [key: string]: string;
             };
             /**
              * Weights
-             * @description Per voter its normalised weight; 0: it does not count.
+             * @description Per voter its normalised weight; 0: it does not count, as it does not separate the gestures of this language. In profile ``paper`` all voters have the same weight.
              * @default {}
              */
             weights: {
@@ -2455,13 +2459,13 @@ export interface components {
             };
             /**
              * Findings
-             * @description Repairs of keypoints, and an unseen hand, as sentences.
+             * @description Repairs of keypoints, an unseen hand, more shapes held than a gesture has, as sentences.
              * @default []
              */
             findings: string[];
             /**
              * Fault
-             * @description Why there is no recognition: the keypoints are too poor to judge, or no second trigger ended the take; null: there is one.
+             * @description Why there is no recognition: the keypoints are too poor to judge, no hand is seen although the hand shape of `nearest` counts, or no second trigger ended the take; null: there is one.
              */
             fault: string | null;
             /**
@@ -2475,24 +2479,22 @@ export interface components {
             gestures: string[];
             /**
              * Distances
-             * @description V rows of G, each voter in its own unit; smaller is more alike.
+             * @description V rows of G, each voter in its own unit; smaller is more alike. Infinite where the take lacks a salient landmark of the gesture or does not move it.
              */
             distances: (number | null)[][];
             /**
              * Scores
-             * @description G fused scores, smaller is more alike.
-             * @default []
+             * @description G fused scores, smaller is more alike. Profile ``full``: the fused distance, whose smallest one is `nearest`, about 1 for another gesture. Profile ``paper``: the mean relative distance.
              */
             scores: (number | null)[];
             /**
              * Novelty
-             * @description G values; above 1 a take is rejected.
-             * @default []
+             * @description G values, the score relative to the language's limit: if that of `nearest` is above 1, the take is rejected. The second opinion's part of a score does not count; the gesture that it names may be farther. NaN in profile ``paper``.
              */
             novelty: (number | null)[];
             /**
              * Novelty By View
-             * @description The same of the movement and of the hands.
+             * @description The same of the movement and of the hands, of which `novelty` is the larger; NaN where that is not compared. Empty in profile ``paper``.
              * @default {}
              */
             novelty_by_view: {
@@ -2500,13 +2502,12 @@ export interface components {
             };
             /**
              * Facing
-             * @description Degrees the diver is turned by, positive to the diver's left; null: not known.
+             * @description Degrees the diver is turned by, positive to the diver's left; null: not known, as in profile ``paper``.
              */
             facing: number | null;
             /**
              * Views
              * @description G degrees by which the demonstrations were turned to be compared; empty in profile paper.
-             * @default []
              */
             views: number[];
             /** Id */
@@ -2521,9 +2522,9 @@ export interface components {
             start: number;
             /** End */
             end: number;
-            /** @description Null: as the language says */
+            /** @description Null: as the language says. */
             tuning: components["schemas"]["TuningEntry"] | null;
-            /** @description The change it was recognised with; null: none */
+            /** @description The change it was recognised with; null: none. */
             trial: components["schemas"]["GestureTrial"] | null;
             /** Expected */
             expected: string | null;

@@ -67,7 +67,9 @@ def test_a_gesture_has_a_demonstration_and_a_diver_for_each_take(recorded: Recor
 def test_an_answer_has_all_gestures_near_the_best(
     result: Recognition, scores: list[float], label: str, alone: bool | None, size: int
 ) -> None:
-    near = replace(result, nearest="circle", label="circle", scores=np.array(scores))
+    near = result.model_copy(
+        update={"nearest": "circle", "label": "circle", "scores": np.array(scores)}
+    )
     found = dict(judge(near, label, ratio=1.1))
     assert found["nearest"] == (label == "circle")
     assert found.get("wrong alone") == alone
@@ -85,8 +87,8 @@ def test_what_cannot_be_compared_is_an_error_and_not_accepted(recorded: Recorded
 
 def test_half_a_language_accepts_or_rejects(recorded: RecordedSet, result: Recognition) -> None:
     language = Language("drawn", [define(recorded, [0])])
-    accepted = replace(result, nearest="circle", label="circle")
-    rejected = replace(result, nearest="circle", label=None)
+    accepted = result.model_copy(update={"nearest": "circle", "label": "circle"})
+    rejected = result.model_copy(update={"nearest": "circle", "label": None})
     assert dict(judge_half(accepted, "circle", language)) == {"half: right rejected": False}
     assert dict(judge_half(rejected, "circle", language)) == {"half: right rejected": True}
     assert dict(judge_half(accepted, "line", language)) == {"half: near accepted": True}

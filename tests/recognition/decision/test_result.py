@@ -1,7 +1,6 @@
 """A result is plain data that cannot be changed afterwards."""
 
 import json
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -51,7 +50,7 @@ def test_a_result_becomes_plain_json_with_null_where_nothing_can_be_compared() -
 
 
 def test_a_result_comes_back_from_its_plain_form() -> None:
-    there = replace(result(label=None), weights={"hu": 0.0, "zernike": 1.0})
+    there = result(label=None).model_copy(update={"weights": {"hu": 0.0, "zernike": 1.0}})
     back = Recognition.from_dict(json.loads(json.dumps(there.to_dict())))
     assert back.to_dict() == there.to_dict()
     np.testing.assert_array_equal(back.distances, there.distances)
@@ -71,8 +70,11 @@ def test_a_rejected_query_has_no_label_but_a_nearest_gesture() -> None:
 
 
 def between(*scores: float, **change: Any) -> Recognition:
-    there = replace(result(label=None), scores=np.array(scores), novelty=np.full(len(scores), 0.5))
-    return replace(there, gestures=("circle", "line", "wedge")[: len(scores)], **change)
+    there = result(label=None).model_copy(
+        update={"scores": np.array(scores), "novelty": np.full(len(scores), 0.5)}
+    )
+    gestures = ("circle", "line", "wedge")[: len(scores)]
+    return there.model_copy(update={"gestures": gestures, **change})
 
 
 @pytest.mark.parametrize(
@@ -101,7 +103,7 @@ def test_a_rejection_between_three_gestures_names_them() -> None:
     assert between(1.1, 1.0, 1.05, fault="no hand is seen").between == ()
     assert between(1.0, 1.1, 9.0, pair=("circle", "line")).between == ("circle", "line")
     assert result().between == ()
-    far = replace(between(1.1, 1.0, 1.05), novelty=np.full(3, 1.5))
+    far = between(1.1, 1.0, 1.05, novelty=np.full(3, 1.5))
     assert far.between == ()
 
 
@@ -115,4 +117,5 @@ def test_the_distances_of_a_result_cannot_be_changed() -> None:
     [([0.4, 1.0], 0.6), ([0.4, np.inf], np.inf), ([1.0, 0.4], -0.6), ([], np.nan)],
 )
 def test_the_margin_is_to_the_nearest_other_gesture(scores: list[float], margin: float) -> None:
-    assert replace(result(), scores=np.array(scores)).margin == pytest.approx(margin, nan_ok=True)
+    scored = result().model_copy(update={"scores": np.array(scores)})
+    assert scored.margin == pytest.approx(margin, nan_ok=True)

@@ -59,7 +59,7 @@ def test_a_trim_cuts_the_whole_otherwise_and_keeps_the_recogniser(
 
 
 def test_a_change_forgets_the_recorded_answer(context: RecognitionContext) -> None:
-    recorded = replace(context, recorded=replace(context.result, nearest="line"))
+    recorded = replace(context, recorded=context.result.model_copy(update={"nearest": "line"}))
     assert recorded.result.nearest == "line"
     assert TRIM.apply(recorded).recorded is None
     assert UNREPAIRED.apply(recorded).recorded is None

@@ -161,12 +161,13 @@ def between(*, asked: bool) -> RecognitionContext:
     scores = [
         1.0 + 0.01 * names.index(each) if each in names else 9.0 for each in drawn_language().labels
     ]
-    result = replace(
-        examined.result,
-        label=None,
-        pair=names[:2] if asked else None,
-        scores=np.array(scores),
-        novelty=np.full(len(scores), 0.5),
+    result = examined.result.model_copy(
+        update={
+            "label": None,
+            "pair": names[:2] if asked else None,
+            "scores": np.array(scores),
+            "novelty": np.full(len(scores), 0.5),
+        }
     )
     vars(examined)["trace"] = replace(examined.trace, result=result)
     return examined
@@ -185,7 +186,7 @@ def test_a_take_between_gestures_is_told_so(expected: str) -> None:
 def test_two_ways_of_comparing_that_disagree_are_told() -> None:
     examined = between(asked=True)
     votes = {**examined.result.votes, "second_opinion": "circle"}
-    trace = replace(examined.trace, result=replace(examined.result, votes=votes))
+    trace = replace(examined.trace, result=examined.result.model_copy(update={"votes": votes}))
     vars(examined)["trace"] = trace
     told = explain(examined, "square", with_counterfactuals=False)
     assert "The two ways of comparing disagree: by directions it is 'circle'." in told.details

@@ -129,7 +129,7 @@ class Diver:
     ) -> None:
         """Show a gesture: recognised, rejected (None), or between two."""
         self.time += 5.0
-        recognition = replace(a_take().recognition, novelty=np.full(1, novelty))
+        recognition = a_take().recognition.model_copy(update={"novelty": np.full(1, novelty)})
         take: TakeRecognized | TakeRejected = replace(a_rejected_take(), pair=pair)
         if label is not None:
             take = replace(a_take(), label=label, recognition=recognition)

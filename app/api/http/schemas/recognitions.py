@@ -5,11 +5,11 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import ConfigDict, Field
 
 from app.api.http.schemas.gestures import GestureChange
 from app.api.http.schemas.values import Body, Identifier, Label, Seconds
-from app.recognition.decision.result import RecognitionEntry
+from app.recognition import Recognition
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.language.file_schema import TuningEntry
 
@@ -37,8 +37,10 @@ class RecognitionRequest(Body):
     """Recognise with this change; the language is not edited."""
 
 
-class RecognitionView(RecognitionEntry):
+class RecognitionView(Recognition):
     """The full answer of a recognition, kept as a record."""
+
+    model_config = ConfigDict(extra="allow")
 
     id: str
     clip_id: str
@@ -46,10 +48,10 @@ class RecognitionView(RecognitionEntry):
     revision: int
     start: float
     end: float
-    tuning: TuningEntry | None = Field(default=None, description="Null: as the language says")
-    trial: GestureTrial | None = Field(
-        default=None, description="The change it was recognised with; null: none"
-    )
+    tuning: TuningEntry | None = None
+    """Null: as the language says."""
+    trial: GestureTrial | None = None
+    """The change it was recognised with; null: none."""
     expected: str | None
     created: datetime
 
