@@ -116,13 +116,6 @@ class Movement:
         return normalize_figure(self.paths)
 
     @cached_property
-    def under_way(self) -> FloatArray:
-        """``(N,)``: each step's distance from the first, as a share of the largest."""
-        way = (self.paths - self.paths[0]).reshape(len(self.paths), -1)
-        away = np.sqrt(np.vecdot(way, way))
-        return np.asarray(away / max(away.max(), 1e-9))
-
-    @cached_property
     def _flat_places(self) -> FloatArray:
         """``(N, 2 A)``: `places`; landmarks that were not seen are 0, as if they did not move."""
         return np.nan_to_num(self.places).reshape(len(self.places), -1)
