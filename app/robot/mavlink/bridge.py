@@ -46,6 +46,10 @@ CLOSE_SECONDS: Final = 3.5
 """Seconds that closing waits at most for the active order and the last texts, heard or not: a
 service that is stopped must let go of its vehicle."""
 
+HANG_SECONDS: Final = 1.0
+"""Seconds more after which a link hangs, which must not keep the process from ending; a loaded
+machine tells in them what was not done."""
+
 SIGNATURE_REJECTED: Final = "the vehicle rejects our signature: check the clock"
 
 SEVERITIES: Final = {
@@ -190,8 +194,7 @@ class MavlinkBridge:
         """
         self._close_by = clock.monotonic() + CLOSE_SECONDS
         self._closing.set()
-        # A link that hangs must not keep the process from ending.
-        self._thread.join(CLOSE_SECONDS + TICK_SECONDS)
+        self._thread.join(CLOSE_SECONDS + HANG_SECONDS)
 
     def _set_language(self) -> None:
         active = self._language()
