@@ -19,10 +19,11 @@ def library(server: Running) -> Iterator[Library]:
         yield library_of(server, client, "messages")
 
 
+# A message under the pointer stays, however long a loaded machine examines the page.
 SHOW = """
 import(document.scripts[0].src.replace("main.js", "core/toasts.js")).then(({ toast }) =>
   ["One", "Two"].forEach((title) => toast(title, "A sentence that says what is next.",
-    { kind: "error" })))
+    { kind: "error" }).dispatchEvent(new Event("pointerenter"))))
 """
 
 REACHED = """
