@@ -30,7 +30,7 @@ def why(poses: PoseSequence, expected: str, profile: str = "full") -> Explanatio
 
 @pytest.mark.parametrize("profile", PROFILES)
 @pytest.mark.parametrize("expected", ["circle", "line"])
-@settings(max_examples=20)
+@settings(max_examples=5)
 @given(recordings())
 def test_what_the_voters_say_adds_up_to_the_difference_of_the_scores(
     profile: str, expected: str, query: PoseSequence
