@@ -17,8 +17,8 @@ from unittest.mock import patch
 import numpy as np
 
 from app.recognition import Language, PoseError, Recognizer
-from app.recognition.decision import fused_vote, rejection, second_opinion
-from app.recognition.decision.rejection import find_answer
+from app.recognition.decision import fused_vote, outcome, second_opinion
+from app.recognition.decision.outcome import find_answer
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.decision.second_opinion import hear
 from app.recognition.voters.motion_voters import SecondOpinion
@@ -37,8 +37,8 @@ OUTCOMES: Final = ("right", "wrong", "asked", "refused")
 CONSTANTS: Final = (
     (second_opinion, "EXPONENT", (0.0, 0.1, 0.2, 0.3)),
     (second_opinion, "AGREED", (1.0, 1.1, 1.15)),
-    (rejection, "ASK_RATIO", (1.12, 1.14, 1.165, 1.18)),
-    (rejection, "FARTHER_EXPONENT", (0.0, 0.3)),
+    (outcome, "ASK_RATIO", (1.12, 1.14, 1.165, 1.18)),
+    (outcome, "FARTHER_EXPONENT", (0.0, 0.3)),
 )
 """Owner, name and tried values."""
 
@@ -80,7 +80,7 @@ class Compared:
         """
         scores, novelty = self.table.scores, self.table.novelty
         nearest, admitted = int(scores.argmin()), np.where(novelty > 1, np.inf, scores)
-        with patch.object(rejection, "ASK_RATIO", BEFORE_RATIO):
+        with patch.object(outcome, "ASK_RATIO", BEFORE_RATIO):
             found = () if novelty[nearest] > 1 else find_answer(admitted, novelty)
         return self._name(found), self.labels[nearest] == self.right
 

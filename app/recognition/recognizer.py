@@ -124,7 +124,7 @@ class Recognizer:
         wins; among equals the one with the smallest mean relative distance (a voter's distance
         over its mean distance to all gestures), among those the first in the language.
         Profile ``full``: the gesture with the smallest fused distance wins, see `fusion`, and is
-        rejected where it is beyond the limit, see `rejection`. A take that lies between two
+        rejected where it is beyond the limit, see `outcome`. A take that lies between two
         gestures is answered with the pair, see `asking`.
 
         Where keypoints are repaired, `findings` of the result list the repairs. Poses that are

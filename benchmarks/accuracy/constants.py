@@ -30,7 +30,7 @@ from app.evaluation.proportion import Share
 from app.recognition import Gesture, Language, PoseError, Recognizer
 from app.recognition.decision import distinctions
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.rejection import LIMIT_OF_ARMS, LIMIT_OF_HANDS, SCORE_FLOOR
+from app.recognition.decision.outcome import LIMIT_OF_ARMS, LIMIT_OF_HANDS, SCORE_FLOOR
 from app.recognition.features import motion, traversals
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray

@@ -55,7 +55,7 @@ from app.recognition import (
     Recognition,
     Recognizer,
 )
-from app.recognition.decision.rejection import ASK_RATIO
+from app.recognition.decision.outcome import ASK_RATIO
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 from app.recognition.health.choice import measure_confusions
 from app.recognition.health.forecast import (

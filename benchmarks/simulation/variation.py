@@ -36,7 +36,7 @@ import numpy.typing as npt
 
 from app.evaluation.proportion import Share
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.rejection import is_rejected
+from app.recognition.decision.outcome import is_rejected
 from app.recognition.gestures.demonstration import condense
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory

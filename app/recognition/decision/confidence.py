@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from app.recognition.decision.rejection import SCORE_FLOOR
+from app.recognition.decision.outcome import SCORE_FLOOR
 
 CONFIDENCE_AT_ONE = -2.2
 CONFIDENCE_PER_NOVELTY = -2.6

@@ -21,19 +21,19 @@ from app.recognition.decision.hand_references import (
     weigh_hands,
     weigh_moving_hands,
 )
-from app.recognition.decision.references import (
-    MAX_GESTURES_TRAVERSED,
-    References,
-    describe_query,
-    find_nearest,
-)
-from app.recognition.decision.rejection import (
+from app.recognition.decision.outcome import (
     MOST_REFUSED,
     NOVELTIES,
     OthersScores,
     choose_limit,
     find_answer,
     is_rejected,
+)
+from app.recognition.decision.references import (
+    MAX_GESTURES_TRAVERSED,
+    References,
+    describe_query,
+    find_nearest,
 )
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable

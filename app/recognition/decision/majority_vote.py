@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.rejection import NOVELTIES
+from app.recognition.decision.outcome import NOVELTIES
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.features.trajectory_image import SIMPLIFICATION, draw

@@ -19,7 +19,7 @@ from pydantic import (
 )
 from pydantic_core import CoreSchema, core_schema
 
-from app.recognition.decision.rejection import find_answer
+from app.recognition.decision.outcome import find_answer
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.quality import QualityFaultKind

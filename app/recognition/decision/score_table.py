@@ -43,7 +43,7 @@ class ScoreTable:
         Degrees by which the query's diver is turned from the camera, positive to the diver's own
         left; None where not known.
     novelty_by_view
-        ``(2, G)``: novelty for each gesture by each of `rejection.NOVELTIES` alone; NaN where it
+        ``(2, G)``: novelty for each gesture by each of `outcome.NOVELTIES` alone; NaN where it
         is not compared, all of profile ``paper``.
 
     """
@@ -92,7 +92,7 @@ class ScoreTable:
 
     @property
     def novelty(self) -> FloatArray:
-        """``(G,)``: the larger of both novelties, above 1: rejected (`rejection`).
+        """``(G,)``: the larger of both novelties, above 1: rejected (`outcome`).
 
         NaN for all gestures in profile ``paper``.
         """

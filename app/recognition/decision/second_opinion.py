@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from app.recognition.decision.rejection import SCORE_FLOOR, find_answer
+from app.recognition.decision.outcome import SCORE_FLOOR, find_answer
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.voters.motion_voters import SecondOpinion
 

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.decision.rejection import is_rejected
+from app.recognition.decision.outcome import is_rejected
 from app.recognition.decision.result import WRITTEN
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.errors import PoseError

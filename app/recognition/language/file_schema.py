@@ -10,7 +10,7 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import BaseModel, Field
 
-from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
+from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName

@@ -9,7 +9,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from app.recognition.decision.rejection import MOST_REFUSED, MOST_REFUSED_AT_ALL
+from app.recognition.decision.outcome import MOST_REFUSED, MOST_REFUSED_AT_ALL
 from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import SETTINGS, Gesture, make_label
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName, find_profile
@@ -76,7 +76,7 @@ class Language:
         What begins and ends a take; by default a salute.
     most_refused
         Share of right takes that may be rejected, above 0 and at most `MOST_REFUSED_AT_ALL`; used
-        where several people have shown the gestures (`decision.rejection`).
+        where several people have shown the gestures (`decision.outcome`).
 
     Raises
     ------

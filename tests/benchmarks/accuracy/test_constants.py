@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.recognition.decision.rejection import SCORE_FLOOR
+from app.recognition.decision.outcome import SCORE_FLOOR
 from benchmarks.accuracy.constants import (
     FAR_ACCEPTED,
     Decided,

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from app.api.http.schemas.gestures import GestureView
 from app.api.http.schemas.values import Author, Body, NewName, View
-from app.recognition.decision.rejection import MOST_REFUSED_AT_ALL
+from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.profile import ProfileName
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.grammar_entry import GrammarEntry

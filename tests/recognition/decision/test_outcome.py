@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 from app.recognition import Gesture, Language, LanguageError, Recognizer
 from app.recognition.decision.fused_vote import FusedVote
-from app.recognition.decision.rejection import (
+from app.recognition.decision.outcome import (
     FEWEST,
     LIMIT_OF_ARMS,
     LIMIT_OF_HANDS,

@@ -1,4 +1,4 @@
-"""Rejection: novelty detection, which decides whether a take is a gesture of the language.
+"""Outcome: whether a take is answered, asked back or rejected, by novelty detection.
 
 The fused score (`fusion`) is relative to the language: 1 is as far as two of its gestures are.
 Novelty (Pimentel et al. 2014) is the score divided by one limit for all gestures, and more for a
