@@ -122,6 +122,7 @@ def test_three_people_finish_a_language(
     client: httpx.Client,
     language: str,
     clips: Path,
+    thin_clip: Callable[[str], Path],
     picture: Callable[[Page, str], Path],
     tmp_path: Path,
 ) -> None:
@@ -171,7 +172,7 @@ def test_three_people_finish_a_language(
     begin(cy, "Cy")
     expect(cy.get_by_role("button", name="Show hands-free")).to_have_count(0)
     chosen = cy.get_by_label("Choose a clip")
-    chosen.set_input_files(clips / "ordinary-movement.mp4")
+    chosen.set_input_files(thin_clip("ordinary-movement"))
     shows(cy, "circle", "show it again")
     reason = "The salute was not seen twice. Hold it longer, before and after."
     shows(cy, "circle", reason)
@@ -185,7 +186,7 @@ def test_three_people_finish_a_language(
     assert faults(cy) == []
     for label in GESTURES:
         expect(cy.get_by_role("heading", name=label, exact=True)).to_be_visible()
-        cy.get_by_label("Record with the phone").set_input_files(clips / f"{label}-test-2.mp4")
+        cy.get_by_label("Record with the phone").set_input_files(thin_clip(f"{label}-test-2"))
     expect(cy.get_by_text("All gestures are added. Thank you!")).to_be_visible(timeout=JUDGED_MS)
 
     for label in GESTURES:
@@ -199,7 +200,7 @@ def test_three_people_finish_a_language(
     # Di shows a line where a circle is asked for, and says that it is one.
     di = phone(link)
     begin(di, "Di")
-    di.get_by_label("Choose a clip").set_input_files(clips / "line-test-2.mp4")
+    di.get_by_label("Choose a clip").set_input_files(thin_clip("line-test-2"))
     question = "This looks like 'line'. Is it 'circle'?"
     expect(di.get_by_role("alert")).to_contain_text(question, timeout=JUDGED_MS)
     assert faults(di) == []
