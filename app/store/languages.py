@@ -199,7 +199,6 @@ class LanguageStore(DatabaseStore):
                 row = _row(language_id, head + 1, draft, quota.owner)
                 session.add(row)
                 record.head = head + 1
-                session.add(record)
             return LanguageState(record, row)
         raise StoreUnavailable(
             "others are changing this language now; nothing was changed, try again"
@@ -225,7 +224,6 @@ class LanguageStore(DatabaseStore):
                     current=record.head,
                 )
             record.deleted = now()
-            session.add(record)
 
     def restore(self, language_id: str) -> LanguageState:
         """Bring a deleted language back; nothing happens to one that is not deleted.
@@ -241,8 +239,6 @@ class LanguageStore(DatabaseStore):
             if record is None:
                 raise NotFound(f"there is no language {language_id!r} to restore")
             record.deleted = None
-            session.add(record)
-            session.flush()
             return _load(session, language_id, None)
 
     def purge(self, before: datetime) -> int:
