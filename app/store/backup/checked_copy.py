@@ -24,10 +24,9 @@ from app.bags.topic_summary import TopicSummary
 from app.clip_sources import SOURCES, ReadOptions
 from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
-from app.store.clip_folder import CLIP_ID
 from app.store.database import Database
 from app.store.invitations import LONGEST_DAYS
-from app.store.models import Clip, Invitation, UtcDateTime, now
+from app.store.models import OWN_ID, Clip, Invitation, UtcDateTime, now
 
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
@@ -173,7 +172,7 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
             if not isinstance(value, str):
                 return False
             if column.type.length == 32 and (column.name == "id" or column.name.endswith("_id")):
-                return CLIP_ID.fullmatch(value) is not None
+                return OWN_ID.fullmatch(value) is not None
             return place not in _TEXTS or _TEXTS[place](value)
     return False
 
