@@ -20,7 +20,15 @@ from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import Following, record_frames
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn, VideoFrame
-from app.recognition.recording.video_limits import VideoLimits
+
+
+class Reading(Following, total=False):
+    """Keywords of all who read a clip: what finds the landmarks if it has pictures, and the rest.
+
+    See `app.recognition.recording.extraction.record`.
+    """
+
+    estimator: PoseEstimator | None
 
 
 def record_bag(
@@ -28,11 +36,9 @@ def record_bag(
     topic: str | None = None,
     *,
     video: Path | None = None,
-    estimator: PoseEstimator | None = None,
-    limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
     turn: Turn = 0,
-    **following: Unpack[Following],
+    **how: Unpack[Reading],
 ) -> Recording:
     """Find body and hands in a dive recording, as `extraction.record` does in a clip.
 
@@ -47,7 +53,7 @@ def record_bag(
     video
         Path of a copy for players (`VideoFile`): the same pictures at the same times, or the
         skeleton on black if only keypoints were recorded. None writes no copy.
-    estimator, limits, water, turn, following
+    water, turn, how
         See `app.recognition.recording.extraction.record`.
 
     Raises
@@ -65,11 +71,10 @@ def record_bag(
     with open_bag(path) as bag:
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
-            recording = keypoint_recording(bag, chosen, limits)
-            show_recording(recording, video, following.get("progress"), following.get("observer"))
+            recording = keypoint_recording(bag, chosen)
+            show_recording(recording, video, how.get("progress"), how.get("observer"))
             return recording
-        frames = BagFrames(bag, chosen, limits, turn)
-        return record_and_copy(frames, video, estimator, water, **following)
+        return record_and_copy(BagFrames(bag, chosen, turn=turn), video, water, **how)
 
 
 def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0) -> None:
@@ -95,19 +100,15 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
 
 
 def record_and_copy(
-    frames: FrameSource,
-    video: Path | None,
-    estimator: PoseEstimator | None,
-    water: WaterCorrection,
-    **following: Unpack[Following],
+    frames: FrameSource, video: Path | None, water: WaterCorrection, **how: Unpack[Reading]
 ) -> Recording:
     """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`.
 
     With a copy, nothing is kept before the end.
     """
     if video is None:
-        return record_frames(frames, estimator=estimator, water=water, **following)
-    observer = following.get("observer")
+        return record_frames(frames, water=water, **how)
+    observer = how.get("observer")
     with copying(frames, video) as copy:
 
         def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
@@ -115,8 +116,8 @@ def record_and_copy(
             if observer is not None:
                 observer(frame, found)
 
-        following |= {"observer": observe, "keep_so_far": None}
-        return record_frames(frames, estimator=estimator, water=water, **following)
+        how |= {"observer": observe, "keep_so_far": None}
+        return record_frames(frames, water=water, **how)
 
 
 @contextmanager

@@ -51,7 +51,7 @@ class Posed:
     given: frozenset[str]
 
 
-def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> Recording:
+def keypoint_recording(bag: Bag, topic: Topic) -> Recording:
     """Read a topic of keypoints, and the salute recorded beside it.
 
     Time is the headers' stamp, or the time of reception without one.
@@ -61,10 +61,10 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
     BagError
         When no message can be read, or none has a known landmark.
     VideoError
-        When the topic is longer than `limits` allow.
+        When the topic is longer than `VideoLimits` allow.
 
     """
-    limits = limits or VideoLimits()
+    limits = VideoLimits()
     limits.require_frames(topic.messages)
     reader = _READERS[topic.type]
     gathered = _Gathered()
