@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
 from typing_extensions import Unpack
 
 from app.bags.bag import open_bag
@@ -87,10 +84,14 @@ def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0
         if chosen.use == "keypoints":
             show_recording(keypoint_recording(bag, chosen), video)
             return
-        frames = BagFrames(bag, chosen, turn=turn)
-        with copying(frames, video) as copy:
-            for frame in frames:
-                copy(frame)
+        copy_frames(BagFrames(bag, chosen, turn=turn), video)
+
+
+def copy_frames(frames: FrameSource, video: Path) -> None:
+    """Write the frames of a source as a video for players, without finding landmarks in them."""
+    with VideoFile(video, frames.info.width, frames.info.height) as copy:
+        for frame in frames:
+            copy.add(frame.image, frame.time)
 
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
@@ -102,30 +103,19 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
 def record_and_copy(
     frames: FrameSource, video: Path | None, water: WaterCorrection, **how: Unpack[Reading]
 ) -> Recording:
-    """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`.
+    """Find landmarks in every frame, and copy the frames; see `record_frames` and `VideoFile`.
 
     With a copy, nothing is kept before the end.
     """
     if video is None:
         return record_frames(frames, water=water, **how)
     observer = how.get("observer")
-    with copying(frames, video) as copy:
+    with VideoFile(video, frames.info.width, frames.info.height) as copy:
 
         def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-            copy(frame)
+            copy.add(frame.image, frame.time)
             if observer is not None:
                 observer(frame, found)
 
         how |= {"observer": observe, "keep_so_far": None}
         return record_frames(frames, water=water, **how)
-
-
-@contextmanager
-def copying(frames: FrameSource, video: Path) -> Iterator[Callable[[VideoFrame], None]]:
-    """Give a function that copies a frame to a video for players.
-
-    An odd last row or column is left out, because the usual codecs store only even sizes.
-    """
-    width, height = frames.info.width // 2 * 2, frames.info.height // 2 * 2
-    with VideoFile(video, width, height) as file:
-        yield lambda frame: file.add(np.ascontiguousarray(frame.image[:height, :width]), frame.time)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from typing_extensions import Unpack
 
-from app.bags.extraction import Reading, copying, record_and_copy
+from app.bags.extraction import Reading, copy_frames, record_and_copy
 from app.clip_sources.source import (
     ClipFacts,
     ClipSource,
@@ -95,9 +95,8 @@ class VideoSource(ClipSource):
         with _one_file(path, options) as file:
             if not options.turn:
                 return path if file == path else Path(shutil.copyfile(file, copy))
-            with read_frames(file, turn=options.turn) as frames, copying(frames, copy) as add:
-                for frame in frames:
-                    add(frame)
+            with read_frames(file, turn=options.turn) as frames:
+                copy_frames(frames, copy)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
