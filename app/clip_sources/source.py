@@ -74,15 +74,6 @@ class ReadOptions(BaseModel):
     turn: Turn = 0
     chapters: tuple[int, ...] = ()
 
-    @classmethod
-    def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:
-        """Return options with these values for keypoint files, and defaults otherwise."""
-        return cls(
-            frame_rate=keypoints.frame_rate,
-            frame_size=keypoints.frame_size,
-            landmarks=dict(keypoints.landmarks),
-        )
-
     @property
     def keypoints(self) -> KeypointOptions:
         """The options of keypoint files.
