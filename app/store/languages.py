@@ -280,17 +280,9 @@ def _require_head(head: int, expected: int | None) -> None:
 
 
 def _row(language_id: str, revision: int, draft: Draft, owner: str) -> LanguageRevision:
-    return LanguageRevision(
-        language_id=language_id,
-        revision=revision,
-        name=draft.name,
-        labels=json.dumps(list(draft.labels), ensure_ascii=False),
-        change=draft.change,
-        document=draft.document,
-        author=draft.author,
-        owner=owner,
-        size=draft.size,
-    )
+    labels = json.dumps(list(draft.labels), ensure_ascii=False)
+    content = vars(draft) | {"labels": labels, "owner": owner, "size": draft.size}
+    return LanguageRevision(language_id=language_id, revision=revision, **content)
 
 
 def _load(

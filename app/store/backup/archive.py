@@ -26,7 +26,7 @@ from sqlalchemy.exc import DataError, ProgrammingError
 from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.backup.checked_copy import copy_checked
-from app.store.backup.rows import copy_rows, snapshot
+from app.store.backup.rows import copy_rows
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
 from app.store.models import UPRIGHT, VIDEO, JobStatus, SignIn
@@ -231,8 +231,11 @@ def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
 
 def _copy_rows(source: Database, target: Path) -> None:
     with closing(Database(f"sqlite:///{target}")) as copy:
+        copy.migrate()
         try:
-            snapshot(source, copy)
+            # One consistent state, also while servers use the database.
+            with source.reading() as rows, copy.writing() as written:
+                copy_rows(rows, written)
         except ProgrammingError as error:
             reason = " ".join(str(error.orig).split())
             raise OsgError(

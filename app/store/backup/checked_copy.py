@@ -39,6 +39,7 @@ _MOST: Final = 2**53 - 1
 
 _VIDEO_TYPE: Final = re.compile(r"video/[a-z0-9-]{1,40}")
 _STRINGS: Final = TypeAdapter(tuple[str, ...])
+_OPTIONS: Final = TypeAdapter(ReadOptions)
 _TOPICS: Final = TypeAdapter(tuple[TopicSummary, ...])
 _REVISION: Final = re.compile(r"\d{4}")
 _READING: Final = frozenset({sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA})
@@ -185,17 +186,12 @@ def _is_json_of(kind: type) -> Callable[[str], bool]:
     return lambda text: isinstance(json.loads(text), kind)
 
 
-def _is_options(text: str) -> bool:
-    ReadOptions.model_validate_json(text)
-    return True
-
-
 _TEXTS: Final[dict[str, Callable[[str], bool]]] = {
     "clip.source": lambda text: text in {source.name for source in SOURCES},
     # As another type, a player would show the file as a page.
     "clip.media_type": lambda text: _VIDEO_TYPE.fullmatch(text) is not None,
     "clip.topics": _is_json_as(_TOPICS),
-    "clip.options": _is_options,
+    "clip.options": _is_json_as(_OPTIONS),
     "job.warnings": _is_json_as(_STRINGS),
     "job.salute_warnings": _is_json_as(_STRINGS),
     "language_revision.labels": _is_json_as(_STRINGS),
