@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from sqlalchemy.orm import defer
-from sqlmodel import Session, col, func, select
+from sqlmodel import Session, col, delete, func, select
 
 from app.store.database import DatabaseStore
 from app.store.errors import Conflict, NotFound, StoreUnavailable
@@ -244,11 +244,8 @@ class LanguageStore(DatabaseStore):
     def purge(self, before: datetime) -> int:
         """Remove for good the languages deleted before a given time; return their number."""
         with self._database.writing() as session:
-            query = select(LanguageRecord).where(col(LanguageRecord.deleted) < before)
-            gone = session.exec(query).all()
-            for record in gone:
-                session.delete(record)
-        return len(gone)
+            over = col(LanguageRecord.deleted) < before
+            return session.exec(delete(LanguageRecord).where(over)).rowcount
 
     def purge_for(self, owner: str, excess: Usage) -> Usage:
         """Purge the languages that an owner alone wrote and deleted first; see `ClipStore`."""

@@ -276,5 +276,5 @@ def _shape(name: str) -> str:
 
 
 def digest(token: str) -> str:
-    """Return the stored digest of a token."""
+    """Return the stored digest of a token, or of the cookie of a session."""
     return hashlib.sha256(token.encode("utf-8", "surrogateescape")).hexdigest()
