@@ -8,5 +8,3 @@ from app.bags.bag_kind import bag_and_topic
 from app.bags.extraction import holds_keypoints, record_bag
 from app.bags.skeleton_video import show_recording
 from app.bags.staging import is_bag
-
-__all__ = ["bag_and_topic", "holds_keypoints", "is_bag", "record_bag", "show_recording"]

@@ -302,15 +302,12 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
                 file = open_things.enter_context(found.open("rb"))
                 bag = SessionBag(SessionReader(file), found, place.name)
             else:
-                parts = [] if (found / METADATA).is_file() else _parts_of(found)
+                is_split = found.is_dir() and not (found / METADATA).is_file()
+                parts = split_parts(found) if is_split else []
                 readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
                 reader = SplitReader(readers, place.name) if parts else readers[0]
                 bag = Bag(reader, found, place.name)
         yield bag
-
-
-def _parts_of(place: Path) -> list[Path]:
-    return split_parts(place) if place.is_dir() else []
 
 
 class SplitReader:

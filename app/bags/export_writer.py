@@ -8,7 +8,7 @@ from __future__ import annotations
 import base64
 import heapq
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,13 +22,12 @@ from app.bags.video_writer import packets
 from app.recognition.decision.result import Recognition
 from app.recognition.errors import explain_missing_package
 from app.recognition.poses.sequence import PoseSequence
+from app.recognition.recording.extraction import Progress
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Take, TakeMachine, takes_in
 from app.recognition.recording.video import read_frames
 from app.recognition.text.wording import ask_which
 from app.recognition.triggers.trigger import SALUTE, Trigger
-
-Progress = Callable[[int, int], None]
 
 CHANNELS: dict[str, export_schemas.Schema] = {
     "/video": export_schemas.VIDEO,

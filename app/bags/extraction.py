@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
-import numpy as np
 from typing_extensions import Unpack
 
 from app.bags.bag import open_bag
@@ -20,7 +17,15 @@ from app.recognition.poses.frame import FrameLandmarks
 from app.recognition.recording.extraction import Following, record_frames
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn, VideoFrame
-from app.recognition.recording.video_limits import VideoLimits
+
+
+class Reading(Following, total=False):
+    """Keywords of all who read a clip: what finds the landmarks if it has pictures, and the rest.
+
+    See `app.recognition.recording.extraction.record`.
+    """
+
+    estimator: PoseEstimator | None
 
 
 def record_bag(
@@ -28,11 +33,9 @@ def record_bag(
     topic: str | None = None,
     *,
     video: Path | None = None,
-    estimator: PoseEstimator | None = None,
-    limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
     turn: Turn = 0,
-    **following: Unpack[Following],
+    **how: Unpack[Reading],
 ) -> Recording:
     """Find body and hands in a dive recording, as `extraction.record` does in a clip.
 
@@ -47,7 +50,7 @@ def record_bag(
     video
         Path of a copy for players (`VideoFile`): the same pictures at the same times, or the
         skeleton on black if only keypoints were recorded. None writes no copy.
-    estimator, limits, water, turn, following
+    water, turn, how
         See `app.recognition.recording.extraction.record`.
 
     Raises
@@ -65,11 +68,10 @@ def record_bag(
     with open_bag(path) as bag:
         chosen = bag.topic(topic)
         if chosen.use == "keypoints":
-            recording = keypoint_recording(bag, chosen, limits)
-            show_recording(recording, video, following.get("progress"), following.get("observer"))
+            recording = keypoint_recording(bag, chosen)
+            show_recording(recording, video, how.get("progress"), how.get("observer"))
             return recording
-        frames = BagFrames(bag, chosen, limits, turn)
-        return record_and_copy(frames, video, estimator, water, **following)
+        return record_and_copy(BagFrames(bag, chosen, turn=turn), video, water, **how)
 
 
 def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0) -> None:
@@ -82,10 +84,14 @@ def write_video(path: str | Path, topic: str | None, video: Path, turn: Turn = 0
         if chosen.use == "keypoints":
             show_recording(keypoint_recording(bag, chosen), video)
             return
-        frames = BagFrames(bag, chosen, turn=turn)
-        with copying(frames, video) as copy:
-            for frame in frames:
-                copy(frame)
+        copy_frames(BagFrames(bag, chosen, turn=turn), video)
+
+
+def copy_frames(frames: FrameSource, video: Path) -> None:
+    """Write the frames of a source as a video for players, without finding landmarks in them."""
+    with VideoFile(video, frames.info.width, frames.info.height) as copy:
+        for frame in frames:
+            copy.add(frame.image, frame.time)
 
 
 def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
@@ -95,36 +101,21 @@ def holds_keypoints(path: str | Path, topic: str | None = None) -> bool:
 
 
 def record_and_copy(
-    frames: FrameSource,
-    video: Path | None,
-    estimator: PoseEstimator | None,
-    water: WaterCorrection,
-    **following: Unpack[Following],
+    frames: FrameSource, video: Path | None, water: WaterCorrection, **how: Unpack[Reading]
 ) -> Recording:
-    """Find landmarks in every frame, and copy the frames; see `record_frames` and `copying`.
+    """Find landmarks in every frame, and copy the frames; see `record_frames` and `VideoFile`.
 
     With a copy, nothing is kept before the end.
     """
     if video is None:
-        return record_frames(frames, estimator=estimator, water=water, **following)
-    observer = following.get("observer")
-    with copying(frames, video) as copy:
+        return record_frames(frames, water=water, **how)
+    observer = how.get("observer")
+    with VideoFile(video, frames.info.width, frames.info.height) as copy:
 
         def observe(frame: VideoFrame, found: FrameLandmarks) -> None:
-            copy(frame)
+            copy.add(frame.image, frame.time)
             if observer is not None:
                 observer(frame, found)
 
-        following |= {"observer": observe, "keep_so_far": None}
-        return record_frames(frames, estimator=estimator, water=water, **following)
-
-
-@contextmanager
-def copying(frames: FrameSource, video: Path) -> Iterator[Callable[[VideoFrame], None]]:
-    """Give a function that copies a frame to a video for players.
-
-    An odd last row or column is left out, because the usual codecs store only even sizes.
-    """
-    width, height = frames.info.width // 2 * 2, frames.info.height // 2 * 2
-    with VideoFile(video, width, height) as file:
-        yield lambda frame: file.add(np.ascontiguousarray(frame.image[:height, :width]), frame.time)
+        how |= {"observer": observe, "keep_so_far": None}
+        return record_frames(frames, water=water, **how)

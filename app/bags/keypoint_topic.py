@@ -10,7 +10,7 @@ import numpy as np
 
 from app.bags.bag import Bag, Message, Topic
 from app.bags.message_clock import MessageClock
-from app.bags.salute_topic import SaluteTrack, salute_track
+from app.bags.salute_topic import SaluteTrack, picture_size_of, salute_track
 from app.recognition.errors import BagError
 from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import POSE_LANDMARKS
@@ -51,7 +51,7 @@ class Posed:
     given: frozenset[str]
 
 
-def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None) -> Recording:
+def keypoint_recording(bag: Bag, topic: Topic) -> Recording:
     """Read a topic of keypoints, and the salute recorded beside it.
 
     Time is the headers' stamp, or the time of reception without one.
@@ -61,10 +61,10 @@ def keypoint_recording(bag: Bag, topic: Topic, limits: VideoLimits | None = None
     BagError
         When no message can be read, or none has a known landmark.
     VideoError
-        When the topic is longer than `limits` allow.
+        When the topic is longer than `VideoLimits` allow.
 
     """
-    limits = limits or VideoLimits()
+    limits = VideoLimits()
     limits.require_frames(topic.messages)
     reader = _READERS[topic.type]
     gathered = _Gathered()
@@ -221,8 +221,7 @@ def _convert_published(content: Any) -> Posed:
 def _ours(content: Any) -> Posed:
     """Read our own message: pixels, NaN where not seen."""
     points = [(str(p.name), float(p.x), float(p.y), float(p.confidence)) for p in content.keypoints]
-    width, height = int(content.image_width), int(content.image_height)
-    return _convert_points(points, (width, height) if width and height else None)
+    return _convert_points(points, picture_size_of(content))
 
 
 def _ros4hri(content: Any) -> Posed:

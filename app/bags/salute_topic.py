@@ -109,7 +109,7 @@ def salute_track(bag: Bag, keypoints: Topic, by_header: bool) -> SaluteTrack:
             scores.append(float(content.data))
             hands.append(())
         else:
-            size = size or _size(content)
+            size = size or picture_size_of(content)
             scores.append(float(np.clip(np.nan_to_num(content.salute), 0, 1)))
             hands.append(_hands(content))
     order = np.argsort(stamps, kind="stable")
@@ -145,7 +145,8 @@ def _choose_topic(bag: Bag, keypoints: Topic) -> Topic | None:
     )
 
 
-def _size(content: Any) -> tuple[int, int] | None:
+def picture_size_of(content: Any) -> tuple[int, int] | None:
+    """Return width and height of the picture of one of our messages, if it states them."""
     width, height = int(content.image_width), int(content.image_height)
     return (width, height) if width and height else None
 

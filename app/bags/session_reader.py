@@ -89,7 +89,8 @@ class SessionReader:
         """Yield nanoseconds and content of the messages of one of `TOPICS`, in order."""
         if topic == KEYPOINTS:
             for time, frame in self._read(KEYPOINTS):
-                yield _message(time, frame, keypoints=_points(frame["body"]))
+                points = [SimpleNamespace(**point) for point in frame["body"]]
+                yield _message(time, frame, keypoints=points)
             return
         # The score is of the language's trigger, and that of the salute where hands are missing.
         scores: dict[int, float] = {}
@@ -118,10 +119,6 @@ def _message(time: int, frame: Mapping[str, Any], **fields: Any) -> tuple[int, A
         image_height=frame["image_height"],
         **fields,
     )
-
-
-def _points(points: Sequence[Mapping[str, Any]]) -> list[SimpleNamespace]:
-    return [SimpleNamespace(**point) for point in points]
 
 
 def _hands(hands: Sequence[Mapping[str, Any]]) -> list[Hand]:

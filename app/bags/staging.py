@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
-from app.bags.bag_kind import METADATA, BagKind, bag_kind, kind_of, split_parts
+from app.bags.bag_kind import METADATA, BagKind, kind_of, split_parts
 from app.recognition.errors import BagError
 from app.system.stand_in import stand_in
 from app.system.zip_archive import (
@@ -212,7 +212,4 @@ def is_bag(path: Path) -> bool:
 
 def is_bag_archive(path: Path) -> bool:
     """Return whether the zip at `path` looks like a dive recording; only names are read."""
-    with path.open("rb") as file:
-        if bag_kind(file.read(8)) != "zip":
-            return False
-    return any(map(_belongs, names_in(path)))
+    return kind_of(path) == "zip" and any(map(_belongs, names_in(path)))

@@ -39,7 +39,7 @@ class TopicSummary:
     height: int
 
 
-def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[TopicSummary, ...]:
+def usable_topics(path: str | Path) -> tuple[TopicSummary, ...]:
     """List the usable topics of a recording, and decode the first picture of each.
 
     Returns
@@ -54,11 +54,11 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
         When every topic exceeds a limit.
 
     """
-    limits = limits or VideoLimits()
+    limits = VideoLimits()
     found: list[TopicSummary] = []
     refused: OsgError | None = None
     with open_bag(path) as bag:
-        candidates = [topic for topic in bag.usable_topics() if _choosable(topic)]
+        candidates = [topic for topic in bag.usable_topics() if len(topic.name) <= LONGEST_NAME]
         if not candidates:
             bag.topic()  # raises an error with the reason
         durations = bag.durations()
@@ -73,10 +73,6 @@ def usable_topics(path: str | Path, limits: VideoLimits | None = None) -> tuple[
     if not found:
         raise refused or BagError(f"{Path(path).name} has no topic whose name can be used")
     return tuple(found)
-
-
-def _choosable(topic: Topic) -> bool:
-    return len(topic.name) <= LONGEST_NAME
 
 
 def _summary(bag: Bag, topic: Topic, duration: float, limits: VideoLimits) -> TopicSummary:

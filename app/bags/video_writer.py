@@ -48,14 +48,16 @@ def require_encodable(width: int, height: int) -> None:
 
 
 class VideoFile:
-    """Writes frames of one even size; a context that ends without an error leaves a complete file.
+    """Writes frames of one size; a context that ends without an error leaves a complete file.
+
+    An odd last row or column is left out, because the usual codecs store only even sizes.
 
     Parameters
     ----------
     path
         Path of the file; its ending does not matter.
     width, height
-        Pixels, both even.
+        Pixels of the frames.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class VideoFile:
     """
 
     def __init__(self, path: Path, width: int, height: int) -> None:
+        width, height = width // 2 * 2, height // 2 * 2
         require_encodable(width, height)
         # The index comes first, so that a browser plays the file during its download.
         options = {"movflags": "faststart"}
@@ -77,9 +80,7 @@ class VideoFile:
 
     def add(self, image: Image, time: float) -> None:
         """Append a frame ``(height, width, 3)`` RGB at `time` seconds, later than the last one."""
-        frame = av.VideoFrame.from_ndarray(image, format="rgb24")
-        frame.pts, frame.time_base = round(time / TICK), TICK
-        self._container.mux(self._stream.encode(frame))
+        self._container.mux(self._stream.encode(_picture(image, time)))
 
     def __enter__(self) -> Self:
         return self
@@ -104,17 +105,23 @@ def packets(frames: Iterable[VideoFrame]) -> Iterator[tuple[float, bytes]]:
     codec: VideoCodecContext | None = None
     times: list[float] = []
     for frame in frames:
-        height, width = (side // 2 * 2 for side in frame.image.shape[:2])
-        codec = codec or _stream_encoder(width, height)
-        image = np.ascontiguousarray(frame.image[:height, :width])
-        picture = av.VideoFrame.from_ndarray(image, format="rgb24")
-        picture.pts, picture.time_base = round(frame.time / TICK), TICK
+        picture = _picture(frame.image, frame.time)
+        codec = codec or _stream_encoder(picture.width, picture.height)
         times.append(frame.time)
         for packet in codec.encode(picture):
             yield times.pop(0), bytes(packet)
     if codec is not None:
         for packet in codec.encode(None):
             yield times.pop(0), bytes(packet)
+
+
+def _picture(image: Image, time: float) -> av.VideoFrame:
+    """Return a picture for an encoder at `time` seconds, without an odd last row or column."""
+    height, width = (side // 2 * 2 for side in image.shape[:2])
+    even = np.ascontiguousarray(image[:height, :width])
+    picture = av.VideoFrame.from_ndarray(even, format="rgb24")
+    picture.pts, picture.time_base = round(time / TICK), TICK
+    return picture
 
 
 def _stream_encoder(width: int, height: int) -> VideoCodecContext:

@@ -11,7 +11,6 @@ import sys
 import traceback
 from collections.abc import Sequence
 from functools import cache
-from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
 import typer
@@ -19,7 +18,7 @@ from pydantic import ValidationError
 from typer.main import get_command
 
 from app import __version__
-from app.cli.administration import audit, backup, models_command, restore, tokens_command
+from app.cli.administration import DataDir, audit, backup, models_command, restore, tokens_command
 from app.cli.check import check
 from app.cli.demonstrations import define, demonstrations_command
 from app.cli.evaluate import evaluate
@@ -67,9 +66,7 @@ def serve(
     port: Annotated[
         int, typer.Option(envvar="OSG_PORT", help="Port to listen on; 0 picks a free one.")
     ] = 8000,
-    data_dir: Annotated[
-        Path | None, typer.Option(help="Folder for clips, languages and the database.")
-    ] = None,
+    data_dir: DataDir = None,
     token: Annotated[
         str | None,
         typer.Option(

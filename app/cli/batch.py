@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
@@ -55,8 +55,7 @@ def tell_left_out(folder: Path, read: Iterable[Path]) -> None:
     for reason in ("keypoints already", "no clip by its first bytes", COPY):
         names = [path.relative_to(folder).as_posix() for path in left if _why_left(path) == reason]
         if names:
-            text = f"left out, {reason}: {list_some(names, MOST_NAMED)}"
-            tell(text)
+            tell(f"left out, {reason}: {list_some(names, MOST_NAMED)}")
 
 
 def _why_left(path: Path) -> str:
@@ -253,8 +252,7 @@ class FolderBatch:
         clips = self._list_clips()
         journal = Journal(self._journal_file, self._settings())
         if journal.restarted:
-            text = f"{self._journal_file}: of another language or settings; begun anew"
-            tell(text)
+            tell(f"{self._journal_file}: of another language or settings; begun anew")
         states = {clip: describe_state(clip) for clip in clips}
         done = {clip: journal.find(self._name(clip), states[clip]) for clip in clips}
         left = {clip: measure_bytes(clip) for clip in clips if done[clip] is None}
@@ -295,9 +293,8 @@ class FolderBatch:
             "language": seal(json.loads(self.recognizer.language.to_json())),
             "profile": self.recognizer.profile,
             "salutes": self.spotter is None,
-            "reading": {
-                name: value for name, value in asdict(self.reading).items() if name != "trigger"
-            },  # the language has its own trigger
+            "reading": self.reading.options(None).model_dump(mode="json"),
+            "models": [self.reading.estimator, self.reading.hands],
         }
 
     def _name(self, clip: Path) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from contextlib import closing
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from inspect import Parameter, signature
 from pathlib import Path
@@ -68,20 +68,29 @@ TurnOption = Annotated[
     ),
 ]
 
+OutputOption = Annotated[
+    Path | None, typer.Option(help="Language file to write; by default the same file.")
+]
+
 DiverOption = Annotated[
     str, typer.Option(metavar="NAME", help="Name of the diver who shows all given clips.")
 ]
 
 
-def keypoint_options(
-    frame_rate: float | None, frame_size: str | None, landmark: list[str] | None
-) -> KeypointOptions:
-    """Parse the user's options for keypoint files.
+def read_options(
+    frame_rate: float | None,
+    frame_size: str | None,
+    landmark: list[str] | None,
+    turn: Turn,
+    water: WaterCorrection = "auto",
+) -> ReadOptions:
+    """Parse the user's options for files; the first three are for keypoint files.
 
     Raises
     ------
     KeypointFileError
-        When a size is not WIDTHxHEIGHT or a landmark not NAME=LANDMARK.
+        When a size is not WIDTHxHEIGHT or a landmark not NAME=LANDMARK, or `KeypointOptions`
+        refuses a value.
 
     """
     size = None
@@ -98,7 +107,8 @@ def keypoint_options(
                 f"{pair!r} is not NAME=LANDMARK; say what a name means, as in paw=right_wrist"
             )
         names[name] = meant
-    return KeypointOptions(frame_rate, size, names)
+    keypoints = KeypointOptions(frame_rate, size, names)
+    return ReadOptions(**vars(keypoints), turn=turn, water=water)
 
 
 @dataclass(frozen=True)
@@ -107,33 +117,26 @@ class ClipReading:
 
     Attributes
     ----------
-    water
-        Whether colour and contrast are corrected first.
+    file
+        How their files are read.
     estimator, hands
         Names of the estimators of body and hands, see `create_estimator`.
     topic
         Topic of a dive recording; None for the one that the clip names, or the only one.
-    keypoints
-        Values that keypoint files do not contain.
     trigger
         What begins and ends their takes.
-    turn
-        By how much pictures are turned first.
 
     """
 
-    water: WaterCorrection = "auto"
-    estimator: str = "onnx"
-    hands: str = MEDIAPIPE_HANDS
+    file: ReadOptions
+    estimator: str
+    hands: str
     topic: str | None = None
-    keypoints: KeypointOptions = field(default_factory=KeypointOptions)
     trigger: Trigger = SALUTE
-    turn: Turn = 0
 
     def options(self, topic: str | None) -> ReadOptions:
         """Return the options for a clip source; `topic` is the one that the clip names."""
-        given = {"topic": self.topic or topic, "water": self.water, "turn": self.turn}
-        return ReadOptions.of_keypoints(self.keypoints).model_copy(update=given)
+        return self.file.model_copy(update={"topic": self.topic or topic})
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,9 +222,7 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
     )
 
 
-def read_clip(
-    clip: Path, reading: ClipReading | None = None, language: Language | None = None
-) -> ReadClip:
+def read_clip(clip: Path, reading: ClipReading, language: Language | None = None) -> ReadClip:
     """Read a clip's landmarks, and print the facts and warnings about the recording.
 
     Parameters
@@ -230,7 +231,7 @@ def read_clip(
         A video, whose landmarks are found behind a progress bar; a dive recording as ``BAG`` or
         ``BAG@/TOPIC``; or a keypoint file or folder of another program (`app.keypoint_files`).
     reading
-        Options for reading; None takes the installed models.
+        Options for reading.
     language
         Language to recognise: a source without the landmarks that it needs is refused before any
         recognition, and before a model processes any frame.
@@ -245,16 +246,16 @@ def read_clip(
         When it is a dive recording and cannot be read, or has no such topic.
 
     """
-    how = reading or ClipReading()
     if language is not None:
-        how = replace(how, trigger=language.trigger)
+        reading = replace(reading, trigger=language.trigger)
     path, named = bag_and_topic(str(clip))
-    options = how.options(named)
+    options = reading.options(named)
     source = source_of(path, options.topic)
     if source.shows_pictures(path, options):
-        with closing(create_estimator(how.estimator, hands=how.hands)) as estimator:
+        with closing(create_estimator(reading.estimator, hands=reading.hands)) as estimator:
             if language is not None:
-                require_landmarks(language, list_landmarks(estimator), f"estimator {how.estimator}")
+                name = f"estimator {reading.estimator}"
+                require_landmarks(language, list_landmarks(estimator), name)
             with progress_bar(path.name) as advance:
                 read = source.record(path, options, estimator=estimator, progress=advance)
     else:  # recorded keypoints, of which the landmarks are only known after reading
@@ -262,9 +263,9 @@ def read_clip(
         if language is not None:
             name = f"{path}@{options.topic}" if options.topic else str(path)
             require_landmarks(language, read.landmarks, name)
-    for warning in read.recording.list_warnings(how.trigger):
+    for warning in read.recording.list_warnings(reading.trigger):
         tell(f"{clip}: {warning}")
-    return ReadClip(read.recording, read.has_hands, how.trigger)
+    return ReadClip(read.recording, read.has_hands, reading.trigger)
 
 
 WaterOption = Annotated[
@@ -324,8 +325,8 @@ def _build_reading(
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
 ) -> ClipReading:
-    keypoints = keypoint_options(frame_rate, frame_size, landmark)
-    return ClipReading(water, estimator, hands, keypoints=keypoints, turn=turn)
+    options = read_options(frame_rate, frame_size, landmark, turn, water)
+    return ClipReading(options, estimator, hands)
 
 
 reads_clips = takes_options("reading", _build_reading)

@@ -13,6 +13,7 @@ from app.bags import bag_and_topic
 from app.cli.clip_argument import (
     ClipReading,
     DiverOption,
+    OutputOption,
     TriggerOption,
     clip_and_span,
     read_clip,
@@ -32,10 +33,6 @@ demonstrations_command = typer.Typer(
 )
 
 LanguageArgument = Annotated[Path, typer.Argument(metavar="FILE", help="Language file.")]
-
-OutputOption = Annotated[
-    Path | None, typer.Option(help="Language file to write; by default the same file.")
-]
 
 
 @reads_clips
@@ -237,7 +234,7 @@ def _name_sides(hands: Sequence[HandShape]) -> str:
 
 
 def demonstration_take(
-    demonstration: Demonstration, reading: ClipReading | None = None
+    demonstration: Demonstration, reading: ClipReading
 ) -> tuple[Take, Recording]:
     """Return the only closed take of a clip, or the range given by hand, and the recording.
 
@@ -253,9 +250,8 @@ def demonstration_take(
     closed = [take for take in takes if take.closed]
     if len(closed) != 1:
         found = f"{len(closed)} closed and {len(takes) - len(closed)} unclosed takes"
-        trigger = SALUTE if reading is None else reading.trigger
         raise GestureError(
-            f"{clip} holds {found}, a demonstration needs one closed take {trigger.words}; "
+            f"{clip} holds {found}, a demonstration needs one closed take {reading.trigger.words}; "
             f"record it again, or give the range by hand: {demonstration.label}={clip}@START-END"
         )
     return closed[0], read.recording

@@ -16,10 +16,9 @@ from app.cli.clip_argument import (
     LandmarkOption,
     TriggerOption,
     TurnOption,
-    keypoint_options,
+    read_options,
 )
 from app.cli.terminal import progress_bar, tell
-from app.clip_sources import ReadOptions
 from app.evaluation.confusion import ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
 from app.evaluation.labelled_files import LAYOUTS, labelled_files
@@ -107,11 +106,10 @@ def evaluate(
     held = trigger or language
     problems: dict[str, str] = {}
     if source.is_dir():
-        keypoints = keypoint_options(frame_rate, frame_size, landmark)
         with progress_bar("clips") as advance:
             collection = collect_takes(
                 labelled_files(source, layout),
-                options=ReadOptions.of_keypoints(keypoints).model_copy(update={"turn": turn}),
+                options=read_options(frame_rate, frame_size, landmark, turn),
                 trigger=SALUTE if held is None else Language.load(held).trigger,
                 progress=advance,
             )

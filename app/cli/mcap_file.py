@@ -14,7 +14,6 @@ from app.cli.clip_argument import ClipReading
 from app.cli.terminal import progress_bar, tell
 from app.clip_sources import source_of
 from app.recognition import Language, Recognition, Recording, Take
-from app.recognition.triggers.trigger import SALUTE, Trigger
 
 
 def save_bag(
@@ -22,8 +21,9 @@ def save_bag(
     clip: Path,
     reading: ClipReading,
     recording: Recording,
-    recognitions: Sequence[NamedRecognition],
-    trigger: Trigger = SALUTE,
+    language: Language,
+    expected: str | None,
+    results: Sequence[tuple[Take, Recognition]],
 ) -> None:
     """Write a clip and its recognitions to `target`, completely or not at all.
 
@@ -33,10 +33,10 @@ def save_bag(
         The MCAP file.
     clip, reading
         Source of `recording`, as for `app.cli.clip_argument.read_clip`.
-    recording, recognitions
-        Landmarks of the clip, and its recognised takes.
-    trigger
-        What begins and ends them.
+    recording
+        Landmarks of the clip.
+    language, expected, results
+        The language by which its takes were recognised, the label meant if known, and the takes.
 
     Raises
     ------
@@ -44,6 +44,11 @@ def save_bag(
         When the package that writes MCAP is not installed.
 
     """
+    name, revision = language.name, language.revision
+    recognitions = [
+        NamedRecognition(take.stroke_start, take.end, name, revision, result, expected)
+        for take, result in results
+    ]
     path, named = bag_and_topic(str(clip))
     with tempfile.TemporaryDirectory(prefix=f".{target.name}-", dir=target.parent) as made:
         partial = Path(made, "session")
@@ -57,20 +62,8 @@ def save_bag(
                 recognitions,
                 video=video,
                 name=path.name,
-                trigger=trigger,
+                trigger=language.trigger,
                 progress=advance,
             )
         partial.replace(target)
     tell(f"{target}: {decimal(target.stat().st_size)}, opens in Foxglove")
-
-
-def name_recognitions(
-    language: Language, expected: str | None, results: Sequence[tuple[Take, Recognition]]
-) -> list[NamedRecognition]:
-    """Return the recognition of each take with the language's name and revision."""
-    return [
-        NamedRecognition(
-            take.stroke_start, take.end, language.name, language.revision, result, expected
-        )
-        for take, result in results
-    ]

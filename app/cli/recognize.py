@@ -12,13 +12,8 @@ from typing import Annotated
 import typer
 
 from app.cli.batch import FolderBatch, is_folder_of_clips
-from app.cli.clip_argument import (
-    ClipReading,
-    clip_and_span,
-    reads_clips,
-    recognize_clip,
-)
-from app.cli.mcap_file import name_recognitions, save_bag
+from app.cli.clip_argument import ClipReading, clip_and_span, reads_clips, recognize_clip
+from app.cli.mcap_file import save_bag
 from app.cli.recognition_report import build_report
 from app.cli.terminal import show_explanation, show_recognition, tell
 from app.recognition import Language, Recognition, Recognizer, Recording, Take
@@ -93,8 +88,7 @@ def recognize(
     else:
         recording, results = recognize_clip(path, span, reading, recognizer, spotter)
         if mcap is not None:
-            named = name_recognitions(loaded, expected, results)
-            save_bag(mcap, path, reading, recording, named, loaded.trigger)
+            save_bag(mcap, path, reading, recording, loaded, expected, results)
         show_results(path, recognizer, results, expected, as_json=as_json)
         if not results or not results[-1][0].closed:
             for told in tell_chapters(path.name):

@@ -105,17 +105,17 @@ def _mark_vote(result: Recognition, voter: str, label: str) -> str:
     return "*" if result.weights[voter] > 0 else "."
 
 
+def _create_bar(*, counted: bool) -> Progress:
+    """Create the display of a bar, which shows nothing where there is no terminal."""
+    counter = (MofNCompleteColumn(),) if counted else ()
+    columns = (TextColumn("{task.description}"), BarColumn(), *counter, TimeRemainingColumn())
+    return Progress(*columns, console=people, transient=True, disable=not people.is_terminal)
+
+
 @contextmanager
 def progress_bar(title: str) -> Iterator[Callable[..., None]]:
     """Show a progress bar on stderr, if that is a terminal, and return its update function."""
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(),
-    )
-    bar = Progress(*columns, console=people, transient=True, disable=not people.is_terminal)
-    outer = _batch.get()
+    bar, outer = _create_bar(counted=True), _batch.get()
     with bar if outer is None else nullcontext(outer) as shown:
         task = shown.add_task(title, total=None)
 
@@ -144,9 +144,7 @@ def batch_bar(clips: int, size: int) -> Iterator[Callable[[int, str], None]]:
         Total bytes of the clips, from which the time left is estimated.
 
     """
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeRemainingColumn())
-    bar = Progress(*columns, console=people, transient=True, disable=not people.is_terminal)
-    number = 0
+    bar, number = _create_bar(counted=False), 0
     with bar:
         task = bar.add_task(f"0 of {clips} clips", total=size)
         token = _batch.set(bar)

@@ -10,6 +10,7 @@ import typer
 
 from app.cli.clip_argument import (
     ClipReading,
+    OutputOption,
     clip_and_span,
     read_clip,
     reads_clips,
@@ -49,9 +50,7 @@ def trigger(
     none: Annotated[
         bool, typer.Option("--none", help="No trigger: gestures are found anywhere.")
     ] = False,
-    output: Annotated[
-        Path | None, typer.Option(help="Language file to write; by default the same file.")
-    ] = None,
+    output: OutputOption = None,
     *,
     reading: ClipReading,
 ) -> None:

@@ -10,15 +10,15 @@ from typing_extensions import Unpack
 
 from app.bags import holds_keypoints, is_bag, record_bag
 from app.bags.bag import open_bag
-from app.bags.bag_kind import bag_kind
-from app.bags.extraction import write_video
+from app.bags.bag_kind import bag_kind, kind_of
+from app.bags.extraction import Reading, write_video
 from app.bags.image_topic import BagFrames
 from app.bags.session_reader import is_session
 from app.bags.staging import is_bag_archive
 from app.bags.topic_summary import usable_topics
 from app.clip_sources.source import (
-    MADE_VIDEO,
     ClipFacts,
+    ClipSource,
     OpenFrames,
     ReadOptions,
     RecordedClip,
@@ -27,19 +27,16 @@ from app.clip_sources.source import (
 )
 from app.recognition.errors import BagError, OsgError, TopicError
 from app.recognition.estimation import finds_hands
-from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import Following
 
 
-class BagSource:
+class BagSource(ClipSource):
     """A rosbag2 folder, its one file, or a zip of either."""
 
     name = "bag"
     noun = "a dive recording"
     formats = "a rosbag2 (MCAP, sqlite3, zip)"
-    endings: tuple[str, ...] = (".mcap", ".db3", ".zip")
-    folder: str | None = "a dive recording (metadata.yaml)"
-    has_pictures = True
+    endings = (".mcap", ".db3", ".zip")
+    folder = "a dive recording (metadata.yaml)"
     has_topics = True
     probe_seconds = 120.0
     """Longest time to probe, which reads the whole unpacked recording: the largest allowed
@@ -58,14 +55,6 @@ class BagSource:
         """Return whether `head` is the beginning of a rosbag2; a zip may hold anything else."""
         return bag_kind(head) is not None
 
-    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
-        """Return `options` unchanged."""
-        return options
-
-    def media_type(self, head: bytes) -> str:
-        """Return the media type of the copy that is written for players."""
-        return MADE_VIDEO
-
     def is_take(self, path: Path) -> bool:
         """Return whether it is a session that this program wrote of a clip.
 
@@ -75,9 +64,7 @@ class BagSource:
 
     def probe(self, path: Path, options: ReadOptions) -> ClipFacts:
         """List the topics that a clip can be made of."""
-        with path.open("rb") as file:
-            archive = bag_kind(file.read(8)) == "zip"
-        if archive and not is_bag_archive(path):
+        if kind_of(path) == "zip" and not is_bag_archive(path):
             raise UnsupportedFile("the archive holds no dive recording (no .mcap and no .db3 file)")
         topics = usable_topics(path)
         first = topics[0]
@@ -88,24 +75,11 @@ class BagSource:
         return not holds_keypoints(path, options.topic)
 
     def record(
-        self,
-        path: Path,
-        options: ReadOptions,
-        *,
-        video: Path | None = None,
-        estimator: PoseEstimator | None = None,
-        **following: Unpack[Following],
+        self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Find body and hands in the pictures of a topic, or read its keypoints."""
-        found = record_bag(
-            path,
-            options.topic,
-            video=video,
-            estimator=estimator,
-            water=options.water,
-            turn=options.turn,
-            **following,
-        )
+        water, turn, estimator = options.water, options.turn, how.get("estimator")
+        found = record_bag(path, options.topic, video=video, water=water, turn=turn, **how)
         poses = found.poses
         seen = tuple(poses.landmarks[row] for row in np.flatnonzero(poses.seen.any(axis=0)))
         return RecordedClip(found, estimator is None or finds_hands(estimator), seen)

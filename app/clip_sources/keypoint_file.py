@@ -9,10 +9,11 @@ from typing import get_args
 from typing_extensions import Unpack
 
 from app.bags import show_recording
+from app.bags.extraction import Reading
 from app.bags.video_writer import require_encodable
 from app.clip_sources.source import (
-    MADE_VIDEO,
     ClipFacts,
+    ClipSource,
     OpenFrames,
     ReadOptions,
     RecordedClip,
@@ -34,8 +35,6 @@ from app.recognition.errors import (
     KeypointFileError,
     OsgError,
 )
-from app.recognition.estimation.estimator import PoseEstimator
-from app.recognition.recording.extraction import Following
 from app.recognition.recording.video_limits import VideoLimits
 
 DRAWN = "there is no picture in this file: the skeleton is drawn"
@@ -53,16 +52,15 @@ FRAME_SIZE_NEEDED = (
 )
 
 
-class KeypointFileSource:
+class KeypointFileSource(ClipSource):
     """Keypoint file written by OpenPose, MediaPipe, DeepLabCut or SLEAP."""
 
     name = "keypoints"
     noun = "a keypoint file"
     formats = "keypoints (CSV, JSON, SLEAP, .pose, or OpenPose's folder as zip)"
-    endings: tuple[str, ...] = get_args(Ending)
-    folder: str | None = "frames of OpenPose (*_keypoints.json)"
+    endings = get_args(Ending)
+    folder = "frames of OpenPose (*_keypoints.json)"
     has_pictures = False
-    has_topics = False
     probe_seconds = 120.0
     """Longest time to probe, which must read the whole file to know its content."""
     broken_off = Refusal(
@@ -82,10 +80,6 @@ class KeypointFileSource:
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
         """Return `options` with the ending by which the file is read."""
         return options.model_copy(update={"ending": keypoint_ending(head, name)})
-
-    def media_type(self, head: bytes) -> str:
-        """Return the media type of the drawn video."""
-        return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
         """Return whether it is a keypoint file; OpenPose's folder, or its archive, is one take."""
@@ -109,18 +103,12 @@ class KeypointFileSource:
         return False
 
     def record(
-        self,
-        path: Path,
-        options: ReadOptions,
-        *,
-        video: Path | None = None,
-        estimator: PoseEstimator | None = None,
-        **following: Unpack[Following],
+        self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Read the keypoints, and draw the skeleton if there is a video or an observer."""
         read = _read(path, options)
         recording = read.recording
-        show_recording(recording, video, following.get("progress"), following.get("observer"))
+        show_recording(recording, video, how.get("progress"), how.get("observer"))
         if video is not None:
             recording = replace(
                 recording,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 from app.clip_sources.bag import BagSource
@@ -11,6 +10,7 @@ from app.clip_sources.source import ClipSource
 from app.clip_sources.video import ChaptersSource, VideoSource
 from app.recognition.errors import VideoError
 from app.recognition.recording.file_kinds import COPIES, FileKind
+from app.recognition.text.wording import join_words
 
 VIDEO, CHAPTERS = VideoSource(), ChaptersSource()
 
@@ -45,9 +45,10 @@ def source_of(path: Path, topic: str | None = None) -> ClipSource:
         if source.accepts(path, topic):
             return source
     if path.is_dir():
-        folders = [source.folder for source in SOURCES if source.folder is not None]
+        marks = [source.folder for source in SOURCES if source.folder is not None]
         raise VideoError(
-            f"{path} holds neither {_join(folders, 'nor')}; give the folder that holds one of them"
+            f"{path} holds neither {join_words(marks, 'nor')}; give the folder that holds one of "
+            "them"
         )
     return VIDEO
 
@@ -77,14 +78,10 @@ def supported_kinds(kind: FileKind | None = None) -> str:
         What the file is; None: unknown.
 
     """
-    nouns = _join(list(dict.fromkeys(source.noun for source in SOURCES)), "nor")
-    formats = _join(list(dict.fromkeys(source.formats for source in SOURCES)), "or")
+    nouns = join_words(list(dict.fromkeys(source.noun for source in SOURCES)), "nor")
+    formats = join_words(list(dict.fromkeys(source.formats for source in SOURCES)), "or")
     if kind is not None:
         return (
             f"{kind.name}, which holds no clip that is read here; {kind.remedy}, or send {formats}"
         )
     return f"neither {nouns} this app knows, whatever its name says; send {formats}"
-
-
-def _join(words: Sequence[str], last: str) -> str:
-    return f" {last} ".join(filter(None, (", ".join(words[:-1]), words[-1])))

@@ -10,12 +10,11 @@ from typing import Final, Protocol
 from pydantic import BaseModel, ConfigDict, Field
 from typing_extensions import Unpack
 
+from app.bags.extraction import Reading
 from app.bags.topic_summary import TopicSummary
 from app.keypoint_files import Ending, KeypointOptions
 from app.recognition.errors import OsgError
-from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.estimation.water import WaterCorrection
-from app.recognition.recording.extraction import Following
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.video import FrameSource, Turn
 
@@ -74,15 +73,6 @@ class ReadOptions(BaseModel):
     water: WaterCorrection = "auto"
     turn: Turn = 0
     chapters: tuple[int, ...] = ()
-
-    @classmethod
-    def of_keypoints(cls, keypoints: KeypointOptions) -> ReadOptions:
-        """Return options with these values for keypoint files, and defaults otherwise."""
-        return cls(
-            frame_rate=keypoints.frame_rate,
-            frame_size=keypoints.frame_size,
-            landmarks=dict(keypoints.landmarks),
-        )
 
     @property
     def keypoints(self) -> KeypointOptions:
@@ -172,11 +162,11 @@ class ClipSource(Protocol):
     endings
         Endings of the names of these files, in lower case.
     folder
-        Mark of a folder of this kind, for messages; None if it is always a file.
+        Mark of a folder of this kind, for messages; None, the default, if it is always a file.
     has_pictures
-        Whether a file of this kind may hold pictures of the diver.
+        Whether a file of this kind may hold pictures of the diver, as most do.
     has_topics
-        Whether a clip is made of one of several topics.
+        Whether a clip is made of one of several topics; False by default.
     probe_seconds
         Longest time for `probe`.
     broken_off
@@ -188,9 +178,9 @@ class ClipSource(Protocol):
     noun: str
     formats: str
     endings: tuple[str, ...]
-    folder: str | None
-    has_pictures: bool
-    has_topics: bool
+    folder: str | None = None
+    has_pictures: bool = True
+    has_topics: bool = False
     probe_seconds: float
     broken_off: Refusal
 
@@ -201,10 +191,15 @@ class ClipSource(Protocol):
         """Return whether a received file that begins with `head` may be of this kind."""
 
     def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
-        """Return `options` with what the first bytes and the name of a received file add."""
+        """Return `options` with what the first bytes and the name of a received file add.
+
+        By default they add nothing.
+        """
+        return options
 
     def media_type(self, head: bytes) -> str:
-        """Return the media type of the video that players show."""
+        """Return the media type of the video that players show; by default, of one made of it."""
+        return MADE_VIDEO
 
     def is_take(self, path: Path) -> bool:
         """Return whether `path`, in a folder of labelled takes, is a take, by its name."""
@@ -225,13 +220,7 @@ class ClipSource(Protocol):
         """Return whether landmarks are found in pictures; else the file holds keypoints."""
 
     def record(
-        self,
-        path: Path,
-        options: ReadOptions,
-        *,
-        video: Path | None = None,
-        estimator: PoseEstimator | None = None,
-        **following: Unpack[Following],
+        self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Read the landmarks of every frame.
 
@@ -242,9 +231,9 @@ class ClipSource(Protocol):
         video
             Path of the video that players show, unless the file itself is that video; None writes
             none.
-        estimator, progress, observer, keep_so_far
-            See `app.recognition.recording.extraction.record`; only videos that are shown as they
-            are keep anything before the end.
+        how
+            The keywords of `Reading`, see `app.recognition.recording.extraction.record`; only
+            videos that are shown as they are keep anything before the end.
 
         Raises
         ------

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from typing_extensions import Unpack
 
-from app.bags.extraction import copying, record_and_copy
+from app.bags.extraction import Reading, copy_frames, record_and_copy
 from app.clip_sources.source import (
     ClipFacts,
+    ClipSource,
     OpenFrames,
     ReadOptions,
     RecordedClip,
@@ -21,23 +22,18 @@ from app.clip_sources.source import (
 )
 from app.recognition.errors import OsgError, VideoError
 from app.recognition.estimation import finds_hands
-from app.recognition.estimation.estimator import PoseEstimator
 from app.recognition.recording.chapters import chapters_in, join_chapters
-from app.recognition.recording.extraction import Following
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
 from app.recognition.recording.video import FrameReader, Span, probe, read_frames
 
 
-class VideoSource:
+class VideoSource(ClipSource):
     """A video file, which players show as it is."""
 
     name = "video"
     noun = "a video"
     formats = "MP4, MOV, WebM, MKV, AVI, MPEG-TS, MPG"
     endings: tuple[str, ...] = (".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpg", ".webm")
-    folder: str | None = None
-    has_pictures = True
-    has_topics = False
     probe_seconds = 30.0
     """Longest time to probe, which decodes one frame and takes milliseconds."""
     broken_off = Refusal(
@@ -56,10 +52,6 @@ class VideoSource:
     def accepts_upload(self, head: bytes, name: str) -> bool:
         """Return whether `head` is the beginning of a video."""
         return video_type(head) is not None
-
-    def upload_options(self, head: bytes, name: str, options: ReadOptions) -> ReadOptions:
-        """Return `options` unchanged."""
-        return options
 
     def media_type(self, head: bytes) -> str:
         """Return the media type of a video that begins with `head`."""
@@ -82,20 +74,15 @@ class VideoSource:
         return True
 
     def record(
-        self,
-        path: Path,
-        options: ReadOptions,
-        *,
-        video: Path | None = None,
-        estimator: PoseEstimator | None = None,
-        **following: Unpack[Following],
+        self, path: Path, options: ReadOptions, *, video: Path | None = None, **how: Unpack[Reading]
     ) -> RecordedClip:
         """Find body and hands in every frame."""
         with _one_file(path, options) as file, read_frames(file, turn=options.turn) as frames:
             if video is not None and not options.turn:
                 shutil.copyfile(file, video)
                 video = None
-            found = record_and_copy(frames, video, estimator, options.water, **following)
+            found = record_and_copy(frames, video, options.water, **how)
+        estimator = how.get("estimator")
         has_hands = estimator is None or finds_hands(estimator)
         return RecordedClip(found, has_hands, found.poses.landmarks)
 
@@ -108,9 +95,8 @@ class VideoSource:
         with _one_file(path, options) as file:
             if not options.turn:
                 return path if file == path else Path(shutil.copyfile(file, copy))
-            with read_frames(file, turn=options.turn) as frames, copying(frames, copy) as add:
-                for frame in frames:
-                    add(frame)
+            with read_frames(file, turn=options.turn) as frames:
+                copy_frames(frames, copy)
         return copy
 
     def open_frames(self, path: Path, options: ReadOptions) -> OpenFrames:
@@ -123,7 +109,7 @@ class ChaptersSource(VideoSource):
     """A folder of one recording's chapters, or a file of `ReadOptions.chapters`; read as one."""
 
     name = "chapters"
-    endings: tuple[str, ...] = ()
+    endings = ()
     probe_seconds = 120.0
     """Longest time to probe, which joins them: the largest file allowed at 20 MB/s."""
 

@@ -20,7 +20,7 @@ STEPS = 50
 
 
 @lru_cache(1024)
-def bound_error_rate(errors: int, takes: int, confidence: float = CONFIDENCE) -> float:
+def bound_error_rate(errors: int, takes: int) -> float:
     """Return the upper confidence bound of an error rate (Clopper and Pearson 1934).
 
     Without takes it is 1; without errors it is about 3 / `takes`, the rule of three.
@@ -30,7 +30,7 @@ def bound_error_rate(errors: int, takes: int, confidence: float = CONFIDENCE) ->
     low, high = 0.0, 1.0
     for _ in range(STEPS):
         middle = (low + high) / 2
-        if _at_most(errors, takes, middle) > 1 - confidence:
+        if _at_most(errors, takes, middle) > 1 - CONFIDENCE:
             low = middle
         else:
             high = middle
@@ -38,14 +38,14 @@ def bound_error_rate(errors: int, takes: int, confidence: float = CONFIDENCE) ->
 
 
 @lru_cache(1024)
-def count_takes_needed(errors: int, limit: float = LIMIT, confidence: float = CONFIDENCE) -> int:
-    """Return the least number of takes that, with these errors, show a rate below `limit`.
+def count_takes_needed(errors: int) -> int:
+    """Return the least number of takes that, with these errors, show a rate below `LIMIT`.
 
     At most `MOST_TAKES`.
     """
 
     def suffice(takes: int) -> bool:
-        return bound_error_rate(errors, takes, confidence) < limit
+        return bound_error_rate(errors, takes) < LIMIT
 
     return bisect_left(range(MOST_TAKES), True, lo=errors, key=suffice)
 

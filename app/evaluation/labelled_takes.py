@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from app.clip_sources import ReadOptions, source_of
@@ -67,15 +66,16 @@ class ClipRecorder:
         kept = kept_recording(path, self._folder, self._options.turn)
         if kept.is_file():
             return Recording.load(kept)
-        progress = None
-        if self._progress is not None:
-            progress = partial(self._advance, path.name, self._progress)
-        recording = source.record(
-            path, self._options, estimator=self._open_estimator(), progress=progress
-        ).recording
+
+        def advance(done: int, total: int) -> None:
+            if self._progress is not None:
+                self._progress(done, total, path.name)
+
+        estimator = self._open_estimator()
+        read = source.record(path, self._options, estimator=estimator, progress=advance)
         self._folder.mkdir(parents=True, exist_ok=True)
-        recording.save(kept)
-        return recording
+        read.recording.save(kept)
+        return read.recording
 
     def record_frames(self, frames: FrameSource) -> Recording:
         """Return the recording of frames that are no file; it is not kept.
@@ -97,10 +97,6 @@ class ClipRecorder:
         if self._estimator is None:
             self._estimator = create_estimator()
         return self._estimator
-
-    @staticmethod
-    def _advance(name: str, progress: Progress, done: int, total: int) -> None:
-        progress(done, total, name)
 
 
 @dataclass(frozen=True, eq=False)

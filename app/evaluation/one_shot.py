@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.evaluation.confusion import Answer, ConfusionMatrix
-from app.evaluation.protocols import recognize_answer
+from app.evaluation.protocols import Progress, recognize_answer
 from app.recognition import (
     Gesture,
     GestureError,
@@ -15,9 +15,6 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
-
-Progress = Callable[[int, int], None]
-"""``progress(done, total)``, after every language or take."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,7 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.simulation.variation import Person, draw_variants, take_turns
 
 Progress = Callable[[int, int], None]
-"""``progress(done, total)``, after every query."""
+"""``progress(done, total)``, after every query, or every language of one take."""
 
 
 def recognize_variants(

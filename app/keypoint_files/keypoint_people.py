@@ -219,7 +219,7 @@ def table_of_people(
     Parameters
     ----------
     everybody
-        People of each frame; somebody in one of them at least.
+        People of each frame.
     times
         Times of the frames.
     path, options, called, names
@@ -230,9 +230,12 @@ def table_of_people(
     Raises
     ------
     KeypointFileError
-        When people have different numbers of keypoints, or `name_points` or `table_of` refuse.
+        When nobody is seen, people have different numbers of keypoints, or `name_points` or
+        `table_of` refuse.
 
     """
+    if not any(everybody):
+        raise KeypointFileError(f"{path}: nobody is seen in any of {len(everybody)} frames")
     sizes = sorted({len(one.points) for persons in everybody for one in persons})
     if len(sizes) > 1:
         raise KeypointFileError(

@@ -36,8 +36,6 @@ def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> 
     limits.require_frames(len(files))
     frames = np.array([number for number, _ in files], dtype=np.float64)
     everybody = [_people(file) for _, file in files]
-    if not any(everybody):
-        raise KeypointFileError(f"{path}: nobody is seen in any of {len(files)} frames")
     return table_of_people(everybody, Times(frames, counted=True), path, options)
 
 

@@ -65,8 +65,6 @@ def _table(labels: Any, path: Path, options: KeypointOptions, limits: VideoLimit
         [Person(_points(each)) for each in frame.instances if not tracks or each.track is track]
         for frame in labelled
     ]
-    if not any(everybody):
-        raise KeypointFileError(f"{path}: nobody is seen in any of {len(labelled)} frames")
     times = Times(frames, counted=True)
     facts = Facts(frame_size=_size(labels), notes=())
     if tracks:

@@ -98,7 +98,6 @@ class AuditStore(DatabaseStore):
                     )
                     if session.exec(known).first() is None:
                         session.add(entry)
-                        session.flush()
             self._journal.unlink(missing_ok=True)
             sync_directory(self._journal.parent)
 

@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import logging
-import re
 import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from threading import Lock
-from typing import Final
 from weakref import WeakValueDictionary
 
 from app.store.atomic_files import PARTIAL_SUFFIX, publish
 from app.store.errors import NotFound, StoreUnavailable
-from app.store.models import new_id
+from app.store.models import OWN_ID, new_id
 from app.store.objects import ObjectStore
 from app.store.objects.clip_copies import ClipCopies
-
-CLIP_ID: Final = re.compile(r"[0-9a-f]{32}")
-"""An id that `app.store.models.new_id` has made; only such an id becomes a path."""
 
 logger = logging.getLogger(__name__)
 
@@ -57,7 +52,7 @@ class ClipFolder:
             When the id is none of ours, and might lead out of the folder.
 
         """
-        if not CLIP_ID.fullmatch(clip_id):
+        if not OWN_ID.fullmatch(clip_id):
             raise NotFound(f"there is no clip {clip_id[:80]!r}")
         return self.path / clip_id
 
@@ -96,7 +91,7 @@ class ClipFolder:
 
     def note(self, clip_id: str) -> None:
         """Record that a clip's files are to be removed, in case the removal is interrupted."""
-        if CLIP_ID.fullmatch(clip_id):
+        if OWN_ID.fullmatch(clip_id):
             self.home(clip_id).mkdir(exist_ok=True)
 
     def remove(self, clip_ids: Iterable[str]) -> int:
@@ -110,7 +105,7 @@ class ClipFolder:
         removed = 0
         try:
             for clip_id in clip_ids:
-                if CLIP_ID.fullmatch(clip_id):
+                if OWN_ID.fullmatch(clip_id):
                     self._objects.remove(clip_id)
                 elif (self.path / clip_id).parent != self.path or clip_id in ("", "..", "."):
                     logger.error("nothing is removed for %r, which is no clip", clip_id[:80])

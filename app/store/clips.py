@@ -273,7 +273,6 @@ class ClipStore(DatabaseStore):
         with self._database.writing() as session:
             clip = _load(session, clip_id)
             clip.deleted = now()
-            session.add(clip)
 
     def restore(self, clip_id: str) -> None:
         """Bring a deleted clip back; nothing happens to one that is not deleted.
@@ -288,7 +287,6 @@ class ClipStore(DatabaseStore):
             if (clip := session.get(Clip, clip_id)) is None:
                 raise NotFound(f"there is no clip {clip_id!r} to restore")
             clip.deleted = None
-            session.add(clip)
 
     def choose_topic(self, clip_id: str, topic: str) -> None:
         """Store the topic that a clip is made of, with its frame count, frame size and duration.
@@ -308,7 +306,6 @@ class ClipStore(DatabaseStore):
             clip.topic, clip.frames = topic, chosen["messages"]
             clip.width, clip.height = chosen["width"], chosen["height"]
             clip.duration = chosen["duration"]
-            session.add(clip)
 
     def turn(self, clip_id: str, degrees: int) -> None:
         """Store that a clip's pictures are turned clockwise by so much more than before.
@@ -326,7 +323,6 @@ class ClipStore(DatabaseStore):
             clip.options = json.dumps({name: each for name, each in options.items() if each})
             if degrees % 180:
                 clip.width, clip.height = clip.height, clip.width
-            session.add(clip)
         self.forget_pictures(clip_id)
 
     def forget_pictures(self, clip_id: str) -> None:

@@ -6,15 +6,14 @@ the jobs that it ran before.
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import Final, Self
 
 from filelock import FileLock, Timeout
 
-from app.store.atomic_files import PARTIAL_SUFFIX, publish
+from app.recognition.text.atomic_files import write_atomically
 from app.store.errors import StoreUnavailable
-from app.store.models import new_id
+from app.store.models import OWN_ID, new_id
 
 FILE: Final = "server"
 """Name of the file with the server's id, which one server at a time uses."""
@@ -69,9 +68,8 @@ class FolderLock:
 def identity_of(folder: Path) -> str:
     """Return the id of a data folder's server, created at its first start."""
     path = folder / FILE
-    if path.is_file() and re.fullmatch("[0-9a-f]{32}", known := path.read_text("ascii", "replace")):
+    if path.is_file() and OWN_ID.fullmatch(known := path.read_text("ascii", "replace")):
         return known
-    made, partial = new_id(), path.with_suffix(PARTIAL_SUFFIX)
-    partial.write_text(made, "ascii")
-    publish(partial, path)
+    made = new_id()
+    write_atomically(path, made.encode())
     return made

@@ -141,6 +141,7 @@ class Database:
     def writing(self, *, counted: bool = True) -> Iterator[Session]:
         """Open a session that holds the write lock from the start and commits at the end.
 
+        What is changed of rows that it loads is stored as well; only new rows are added to it.
         With the lock taken first, a second writer waits; with the lock taken after reading, SQLite
         would refuse the second writer at once. `counted` is False for changes that no list shows.
         """

@@ -9,7 +9,7 @@ from datetime import timedelta
 from typing import Final
 
 from sqlalchemy import ColumnElement, and_, func, not_, or_, update
-from sqlmodel import Session, col, select
+from sqlmodel import col, select
 
 from app.store.database import DatabaseStore
 from app.store.errors import InvitationClosed, NotFound, TooManyInvitations
@@ -136,7 +136,6 @@ class InvitationStore(DatabaseStore):
             if found is None or found.language_id != language_id:
                 raise NotFound(f"there is no invitation {invitation_id!r} to this language")
             found.withdrawn = found.withdrawn or now()
-            session.add(found)
 
     def receive(self, invitation_id: str, *, label: str, diver: str, size: int) -> InvitedTake:
         """Count a take and keep it as waiting, for a clip of its `clip_id`.
@@ -153,7 +152,7 @@ class InvitationStore(DatabaseStore):
             take = InvitedTake(
                 invitation_id=invitation_id, clip_id=new_id(), label=label, diver=diver, size=size
             )
-            _count(session, invitation, 1, size)
+            _count(invitation, 1, size)
             session.add(take)
         return take
 
@@ -162,7 +161,7 @@ class InvitationStore(DatabaseStore):
         with self._database.writing() as session:
             if (kept := session.get(InvitedTake, take.id)) is not None:
                 session.delete(kept)
-                _count(session, session.get_one(Invitation, take.invitation_id), -1, -take.size)
+                _count(session.get_one(Invitation, take.invitation_id), -1, -take.size)
 
     def take(self, invitation_id: str, take_id: str) -> InvitedTake:
         """Return a take of an invitation.
@@ -200,7 +199,6 @@ class InvitationStore(DatabaseStore):
         with self._database.writing() as session:
             if (take := session.get(InvitedTake, take_id)) is not None:
                 take.status, take.reason = status, reason
-                session.add(take)
 
     def ask(self, take_id: str, read_as: str | None, question: str) -> None:
         """Keep that the person who shows is asked about a take, in which `read_as` was read."""
@@ -208,7 +206,6 @@ class InvitationStore(DatabaseStore):
             if (take := session.get(InvitedTake, take_id)) is not None:
                 take.status, take.reason, take.read_as = "asked", question, read_as
                 take.asked = now()
-                session.add(take)
 
 
 def require_open(invitation: Invitation, size: int) -> None:
@@ -244,7 +241,6 @@ def _unclaimed() -> ColumnElement[bool]:
     return or_(col(InvitedTake.claimed).is_(None), col(InvitedTake.claimed) < now() - CLAIM)
 
 
-def _count(session: Session, invitation: Invitation, takes: int, size: int) -> None:
+def _count(invitation: Invitation, takes: int, size: int) -> None:
     invitation.takes += takes
     invitation.bytes += size
-    session.add(invitation)

@@ -110,7 +110,6 @@ class JobStore(DatabaseStore):
             kept = session.exec(query).all()
             for job in kept:
                 job.lease = until
-                session.add(job)
             return {job.id for job in kept}
 
     def start(self, job_id: str) -> Job | None:
@@ -122,7 +121,6 @@ class JobStore(DatabaseStore):
             job.status, job.started = JobStatus.RUNNING.value, now()
             job.server, job.lease = self._server, moment_of(session) + LEASE
             job.attempts += 1
-            session.add(job)
             return job
 
     def is_running(self, job_id: str) -> bool:
@@ -137,7 +135,6 @@ class JobStore(DatabaseStore):
             if job is not None and self._has(job):
                 job.status = JobStatus.QUEUED.value
                 job.attempts -= 1
-                session.add(job)
 
     def complete(
         self,
@@ -169,12 +166,10 @@ class JobStore(DatabaseStore):
             job.status, job.finished, job.frames = JobStatus.DONE.value, now(), frames
             job.warnings = json.dumps(list(warnings), ensure_ascii=False)
             job.salute_warnings = json.dumps(list(salute_warnings), ensure_ascii=False)
-            session.add(job)
             if clip := session.get(Clip, job.clip_id):
                 clip.frames = frames
                 if seconds is not None and _contradicts(clip.duration, seconds):
                     clip.duration = seconds
-                session.add(clip)
             return True
 
     def retry(self, clip_id: str, client: str, *, anew: bool = False) -> Job | None:
@@ -216,7 +211,6 @@ class JobStore(DatabaseStore):
                 return False
             job.status, job.finished = status.value, now()
             job.error_code, job.error = code, error
-            session.add(job)
             return True
 
     def _has(self, job: Job | None) -> bool:
@@ -235,12 +229,11 @@ def _overdue(session: Session) -> ColumnElement[bool]:
 def _requeue(session: Session, which: ColumnElement[bool]) -> list[Job]:
     """Queue those of the running jobs again; return all that wait then, oldest first."""
     for job in session.exec(select(Job).where(_RUNNING, which)):
-        _queue_again(session, job)
-    session.flush()
+        _queue_again(job)
     return _waiting(session)
 
 
-def _queue_again(session: Session, job: Job) -> None:
+def _queue_again(job: Job) -> None:
     if job.attempts >= MAX_ATTEMPTS:
         job.status, job.finished = JobStatus.FAILED.value, now()
         job.error_code = "interrupted"
@@ -250,7 +243,6 @@ def _queue_again(session: Session, job: Job) -> None:
         )
     else:
         job.status = JobStatus.QUEUED.value
-    session.add(job)
 
 
 def _waiting(session: Session) -> list[Job]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from sqlalchemy.orm import defer
-from sqlmodel import Session, col, func, select
+from sqlmodel import Session, col, delete, func, select
 
 from app.store.database import DatabaseStore
 from app.store.errors import Conflict, NotFound, StoreUnavailable
@@ -199,7 +199,6 @@ class LanguageStore(DatabaseStore):
                 row = _row(language_id, head + 1, draft, quota.owner)
                 session.add(row)
                 record.head = head + 1
-                session.add(record)
             return LanguageState(record, row)
         raise StoreUnavailable(
             "others are changing this language now; nothing was changed, try again"
@@ -225,7 +224,6 @@ class LanguageStore(DatabaseStore):
                     current=record.head,
                 )
             record.deleted = now()
-            session.add(record)
 
     def restore(self, language_id: str) -> LanguageState:
         """Bring a deleted language back; nothing happens to one that is not deleted.
@@ -241,18 +239,13 @@ class LanguageStore(DatabaseStore):
             if record is None:
                 raise NotFound(f"there is no language {language_id!r} to restore")
             record.deleted = None
-            session.add(record)
-            session.flush()
             return _load(session, language_id, None)
 
     def purge(self, before: datetime) -> int:
         """Remove for good the languages deleted before a given time; return their number."""
         with self._database.writing() as session:
-            query = select(LanguageRecord).where(col(LanguageRecord.deleted) < before)
-            gone = session.exec(query).all()
-            for record in gone:
-                session.delete(record)
-        return len(gone)
+            over = col(LanguageRecord.deleted) < before
+            return session.exec(delete(LanguageRecord).where(over)).rowcount
 
     def purge_for(self, owner: str, excess: Usage) -> Usage:
         """Purge the languages that an owner alone wrote and deleted first; see `ClipStore`."""
@@ -284,17 +277,9 @@ def _require_head(head: int, expected: int | None) -> None:
 
 
 def _row(language_id: str, revision: int, draft: Draft, owner: str) -> LanguageRevision:
-    return LanguageRevision(
-        language_id=language_id,
-        revision=revision,
-        name=draft.name,
-        labels=json.dumps(list(draft.labels), ensure_ascii=False),
-        change=draft.change,
-        document=draft.document,
-        author=draft.author,
-        owner=owner,
-        size=draft.size,
-    )
+    labels = json.dumps(list(draft.labels), ensure_ascii=False)
+    content = vars(draft) | {"labels": labels, "owner": owner, "size": draft.size}
+    return LanguageRevision(language_id=language_id, revision=revision, **content)
 
 
 def _load(

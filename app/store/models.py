@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from datetime import UTC, datetime, timedelta
 from enum import StrEnum
 from typing import Final, Literal
@@ -25,6 +26,10 @@ VIDEO = "video"
 
 UPRIGHT = {90: "turned.right", 180: "turned.over", 270: "turned.left"}
 """Names of the files of videos whose pictures are turned clockwise by so many degrees."""
+
+
+OWN_ID: Final = re.compile(r"[0-9a-f]{32}")
+"""An id that `new_id` has made; only such an id becomes a path."""
 
 
 def now() -> datetime:
@@ -71,7 +76,16 @@ class JobStatus(StrEnum):
         return self in (JobStatus.DONE, JobStatus.FAILED, JobStatus.CANCELLED)
 
 
-class Clip(SQLModel, table=True):
+class _OwnedRow(SQLModel):
+    """Base of the rows that take of somebody's quota."""
+
+    owner: str = Field(
+        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
+    )
+    """Name of the token that made it, to which quotas apply."""
+
+
+class Clip(_OwnedRow, table=True):
     """One video, topic of a dive recording, or keypoint file that a user added.
 
     Its file and the results of its job are in the folder `id` of the clip folder.
@@ -100,10 +114,6 @@ class Clip(SQLModel, table=True):
     """Kind of the received file: the name of its `app.clip_sources.ClipSource`."""
     options: str | None = Field(default=None, sa_column=Column(Text, nullable=True))
     """How the file is read, as a JSON object (`app.clip_sources.ReadOptions`)."""
-    owner: str = Field(
-        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
-    )
-    """Name of the token that added it, to which quotas apply."""
     idempotency_key: str | None = Field(default=None, max_length=255, unique=True)
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
@@ -179,7 +189,7 @@ class LanguageRecord(SQLModel, table=True):
     deleted: datetime | None = Field(default=None, sa_type=UtcDateTime)
 
 
-class LanguageRevision(SQLModel, table=True):
+class LanguageRevision(_OwnedRow, table=True):
     """One state of a language, written once and never changed."""
 
     __tablename__ = "language_revision"
@@ -198,56 +208,46 @@ class LanguageRevision(SQLModel, table=True):
     """Author of the language according to this revision."""
     document: str = Field(sa_column=Column(Text, nullable=False))
     """The whole language file."""
-    owner: str = Field(
-        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
-    )
-    """Name of the token that made the revision, to which quotas apply."""
     size: int = Field(default=0, sa_type=ByteCount, sa_column_kwargs={"server_default": "0"})
     """Bytes of the document."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class RecognitionRecord(SQLModel, table=True):
+class _TakeRow(SQLModel):
+    """Base of the rows about a take in a clip for a language, and removed with either."""
+
+    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
+    language_id: str = Field(
+        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
+    )
+    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
+    start: float
+    """Seconds in the clip."""
+
+
+class RecognitionRecord(_TakeRow, _OwnedRow, table=True):
     """One recognition as it was answered, kept even if its language changes."""
 
     __tablename__ = "recognition"
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
-    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
-    language_id: str = Field(
-        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
-    )
     revision: int
-    start: float
-    """Seconds in the clip."""
     end: float
     profile: str = Field(max_length=32)
     expected: str | None = Field(default=None, max_length=200)
     """The label the user meant, if known."""
     result: str = Field(sa_column=Column(Text, nullable=False))
     """`Recognition.to_dict` as JSON."""
-    owner: str = Field(
-        default="", max_length=80, index=True, sa_column_kwargs={"server_default": ""}
-    )
-    """Name of the token that asked for it, to which quotas apply."""
     size: int = Field(default=0, sa_type=ByteCount, sa_column_kwargs={"server_default": "0"})
     """Bytes of the result."""
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime, index=True)
 
 
-class LabelledTake(SQLModel, table=True):
+class LabelledTake(_TakeRow, table=True):
     """A take whose gesture is known: a query of its language's test set."""
 
     __tablename__ = "labelled_take"
     __table_args__ = (UniqueConstraint("language_id", "clip_id", "start", name="labelled_range"),)
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
-    language_id: str = Field(
-        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
-    )
-    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
-    start: float
-    """Seconds in the clip."""
     end: float
     expected: str = Field(max_length=200)
     """The label that it should be recognised as."""
@@ -276,18 +276,11 @@ class LabelledResult(SQLModel, table=True):
     created: datetime = Field(default_factory=now, sa_type=UtcDateTime)
 
 
-class PracticeTake(SQLModel, table=True):
+class PracticeTake(_TakeRow, table=True):
     """A gesture that a diver was asked to show, and its recognition."""
 
     __tablename__ = "practice_take"
 
-    id: str = Field(default_factory=new_id, primary_key=True, max_length=32)
-    language_id: str = Field(
-        foreign_key="language.id", ondelete="CASCADE", index=True, max_length=32
-    )
-    clip_id: str = Field(foreign_key="clip.id", ondelete="CASCADE", index=True, max_length=32)
-    start: float
-    """Seconds in the clip."""
     diver: str = Field(max_length=80)
     expected: str = Field(max_length=200)
     label: str | None = Field(default=None, max_length=200)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sqlmodel import col, select
+from sqlmodel import col, delete, select
 
 from app.store.database import DatabaseStore
 from app.store.errors import NotFound
@@ -18,16 +18,14 @@ class PracticeStore(DatabaseStore):
     def keep(self, take: PracticeTake) -> PracticeTake:
         """Store a take; it replaces the same take recognised by the same revision."""
         with self._database.writing() as session:
-            same = session.exec(
-                select(PracticeTake).where(
-                    PracticeTake.language_id == take.language_id,
-                    PracticeTake.revision == take.revision,
-                    PracticeTake.clip_id == take.clip_id,
-                    PracticeTake.start == take.start,
+            session.exec(
+                delete(PracticeTake).where(
+                    col(PracticeTake.language_id) == take.language_id,
+                    col(PracticeTake.revision) == take.revision,
+                    col(PracticeTake.clip_id) == take.clip_id,
+                    col(PracticeTake.start) == take.start,
                 )
             )
-            for each in same:
-                session.delete(each)
             session.add(take)
         return take
 

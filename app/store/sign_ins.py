@@ -16,6 +16,7 @@ from sqlmodel import Session, col, delete, or_, select
 
 from app.store.database import Database, DatabaseStore
 from app.store.models import SignIn, now
+from app.store.tokens import digest
 
 LIFETIME: Final = timedelta(days=30)
 """Longest session: a month, the length of a project to design gestures."""
@@ -55,7 +56,7 @@ class SignInStore(DatabaseStore):
     def begin(self, name: str, token_digest: str) -> str:
         """Begin a session of a token; return its cookie, which is stored nowhere."""
         cookie = secrets.token_urlsafe(COOKIE_BYTES)
-        begun = SignIn(id=_id_of(cookie), name=name, proof=proof_of(cookie, token_digest))
+        begun = SignIn(id=digest(cookie), name=name, proof=proof_of(cookie, token_digest))
         with self._database.writing(counted=False) as session:
             _make_room(session, name)
             session.add(begun)
@@ -63,7 +64,7 @@ class SignInStore(DatabaseStore):
 
     def find(self, cookies: Iterable[str]) -> dict[str, SignIn]:
         """Return the sessions of those cookies that have one."""
-        by_id = {_id_of(cookie): cookie for cookie in cookies}
+        by_id = {digest(cookie): cookie for cookie in cookies}
         ids, found = list(by_id), dict[str, SignIn]()
         for start in range(0, len(ids), AT_ONCE):
             query = select(SignIn).where(
@@ -84,15 +85,15 @@ class SignInStore(DatabaseStore):
 
     def cached(self, cookie: str) -> SignIn | None:
         """Return a session that was found a moment ago; None if the database must be asked."""
-        until, found = self._cached.get(_id_of(cookie), (0.0, None))
+        until, found = self._cached.get(digest(cookie), (0.0, None))
         return found if time.monotonic() < until else None
 
     def end(self, cookie: str) -> None:
         """End a session; do nothing if there is none."""
         with self._database.writing(counted=False) as session:
-            session.execute(delete(SignIn).where(col(SignIn.id) == _id_of(cookie)))
+            session.execute(delete(SignIn).where(col(SignIn.id) == digest(cookie)))
         with self._lock:
-            self._cached.pop(_id_of(cookie), None)
+            self._cached.pop(digest(cookie), None)
 
 
 def proof_of(cookie: str, token_digest: str) -> str:
@@ -101,10 +102,6 @@ def proof_of(cookie: str, token_digest: str) -> str:
     The key is in no database: who reads the rows can neither sign in nor guess short tokens.
     """
     return hmac.new(cookie.encode(), token_digest.encode(), hashlib.sha256).hexdigest()
-
-
-def _id_of(cookie: str) -> str:
-    return hashlib.sha256(cookie.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def _make_room(session: Session, name: str) -> None:

@@ -62,7 +62,6 @@ class LabelledTakeStore(DatabaseStore):
         """
         with self._database.writing() as session:
             kept = [_put(session, take) for take in takes]
-            session.flush()
             for language_id in {take.language_id for take in takes}:
                 query = select(LabelledTake.id).where(LabelledTake.language_id == language_id)
                 if len(session.exec(query).all()) > MOST_TAKES:
@@ -84,7 +83,6 @@ class LabelledTakeStore(DatabaseStore):
             take = _load(session, language_id, take_id)
             if take.expected != expected:
                 take.expected = expected
-                session.add(take)
                 _forget(session, take_id)
 
     def remove(self, language_id: str, take_id: str) -> None:
@@ -128,7 +126,6 @@ class LabelledTakeStore(DatabaseStore):
             if take is None or take.expected != expected:
                 return False
             session.merge(result)
-            session.flush()
             old = session.exec(
                 select(LabelledResult)
                 .where(LabelledResult.take_id == result.take_id)
@@ -155,7 +152,6 @@ def _put(session: Session, take: LabelledTake) -> LabelledTake:
     if there.expected != take.expected or there.end != take.end:
         _forget(session, there.id)
     there.expected, there.end = take.expected, take.end
-    session.add(there)
     return there
 
 

@@ -22,8 +22,8 @@ from typing import Annotated, Final, Literal
 from filelock import FileLock
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
+from app.recognition.text.atomic_files import PRIVATE, replace_file
 from app.recognition.text.look_alikes import skeleton
-from app.store.atomic_files import publish, sync_directory
 from app.store.errors import NotFound, StoreUnavailable
 from app.store.models import now
 
@@ -221,8 +221,8 @@ class TokenFile:
         # Later than every list before it, whatever the clocks of several machines say.
         written = max(now(), (self._remembered() or _BEGINNING) + timedelta(microseconds=1))
         document = _Document(written=written, tokens=tuple(tokens))
-        content = document.model_dump_json(indent=2, exclude_none=True)
-        _write_privately(self._path, content)
+        with replace_file(self._path, PRIVATE) as file:
+            file.write(document.model_dump_json(indent=2, exclude_none=True).encode())
         self.read()
 
     def _remembered(self) -> datetime | None:
@@ -256,7 +256,8 @@ class TokenFile:
             return
         try:
             self._seen.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
-            _write_privately(self._seen, written.isoformat())
+            with replace_file(self._seen, PRIVATE) as file:
+                file.write(written.isoformat().encode())
         except OSError:
             # This server remembers it itself; only a restart would forget.
             logger.exception("that there are tokens could not be remembered in %s", self._seen)
@@ -274,16 +275,6 @@ def _shape(name: str) -> str:
     return "".join(each for each in seen.replace("i", "l") if each.isalnum())
 
 
-def _write_privately(path: Path, content: str) -> None:
-    """Replace a file by one that only its owner can read, durably."""
-    # Named after the process, because a server and a command may write at the same time.
-    partial = path.with_name(f"{path.name}.{os.getpid()}.part")
-    with os.fdopen(os.open(partial, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "w") as file:
-        file.write(content)
-    publish(partial, path)
-    sync_directory(path.parent)
-
-
 def digest(token: str) -> str:
-    """Return the stored digest of a token."""
+    """Return the stored digest of a token, or of the cookie of a session."""
     return hashlib.sha256(token.encode("utf-8", "surrogateescape")).hexdigest()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import shutil
 from collections.abc import Mapping
 from contextlib import suppress
@@ -12,9 +11,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import MappingProxyType
 
-from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
+from app.recognition.text.atomic_files import write_atomically
+from app.store.atomic_files import sync_directory
 from app.store.errors import NotFound
-from app.store.models import new_id, now
+from app.store.models import OWN_ID, new_id, now
 
 ACTIVE = timedelta(hours=1)
 """Time after its newest byte for which an upload counts as active: longer than a dropped connection
@@ -22,8 +22,6 @@ or a restart lasts, but short enough that abandoned uploads do not keep disk spa
 
 KEPT = timedelta(days=1)
 """Time after its newest byte for which an upload is kept, and counts towards its owner's quota."""
-
-_ID = re.compile(r"[0-9a-f]{32}")
 
 
 @dataclass(frozen=True)
@@ -97,15 +95,13 @@ class UploadStore:
         """Begin an upload of `size` bytes, with the values from its sender."""
         upload_id, given = new_id(), dict(fields or {})
         about = {"name": name, "size": size, "fields": given, "client": client, "owner": owner}
-        path, partial = self._folder / upload_id, self._folder / f"{upload_id}{PARTIAL_SUFFIX}"
+        path = self._folder / upload_id
         try:
-            partial.write_text(json.dumps(about))
-            publish(partial, self._about(upload_id))
+            write_atomically(self._about(upload_id), json.dumps(about).encode())
             path.touch()
             sync_directory(self._folder)
         except OSError:
-            for made in (partial, self._about(upload_id), path):
-                made.unlink(missing_ok=True)
+            self.remove(upload_id)
             raise
         return Upload(upload_id, name, size, path, given, client, owner)
 
@@ -130,7 +126,7 @@ class UploadStore:
         """
         path = self._folder / upload_id
         # Only our own ids become paths.
-        if not _ID.fullmatch(upload_id) or not path.is_file():
+        if not OWN_ID.fullmatch(upload_id) or not path.is_file():
             raise NotFound(f"there is no upload {upload_id[:80]!r}; begin it anew")
         # An upload that an earlier version began has no fields, client or owner.
         return Upload(id=upload_id, path=path, **json.loads(self._about(upload_id).read_text()))

@@ -337,7 +337,7 @@ def _at(days: int) -> datetime:
 
 
 # Without shrinking: an example takes a tenth of a second.
-@settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=10, phases=[Phase.explicit, Phase.generate], deadline=None)
 @given(st.data())
 def test_whatever_this_program_writes_comes_back_from_its_own_backup(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject

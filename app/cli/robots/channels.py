@@ -198,9 +198,7 @@ def describe_event(event: events.Event) -> str:
         return f"vehicle: {event.text}"
     if isinstance(event, events.OutputFailed):
         return f"{event.output} is not written any more: {event.reason}; recognition goes on"
-    if isinstance(event, events.LanguageChanged | events.LanguageRefused):
-        return _describe_language(event)
-    return _describe_source(event)
+    return _describe_state(event)
 
 
 def _describe_take(event: events.TakeEvent) -> str:
@@ -212,19 +210,15 @@ def _describe_take(event: events.TakeEvent) -> str:
     return f"{span}: rejected, {event.reason}"
 
 
-def _describe_language(event: events.LanguageChanged | events.LanguageRefused) -> str:
-    if isinstance(event, events.LanguageRefused):
-        return (
-            f"the new language file is not used, revision {event.revision} is kept: {event.reason}"
-        )
-    return (
-        f"listening for {event.name!r}, revision {event.revision}, code {event.code}: "
-        f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
-    )
-
-
-def _describe_source(event: events.Event) -> str:
+def _describe_state(event: events.Event) -> str:
     match event:
+        case events.LanguageRefused(revision=kept, reason=reason):
+            return f"the new language file is not used, revision {kept} is kept: {reason}"
+        case events.LanguageChanged():
+            return (
+                f"listening for {event.name!r}, revision {event.revision}, code {event.code}: "
+                f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
+            )
         case events.SourceOpened(source=source, frame_size=(width, height)):
             return f"watching {source}, {width} x {height} pixels"
         case events.SourceWarned(reason=reason):

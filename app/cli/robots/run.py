@@ -191,8 +191,6 @@ def run_robot(
         opened.enter_context(channels.joined_by(handlers))
         bridge: MavlinkBridge | None = None
         if options.mavlink and (table := options.find_vehicle_table()):
-            from app.cli.robots.run import open_bridge
-
             bridge = open_bridge(
                 options, table, listener, frames, channels.report_vehicle, channels.report_answer
             )

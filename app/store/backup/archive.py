@@ -26,7 +26,7 @@ from sqlalchemy.exc import DataError, ProgrammingError
 from app.recognition.errors import OsgError
 from app.store.atomic_files import PARTIAL_SUFFIX, publish, sync_directory
 from app.store.backup.checked_copy import copy_checked
-from app.store.backup.rows import copy_rows, snapshot
+from app.store.backup.rows import copy_rows
 from app.store.clips import FILMSTRIP, POSTER, RECORDING
 from app.store.database import Database
 from app.store.models import UPRIGHT, VIDEO, JobStatus, SignIn
@@ -39,8 +39,8 @@ MANIFEST = "manifest.json"
 
 _CLIP_FILE = re.compile(r"clips/[0-9a-f]{32}/[a-z]{1,16}(\.[a-z]{1,5})?")
 _RESTORING = ".restoring-"
+_DAMAGE = (zipfile.BadZipFile, KeyError, ValueError, AttributeError, RuntimeError)
 _PIECE = 1024 * 1024
-_BINARY = getattr(os, "O_BINARY", 0)  # Windows would change line breaks.
 
 
 def write_backup(
@@ -79,7 +79,7 @@ def write_backup(
         When the object store or the database does not answer.
 
     """
-    source = _ClipFiles(clips or data_dir / "clips", objects or SharedFolder())
+    clips, objects = clips or data_dir / "clips", objects or SharedFolder()
     partial = target.with_name(target.name + PARTIAL_SUFFIX)
     try:
         with tempfile.TemporaryDirectory(dir=target.parent) as scratch:
@@ -95,7 +95,7 @@ def write_backup(
                 for clip_id, names in kept.items():
                     for name in names:
                         place = f"clips/{clip_id}/{name}"
-                        with source.open(clip_id, name, Path(scratch)) as path:
+                        with _fetch(f"{clip_id}/{name}", clips, objects, Path(scratch)) as path:
                             digests[place] = _add(archive, place, path)
                 manifest = {"format": FORMAT, "version": VERSION, "files": digests}
                 archive.writestr(MANIFEST, json.dumps(manifest))
@@ -175,7 +175,7 @@ def restore_backup(
 def _open_secret(path: Path) -> IO[bytes]:
     """Create a file that nobody else may read: a backup holds everything."""
     path.unlink(missing_ok=True)
-    return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | _BINARY, 0o600), "w+b")
+    return os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600), "w+b")
 
 
 def _unpack_checked(
@@ -198,33 +198,20 @@ def _unpack_checked(
     return checked
 
 
-class _ClipFiles:
-    """The files of clips, wherever they are.
+@contextmanager
+def _fetch(name: str, folder: Path, objects: ObjectStore, scratch: Path) -> Iterator[Path]:
+    """Yield the path of a file in the clips' folder, or of its copy from the object store.
 
-    Parameters
-    ----------
-    folder
-        Folder of the clips' files on this machine.
-    objects
-        Object store of the files that are not in the folder.
-
+    The copy is in `scratch` meanwhile.
     """
-
-    def __init__(self, folder: Path, objects: ObjectStore) -> None:
-        self._folder = folder
-        self._objects = objects
-
-    @contextmanager
-    def open(self, clip_id: str, name: str, scratch: Path) -> Iterator[Path]:
-        """Yield the path of a file; a file of the object store is in `scratch` meanwhile."""
-        here, fetched = self._folder / clip_id / name, scratch / name
-        if here.is_file() or not self._objects.download(f"{clip_id}/{name}", fetched):
-            yield here
-            return
-        try:
-            yield fetched
-        finally:
-            fetched.unlink()
+    here, fetched = folder / name, scratch / "fetched"
+    if here.is_file() or not objects.download(name, fetched):
+        yield here
+        return
+    try:
+        yield fetched
+    finally:
+        fetched.unlink()
 
 
 def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
@@ -244,8 +231,11 @@ def _copy_database(data_dir: Path, url: str | None, target: Path) -> None:
 
 def _copy_rows(source: Database, target: Path) -> None:
     with closing(Database(f"sqlite:///{target}")) as copy:
+        copy.migrate()
         try:
-            snapshot(source, copy)
+            # One consistent state, also while servers use the database.
+            with source.reading() as rows, copy.writing() as written:
+                copy_rows(rows, written)
         except ProgrammingError as error:
             reason = " ".join(str(error.orig).split())
             raise OsgError(
@@ -356,11 +346,9 @@ def _open_backup(source: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, str]
         raise OsgError(f"cannot read {source}: {error.strerror}") from error
     except OsgError:
         raise
-    except (zipfile.BadZipFile, KeyError, ValueError, AttributeError, RuntimeError) as error:
-        raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
-    except OSError as error:
+    except (*_DAMAGE, OSError) as error:
         # A damaged archive directory points before the beginning of the file.
-        if error.errno != errno.EINVAL:
+        if isinstance(error, OSError) and error.errno != errno.EINVAL:
             raise
         raise OsgError(f"{source.name} is no backup, or is damaged ({error})") from error
 

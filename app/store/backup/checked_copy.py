@@ -24,10 +24,9 @@ from app.bags.topic_summary import TopicSummary
 from app.clip_sources import SOURCES, ReadOptions
 from app.recognition.errors import OsgError
 from app.store.backup.rows import AT_ONCE
-from app.store.clip_folder import CLIP_ID
 from app.store.database import Database
 from app.store.invitations import LONGEST_DAYS
-from app.store.models import Clip, Invitation, UtcDateTime, now
+from app.store.models import OWN_ID, Clip, Invitation, UtcDateTime, now
 
 OTHER_CLOCK: Final = timedelta(days=1)
 """Longest time by which the clock of another machine may be fast."""
@@ -40,6 +39,7 @@ _MOST: Final = 2**53 - 1
 
 _VIDEO_TYPE: Final = re.compile(r"video/[a-z0-9-]{1,40}")
 _STRINGS: Final = TypeAdapter(tuple[str, ...])
+_OPTIONS: Final = TypeAdapter(ReadOptions)
 _TOPICS: Final = TypeAdapter(tuple[TopicSummary, ...])
 _REVISION: Final = re.compile(r"\d{4}")
 _READING: Final = frozenset({sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ, sqlite3.SQLITE_PRAGMA})
@@ -173,7 +173,7 @@ def _is_ours(column: Column[Any], value: object, latest: datetime) -> bool:
             if not isinstance(value, str):
                 return False
             if column.type.length == 32 and (column.name == "id" or column.name.endswith("_id")):
-                return CLIP_ID.fullmatch(value) is not None
+                return OWN_ID.fullmatch(value) is not None
             return place not in _TEXTS or _TEXTS[place](value)
     return False
 
@@ -186,17 +186,12 @@ def _is_json_of(kind: type) -> Callable[[str], bool]:
     return lambda text: isinstance(json.loads(text), kind)
 
 
-def _is_options(text: str) -> bool:
-    ReadOptions.model_validate_json(text)
-    return True
-
-
 _TEXTS: Final[dict[str, Callable[[str], bool]]] = {
     "clip.source": lambda text: text in {source.name for source in SOURCES},
     # As another type, a player would show the file as a page.
     "clip.media_type": lambda text: _VIDEO_TYPE.fullmatch(text) is not None,
     "clip.topics": _is_json_as(_TOPICS),
-    "clip.options": _is_options,
+    "clip.options": _is_json_as(_OPTIONS),
     "job.warnings": _is_json_as(_STRINGS),
     "job.salute_warnings": _is_json_as(_STRINGS),
     "language_revision.labels": _is_json_as(_STRINGS),

@@ -8,7 +8,6 @@ from sqlalchemy import Connection, insert, select, text
 from sqlmodel import Session, SQLModel, col
 
 from app.recognition.errors import OsgError
-from app.store.database import Database
 from app.store.models import (
     AuditEntry,
     ChangeCount,
@@ -50,13 +49,6 @@ def copy_rows(source: Session, target: Session) -> None:
             writing.execute(insert(table), [dict(row) for row in some])
     if writing.dialect.name == "postgresql":
         _continue_numbers(writing)
-
-
-def snapshot(database: Database, target: Database) -> None:
-    """Copy a database into an empty one, as one consistent state, also while servers use it."""
-    target.migrate()
-    with database.reading() as source, target.writing() as copy:
-        copy_rows(source, copy)
 
 
 def _continue_numbers(connection: Connection) -> None:

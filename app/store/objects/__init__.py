@@ -1,5 +1,3 @@
 """Object stores: where clip files are kept beside the local folder."""
 
 from app.store.objects.object_store import ObjectStore, SharedFolder, open_object_store
-
-__all__ = ["ObjectStore", "SharedFolder", "open_object_store"]
