@@ -12,12 +12,12 @@ from starlette.concurrency import run_in_threadpool
 
 from app import __version__
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import Revision
 from app.api.jobs.job import Job, events_about, task_job
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
@@ -42,10 +42,8 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 )
 async def check_language(
     request: Request,
-    language_id: str,
-    studio: CurrentStudio,
+    asked: CurrentRevision,
     response: Response,
-    revision: Revision = None,
     if_none_match: Annotated[
         str | None, Header(description="The ETag of a report that the caller has")
     ] = None,
@@ -56,7 +54,7 @@ async def check_language(
     among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody
     who asked for it has left.
     """
-    state = await run_in_threadpool(studio.languages.get, language_id, revision)
+    studio, state = asked.studio, await run_in_threadpool(lambda: asked.state)
     faults = await run_in_threadpool(_find_faults, studio, state)
     # Another version of the recogniser may give another report for the same revision, and clips
     # come and go, with the faults that they show.
@@ -75,12 +73,10 @@ async def check_language(
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
-async def cancel_check(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> Response:
+async def cancel_check(asked: CurrentRevision) -> Response:
     """Cancel the check of a revision, for all who wait for it; does nothing where none runs."""
-    state = await run_in_threadpool(studio.languages.get, language_id, revision)
-    await studio.runner.cancel(_job(state, studio).key)
+    state = await run_in_threadpool(lambda: asked.state)
+    await asked.studio.runner.cancel(_job(state, asked.studio).key)
     return Response(status_code=204)
 
 

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import Fault, ProblemError, problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import (
     LanguageChange,
     LanguageDraft,
@@ -19,6 +19,7 @@ from app.api.http.schemas.languages import (
     LanguageView,
 )
 from app.api.ingest.quotas import SenderQuota
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services.language_documents import draft_of, name_of_copy
 from app.api.services.language_responses import (
@@ -58,18 +59,14 @@ def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
 
 
 @router.get("/{language_id}", responses=problem_responses(404))
-def get_language(
-    language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
-) -> LanguageView:
+def get_language(asked: CurrentRevision, response: Response) -> LanguageView:
     """Describe a language in its newest or an older revision."""
-    return answer(studio, studio.languages.get(language_id, revision), response)
+    return answer(asked.studio, asked.state, response)
 
 
 @router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
 @edited
-def change_language(
-    change: LanguageChange, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def change_language(change: LanguageChange, edit: CurrentEdit) -> LanguageView:
     """Rename a language or its author, change its phrases, or how it is recognised."""
     fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
     if "grammar" in change.model_fields_set:
@@ -77,9 +74,9 @@ def change_language(
     if "tuning" in change.model_fields_set:
         fields["tuning"] = entry_to_tuning(change.tuning)
     if change.name is not None:
-        _require_readable(change.name, studio, edit.language_id)
+        _require_readable(change.name, edit.studio, edit.language_id)
     if not fields:
-        return answer(studio, studio.languages.get(edit.language_id), edit.response)
+        return answer(edit.studio, edit.studio.languages.get(edit.language_id), edit.response)
     return edit.answer(edit.save(_describe(fields), lambda language: replace(language, **fields)))
 
 
@@ -106,19 +103,14 @@ def _describe(fields: Mapping[str, Any]) -> str:
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
 @edited
 def duplicate_language(
-    language_id: str,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    revision: Revision = None,
+    asked: CurrentRevision, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make another language of a language's newest or an older revision."""
-    state = studio.languages.get(language_id, revision)
+    studio, original = asked.studio, asked.language
     taken = {each.revision.name for each in studio.languages.all()}
-    original = studio.language(state)
     name = name_of_copy(original.name, taken)
     copy = replace(original, name=name, created=None, revision=1)
-    change = f"Copy of {original.name}, revision {state.revision.revision}"
+    change = f"Copy of {original.name}, revision {asked.state.revision.revision}"
     return announce(studio, save_language(studio, quota, draft_of(copy, change)), response)
 
 
