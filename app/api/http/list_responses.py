@@ -41,44 +41,19 @@ KnownTags = Annotated[frozenset[str], Depends(_tags)]
 
 
 def list_response(
-    views: Callable[[Store], list[View]], adapter: TypeAdapter[list[View]]
-) -> Callable[[Store, frozenset[str]], Response]:
-    """Return a function that answers with the list of a store's entries.
+    read: Callable[[Store, Query], tuple[list[View], dict[str, str]]],
+    adapter: TypeAdapter[list[View]],
+    kept: int,
+) -> Callable[[Store, frozenset[str], Query], Response]:
+    """Return a function that answers with the list of a store's entries, or a part of it.
 
     Every page lists the whole library at its start, maybe a thousand clips that change rarely. So
     the list is read and serialised only after a change, and a browser that has it gets a 304.
 
     Parameters
     ----------
-    views
-        Reads the list of views.
-    adapter
-        Writes it.
-
-    """
-
-    def read(store: Store, _query: None) -> tuple[list[View], dict[str, str]]:
-        return views(store), {}
-
-    answer_page = page_response(read, adapter, kept=1)
-
-    def answer(store: Store, known: frozenset[str]) -> Response:
-        return answer_page(store, known, None)
-
-    return answer
-
-
-def page_response(
-    read: Callable[[Store, Query], tuple[list[View], dict[str, str]]],
-    adapter: TypeAdapter[list[View]],
-    kept: int,
-) -> Callable[[Store, frozenset[str], Query], Response]:
-    """Return a function that answers with a part of the list of a store's entries.
-
-    Parameters
-    ----------
     read
-        Reads the part that a query selects, and the headers that state its position.
+        Reads the part that a query selects, all for None, and the headers that state its position.
     adapter
         Writes it.
     kept

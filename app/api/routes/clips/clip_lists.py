@@ -8,7 +8,7 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Query, Response
 from pydantic import TypeAdapter
 
-from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response, page_response
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.clips import ClipView
 from app.api.services.clip_responses import view_clip
@@ -71,16 +71,14 @@ def list_clips(
     """List the clips, newest first: all of them, or a page of those that are asked for."""
     query = ClipQuery(limit or MOST_LISTED, after, q.strip(), tuple(status or ()), tuple(id or ()))
     if limit is None and query == ClipQuery(MOST_LISTED):
-        return _list_all(studio.clips, known)
-    return _list_page(studio.clips, known, query)
+        return _listed(studio.clips, known, None)
+    return _listed(studio.clips, known, query)
 
 
-def _read_all(clips: ClipStore) -> list[ClipView]:
-    return [view_clip(found) for found in clips.all()]
-
-
-def read_page(clips: ClipStore, query: ClipQuery) -> tuple[list[ClipView], dict[str, str]]:
-    """Return the clips of a page, and the headers that state its position."""
+def read_page(clips: ClipStore, query: ClipQuery | None) -> tuple[list[ClipView], dict[str, str]]:
+    """Return the clips of a page, and the headers that state its position; all without a query."""
+    if query is None:
+        return [view_clip(found) for found in clips.all()], {}
     page, headers = clips.page(query), {}
     if page.more:
         headers["Link"] = f'<?{_write_query(query, page.clips[-1].clip.id)}>; rel="next"'
@@ -101,5 +99,4 @@ def _write_query(query: ClipQuery, after: str) -> str:
     return urlencode({name: value for name, value in given.items() if value}, doseq=True)
 
 
-_list_all = list_response(_read_all, TypeAdapter(list[ClipView]))
-_list_page = page_response(read_page, TypeAdapter(list[ClipView]), KEPT_PAGES)
+_listed = list_response(read_page, TypeAdapter(list[ClipView]), KEPT_PAGES)

@@ -55,7 +55,7 @@ def create_language(
 )
 def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the languages, oldest first."""
-    return _listed(studio.languages, known)
+    return _listed(studio.languages, known, None)
 
 
 @router.get("/{language_id}", responses=problem_responses(404))
@@ -140,8 +140,10 @@ def _require_readable(name: str, studio: Studio, language_id: str | None = None)
             raise ProblemError(409, "name_taken", detail, errors=[fault])
 
 
-def _summaries(languages: LanguageStore) -> list[LanguageSummary]:
-    return [view_summary(state) for state in languages.all()]
+def _summaries(
+    languages: LanguageStore, _all: None
+) -> tuple[list[LanguageSummary], dict[str, str]]:
+    return [view_summary(state) for state in languages.all()], {}
 
 
-_listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]))
+_listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]), kept=1)
