@@ -275,7 +275,7 @@ class FramePipeline:
         try:
             return (answer_of(sight.take, self._recognizer()),)
         except OsgError as error:
-            return (_view_take(sight.take, problem=str(error)),)
+            return (_view_take(sight.take, str(error)),)
 
 
 def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
@@ -288,7 +288,7 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
 
     """
     if recognizer is None:
-        return _view_take(take, problem="no language is chosen; choose one above")
+        return _view_take(take, "no language is chosen; choose one above")
     result = recognizer.recognize_take(take)
     return _view_answer(recognizer, result, take.start, take.end, closed=take.closed)
 
@@ -312,9 +312,8 @@ def _view_answer(
     )
 
 
-def _view_take(take: Take, **answer: object) -> Recognized:
-    about = {"start": take.start, "end": take.end, "closed": take.closed}
-    return Recognized.model_validate(about | answer)
+def _view_take(take: Take, problem: str) -> Recognized:
+    return Recognized(start=take.start, end=take.end, closed=take.closed, problem=problem)
 
 
 def decode_frame(jpeg: bytes) -> Image:

@@ -14,7 +14,7 @@ from app.api.http.schemas.gestures import (
 )
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.running_studio import Studio
-from app.recognition import Gesture, GestureError, Language, PoseError
+from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
@@ -160,8 +160,8 @@ def change_gesture_of(
     changed = gesture
     if demonstration is not None:
         diver = "" if change.demonstration is None else change.demonstration.diver
-        show = _show_further if change.further else _remake
-        changed = show(gesture, demonstration, change.salient or None, diver)
+        show = Gesture.with_demonstration if change.further else _remake
+        changed = show(gesture, demonstration.poses, diver, salient=change.salient or None)
     elif change.salient:
         changed = _set_salient(gesture, change.salient)
     switches = set_switches(changed.switches, change)
@@ -187,7 +187,7 @@ def add_demonstration_to(
     """
     gesture = gesture_in(language, draft.label)
     return language.with_changed(
-        _show_further(gesture, demonstration, draft.salient or None, draft.diver)
+        gesture.with_demonstration(demonstration.poses, draft.diver, salient=draft.salient or None)
     )
 
 
@@ -275,12 +275,10 @@ def require_free(
 
 
 def _remake(
-    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
+    gesture: Gesture, poses: PoseSequence, diver: str, *, salient: Sequence[str] | None
 ) -> Gesture:
     """Replace the first demonstration; texts, command and switches stay."""
-    made = Gesture.from_demonstration(
-        gesture.label, demonstration.poses, salient=salient, diver=diver
-    )
+    made = Gesture.from_demonstration(gesture.label, poses, salient=salient, diver=diver)
     return replace(
         made,
         description=gesture.description,
@@ -288,13 +286,6 @@ def _remake(
         switches=gesture.switches,
         further=gesture.further,
     )
-
-
-def _show_further(
-    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
-) -> Gesture:
-    """Add a demonstration; all else stays."""
-    return gesture.with_demonstration(demonstration.poses, diver, salient=salient)
 
 
 def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:

@@ -169,7 +169,7 @@ def _keep(
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
-        result.pair = write_pair(answer)
+        result.pair = write_pair(answer["pair"])
         result.confidence = answer["confidence"]
     studio.labelled.keep(result, take.expected)
 

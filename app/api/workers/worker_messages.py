@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Base64Bytes, BaseModel, ConfigDict, Field, TypeAdapter
 
+from app.recognition.text.described import DESCRIBED
+
 if TYPE_CHECKING:
     from app.recognition.poses.sequence import FloatArray
 
@@ -55,14 +57,18 @@ class _Said(BaseModel):
 class TopicSeen(_Said):
     """A topic of a dive recording that a clip can be made of."""
 
-    name: Annotated[Line, Field(max_length=255)] = Field(
-        description="As in ROS, with its leading slash"
-    )
-    type: Line = Field(description="Of its messages, such as sensor_msgs/msg/Image")
+    model_config = DESCRIBED
+
+    name: Annotated[Line, Field(max_length=255)]
+    """As in ROS, with its leading slash."""
+    type: Line
+    """Of its messages, such as sensor_msgs/msg/Image."""
     use: Literal["pictures", "keypoints"]
     messages: Count
-    duration: float = Field(description="Seconds from its first message to its last")
-    width: Count = Field(description="Pixels of the upright picture")
+    duration: float
+    """Seconds from its first message to its last."""
+    width: Count
+    """Pixels of the upright picture."""
     height: Count
 
     @property

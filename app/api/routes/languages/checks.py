@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Request, Response
@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app import __version__
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.jobs.job import Job, events_about, task_job
+from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_faults import faults_of_language
@@ -85,7 +85,8 @@ def _job(state: LanguageState, studio: Studio) -> Job[Finished | Failed]:
     document = state.revision.document
     key = f"check {hashlib.sha256(document.encode()).hexdigest()}"
     event = events_about("checks", id=state.record.id, revision=state.revision.revision)
-    return task_job("check", key, event, studio.workers, Check(document=document), cached=True)
+    run = partial(run_task, studio.workers, Check(document=document))
+    return Job("check", key, event, run, cached=True)
 
 
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:

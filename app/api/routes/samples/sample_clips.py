@@ -21,7 +21,8 @@ router = APIRouter(prefix="/samples", tags=["samples"])
 @router.get("", responses=problem_responses())
 def list_samples(studio: CurrentStudio) -> list[SampleView]:
     """List the sample clips."""
-    return [SampleView(name=clip.name, size=clip.size) for clip in studio.samples.clips().values()]
+    clips = studio.samples.clips()
+    return [SampleView(name=name, size=file.stat().st_size) for name, file in clips.items()]
 
 
 @router.post("", status_code=202, responses=problem_responses(404, 415, 429))
@@ -33,9 +34,10 @@ async def import_sample(
     if chosen.name not in samples:
         raise ProblemError(404, "not_found", f"there is no sample clip {chosen.name!r}")
     sample = samples[chosen.name]
+    size = sample.stat().st_size
     await require_place_in_queue(request, studio)
-    await require_quota(quota, studio, sample.size)
+    await require_quota(quota, studio, size)
     with studio.clips.receiving() as partial:
-        await run_in_threadpool(shutil.copyfile, sample.path, partial)
-        made = await inspect(partial, studio, name=display_name(sample.name), size=sample.size)
+        await run_in_threadpool(shutil.copyfile, sample, partial)
+        made = await inspect(partial, studio, name=display_name(sample.name), size=size)
         return await store(made, partial, studio, request)
