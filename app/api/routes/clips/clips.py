@@ -19,7 +19,7 @@ from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import FRAME_BYTES, file_form, receive_file
+from app.api.ingest.multipart import file_form, least_size, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
@@ -74,9 +74,7 @@ async def upload_clip(
     ):
         return await _repeat(request, studio, earlier)
     reserved = await require_place_in_queue(request, studio)
-    stated = request.headers.get("content-length", "")
-    least = int(stated) - FRAME_BYTES if stated.isdecimal() else 0
-    await require_quota(quota, studio, max(0, least))
+    await require_quota(quota, studio, least_size(request))
     with studio.clips.receiving() as partial:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         made = await inspect(
