@@ -86,6 +86,8 @@ class ProblemError(HTTPException):
         What is wrong, why, and what to do next.
     errors
         Each fault of the request, if there can be several.
+    pointer
+        Place of the one fault in the body, if it has one.
     headers
         Response headers.
     more
@@ -100,12 +102,13 @@ class ProblemError(HTTPException):
         detail: str,
         *,
         errors: Sequence[Fault] = (),
+        pointer: str | None = None,
         headers: Mapping[str, str] | None = None,
         **more: Any,
     ) -> None:
         super().__init__(status, detail, headers=dict(headers or {}))
         self.code = code
-        self.errors = errors
+        self.errors = errors if pointer is None else [Fault(pointer=pointer, detail=detail)]
         self.more = more
 
     def response(self) -> JSONResponse:
@@ -233,8 +236,7 @@ def _convert_recognition_error(error: OsgError) -> ProblemError:
     if isinstance(error, ModelError):
         return ProblemError(503, "model_missing", str(error))
     if isinstance(error, LanguageError):
-        fault = Fault(pointer=error.pointer, detail=str(error))
-        return ProblemError(422, "language_invalid", str(error), errors=[fault])
+        return ProblemError(422, "language_invalid", str(error), pointer=error.pointer)
     codes: dict[type, str] = {
         GestureError: "gesture_unusable",
         VideoError: "video_unreadable",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.api.http.problems import Fault, ProblemError
+from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import (
     DemonstrationDraft,
     GestureChange,
@@ -96,9 +96,7 @@ def gestures_from(
 
 
 def _refusal(status: int, code: str, index: int, draft: GestureDraft, reason: str) -> ProblemError:
-    detail = f"{draft.label}: {reason}"
-    fault = Fault(pointer=f"/gestures/{index}", detail=detail)
-    return ProblemError(status, code, detail, errors=[fault])
+    return ProblemError(status, code, f"{draft.label}: {reason}", pointer=f"/gestures/{index}")
 
 
 def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language:
@@ -270,8 +268,7 @@ def require_free(
             detail = (
                 f"the label {label!r} looks like {taken!r}, which the language has; choose another"
             )
-        fault = Fault(pointer=pointer, detail=detail)
-        raise ProblemError(409, "label_taken", detail, errors=[fault])
+        raise ProblemError(409, "label_taken", detail, pointer=pointer)
 
 
 def _remake(
@@ -293,8 +290,7 @@ def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:
     try:
         return gesture.with_salient(names)
     except GestureError as error:
-        fault = Fault(pointer="/salient", detail=str(error))
-        raise ProblemError(422, "gesture_unusable", str(error), errors=[fault]) from error
+        raise ProblemError(422, "gesture_unusable", str(error), pointer="/salient") from error
 
 
 @dataclass(frozen=True)

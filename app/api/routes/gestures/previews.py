@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import Field
 
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.values import Body, Label, View
 from app.api.services import gesture_edits
@@ -185,8 +185,7 @@ def _draft(
         gesture_edits.gesture_in(language, request.label)
     elif where is None:
         detail = "a new gesture needs a demonstration: name its clip"
-        fault = Fault(pointer="/change/demonstration", detail=detail)
-        raise ProblemError(422, "request_invalid", detail, errors=[fault])
+        raise ProblemError(422, "request_invalid", detail, pointer="/change/demonstration")
     shown = (
         None if where is None else gesture_edits.demonstration_at(studio, where, language.trigger)
     )

@@ -24,7 +24,6 @@ from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
 from app.recognition.health.choice import (
-    Confusions,
     Replacement,
     describe_people,
     find_replacements,
@@ -164,10 +163,11 @@ def choose_gestures(
     fixed = list(range(len(language.gestures)))
     chosen = confusions.choose(choice.keep, fixed)
     labels = [*language.labels, *(draft.label for draft in choice.gestures)]
-    left_out = []
+    kept, left_out = [*fixed, *chosen], []
     for index in sorted({*range(len(fixed), len(labels))} - {*chosen}):
-        other, words = _find_most_alike(confusions, index, [*fixed, *chosen])
-        left_out.append(LeftOutView(index=index - len(fixed), other=labels[other], words=words))
+        nearest = kept[int(np.argmax(confusions.rates[index, kept]))]
+        words = confusions.compare(index, nearest).words
+        left_out.append(LeftOutView(index=index - len(fixed), other=labels[nearest], words=words))
     return ChoiceView(
         keep=[each - len(fixed) for each in chosen],
         left_out=left_out,
@@ -230,12 +230,6 @@ def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
     if where is not None and shown is not None:
         keep_source(edit.studio, state, draft.label, where, shown)
     return edit.answer(state)
-
-
-def _find_most_alike(confusions: Confusions, left_out: int, kept: Sequence[int]) -> tuple[int, str]:
-    """Return which of the kept gestures another one is most like, and how much."""
-    nearest = kept[int(np.argmax(confusions.rates[left_out, kept]))]
-    return nearest, confusions.compare(left_out, nearest).words
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
 from app.api.http.downloads import attachment
-from app.api.http.problems import Fault, ProblemError, file_responses, problem_responses
+from app.api.http.problems import ProblemError, file_responses, problem_responses
 from app.api.http.revisions import revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name, View
@@ -140,10 +140,7 @@ async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLan
         return await run_in_threadpool(read_language, content, name)
     ended = await studio.workers.run(Import(file=file, name=name))
     if isinstance(ended, Failed):
-        faults = (
-            [] if ended.pointer is None else [Fault(pointer=ended.pointer, detail=ended.detail)]
-        )
-        raise ProblemError(422, ended.code, ended.detail, errors=faults)
+        raise ProblemError(422, ended.code, ended.detail, pointer=ended.pointer)
     return ImportedLanguage.model_validate(ended.result)
 
 

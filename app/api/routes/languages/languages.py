@@ -10,7 +10,7 @@ from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import (
     LanguageChange,
@@ -136,8 +136,7 @@ def _require_readable(name: str, studio: Studio, language_id: str | None = None)
         known = state.revision.name
         if state.record.id != language_id and known != name and are_confusable(name, known):
             detail = f"the name {name!r} looks like that of the language {known!r}; choose another"
-            fault = Fault(pointer="/name", detail=detail)
-            raise ProblemError(409, "name_taken", detail, errors=[fault])
+            raise ProblemError(409, "name_taken", detail, pointer="/name")
 
 
 def _summaries(

@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Seconds
 from app.api.routes.language_edits import CurrentEdit
@@ -87,5 +87,4 @@ def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
 
 
 def _refusal(reason: str, pointer: str) -> ProblemError:
-    fault = Fault(pointer=pointer, detail=reason)
-    return ProblemError(422, "trigger_unusable", reason, errors=[fault])
+    return ProblemError(422, "trigger_unusable", reason, pointer=pointer)
