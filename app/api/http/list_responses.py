@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import lru_cache
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Response
 from pydantic import TypeAdapter
+
+from app.store import ClipStore, LanguageStore
 
 NOT_SENT_AGAIN: dict[int | str, dict[str, Any]] = {
     304: {"description": "The list that the caller has is still the newest"}
@@ -15,15 +17,7 @@ NOT_SENT_AGAIN: dict[int | str, dict[str, Any]] = {
 """OpenAPI ``responses`` of a list."""
 
 
-class Counted(Hashable, Protocol):
-    """A store that counts its changes."""
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change."""
-
-
-Store = TypeVar("Store", bound=Counted)
+Store = TypeVar("Store", ClipStore, LanguageStore)
 View = TypeVar("View")
 Query = TypeVar("Query", bound=Hashable)
 

@@ -207,6 +207,8 @@ def _convert_store_error(error: store.StoreError) -> ProblemError:
             return _convert_quota(error)
         case store.TooManyInvitations():
             return ProblemError(409, "too_many_invitations", str(error))
+        case store.TestSetFull():
+            return ProblemError(409, "test_set_full", str(error))
         case store.InvitationClosed():
             # The rest of a body stays unread, so the connection cannot be used again.
             headers = {"Connection": "close"}

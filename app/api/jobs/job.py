@@ -20,7 +20,7 @@ from app.api.workers.worker_messages import (
     Answered,
     Failed,
     Finished,
-    Pose,
+    Progress,
     Progressed,
     RecognizedTake,
 )
@@ -41,43 +41,6 @@ logger = logging.getLogger(__name__)
 
 class JobCancelled(Exception):
     """Raised to everybody who waits for a job that was cancelled."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a running job is.
-
-    Attributes
-    ----------
-    stage
-        Stage of an extraction: ``starting``, ``poses`` or ``saving``; other jobs name their own.
-    done, total
-        Frames or other pieces of work; `total` may be an estimate.
-    eta_s
-        Seconds still to go at the present rate, or None before there is one.
-    time
-        For an extraction: time of the newest frame with landmarks, in seconds after the clip's
-        first frame; None in the other stages.
-    pose
-        The body in that frame, or None if it shows nobody.
-    kept
-        Recordings of the frames so far that were written.
-
-    """
-
-    stage: str
-    done: int = 0
-    total: int = 0
-    eta_s: float | None = None
-    time: float | None = None
-    pose: Pose | None = None
-    kept: int = 0
-
-
-def progress_of(event: Event) -> Progress | None:
-    """Return the progress in an event; None if it has none."""
-    told = event.data.get("progress")
-    return None if told is None else Progress(**told)
 
 
 Report = Callable[[Progress], None]
@@ -139,8 +102,7 @@ async def run_task(
         nonlocal answered
         if isinstance(message, Progressed):
             eta = left.estimate(message.done, message.total, time.monotonic())
-            progress = (message.stage, message.done, message.total, eta)
-            report(Progress(*progress, message.time, message.pose, message.kept))
+            report(message.model_copy(update={"eta_s": eta}))
         # A repeated process gives its earlier answers again.
         elif keep is not None and message.index == answered:
             await run_in_threadpool(keep, message.index, message.take)

@@ -26,11 +26,12 @@ from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
-from app.api.jobs.job import JobRunner, compute_in_place, progress_of
+from app.api.jobs.job import JobRunner, compute_in_place
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.kept_exports import KeptExports
 from app.api.services.sample_library import Samples
+from app.api.workers.worker_messages import Progress
 from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
@@ -178,9 +179,9 @@ class Studio:
     def _hear(self, event: BroadcastEvent) -> None:
         """Store the progress of another server's job."""
         if event.kind == "jobs":
-            progress = progress_of(event)
-            self.runner.note(event.data["id"], progress)
-            if progress is None:
+            told = event.data.get("progress")
+            self.runner.note(event.data["id"], None if told is None else Progress(**told))
+            if told is None:
                 self.extractions.look()
 
     async def stop_soon(self) -> None:

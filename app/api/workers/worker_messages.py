@@ -92,15 +92,17 @@ class Probed(_Said):
     picture: Picture | None = None
 
 
-class Progressed(_Said):
-    """Progress of the work, and the newest pose.
+class Progress(_Said):
+    """How far work is.
 
     Attributes
     ----------
     stage
-        ``poses`` or ``saving`` of a clip; other tasks name their own.
+        ``starting``, ``poses`` or ``saving`` of a clip; other work names its own.
     done, total
         Frames or other pieces of work; `total` is an estimate if the container does not count them.
+    eta_s
+        Seconds still to go at the present rate; None before there is one.
     time
         Time of the newest frame, in seconds after the first; None if no frame is shown.
     pose
@@ -110,13 +112,20 @@ class Progressed(_Said):
 
     """
 
-    kind: Literal["progressed"] = "progressed"
-    stage: Annotated[str, Field(max_length=32)]
-    done: Count
-    total: Count
+    stage: str
+    done: Count = 0
+    total: Count = 0
+    eta_s: float | None = None
     time: float | None = None
     pose: Pose | None = None
     kept: Count = 0
+
+
+class Progressed(Progress):
+    """Progress of a process; the server estimates the time left."""
+
+    kind: Literal["progressed"] = "progressed"
+    stage: Annotated[str, Field(max_length=32)]
 
 
 class RecognizedTake(_Said):

@@ -201,19 +201,18 @@ def _view(
     faults: Sequence[schemas.DemonstrationFaultView] = (),
 ) -> PreviewView:
     trajectory, shown = draft.trajectory(), draft.demonstration
-    known = trajectory is not None and len(trajectory) > 0
     return PreviewView(
         problem=problem,
         image=None if gesture is None else _image(gesture, marks=marks),
         salient=[] if gesture is None else list(gesture.salient),
         held_shapes=0 if gesture is None else len(gesture.held_shapes),
-        keypoints=_keypoints(trajectory) if known and trajectory else [],
-        threshold=salience.find_least_displacement(trajectory) if known and trajectory else None,
+        keypoints=[] if trajectory is None else _keypoints(trajectory),
+        threshold=None if trajectory is None else salience.find_least_displacement(trajectory),
         unit="torso_length" if trajectory is None else trajectory.unit,
         descriptors=[] if gesture is None else _descriptors(gesture),
         start=None if shown is None else shown.start,
         end=None if shown is None else shown.end,
-        seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
+        seconds=None if trajectory is None else float(trajectory.time[-1] - trajectory.time[0]),
         strokes="" if gesture is None else describe_strokes(transcribe_gesture(gesture)),
         faults=list(faults),
     )
