@@ -182,7 +182,8 @@ class FramePipeline:
         self._takes: LiveTakes | None = None
         self._trigger = SALUTE
         self._asked = -np.inf  # time of the last check of the trigger
-        self._spotting: tuple[Recognizer, Spotter] | None = None  # of whose gestures
+        # Whose gestures are spotted, and what finds them.
+        self._spotting: tuple[Recognizer, Spotter] | None = None
         self._time = -np.inf
         self._looks: deque[float] = deque()
 

@@ -91,12 +91,12 @@ def _connect(port: int, subprotocols: list[str]) -> websockets.connect:
 
 
 async def _to_viser(browser: WebSocket, server: ClientConnection) -> None:
-    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, KeyError):
+    with contextlib.suppress(ConnectionClosed, KeyError, RuntimeError):
         while True:
             await server.send(await browser.receive_bytes())
 
 
 async def _to_browser(server: ClientConnection, browser: WebSocket) -> None:
-    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, RuntimeError):
+    with contextlib.suppress(ConnectionClosed, RuntimeError):
         async for message in server:
             await browser.send_bytes(message if isinstance(message, bytes) else message.encode())
