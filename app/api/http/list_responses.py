@@ -24,14 +24,14 @@ Query = TypeVar("Query", bound=Hashable)
 
 def _tags(
     if_none_match: Annotated[
-        str | None, Header(description="The ETag of the list that the caller has")
+        str | None, Header(description="The ETag of the answer that the caller has")
     ] = None,
 ) -> frozenset[str]:
     return frozenset(tag.strip() for tag in (if_none_match or "").split(","))
 
 
 KnownTags = Annotated[frozenset[str], Depends(_tags)]
-"""ETags of the lists that the caller has."""
+"""ETags of the answers that the caller has."""
 
 
 def list_response(

@@ -27,8 +27,6 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing import salience
 from app.recognition.voters.registry import PAPER_VOTERS
 
-SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
-
 DISPLACEMENT_DIGITS = 3
 """Decimals of a displacement in torso lengths: about a millimetre on a diver."""
 
@@ -257,7 +255,7 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
     words = describe_effects(
         gesture.switches, counting, hands=find_hands(gesture.salient), held=gesture.is_held
     )
-    counts: dict[str, bool | None] = dict.fromkeys(SWITCHES)
+    counts: dict[str, bool] = {}
     if counting is not None:
         sides_free = gesture.switches.mirror == "on" or not counting.sides
         counts = {
@@ -267,8 +265,6 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
             "hand_shape": counting.hand_shape,
         }
     return {
-        name: SwitchView(
-            position=getattr(gesture.switches, name), counts=counts[name], words=words[name]
-        )
-        for name in SWITCHES
+        name: SwitchView(position=position, counts=counts.get(name), words=words[name])
+        for name, position in vars(gesture.switches).items()
     }

@@ -5,12 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from functools import lru_cache, partial
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
+from app.api.http.list_responses import KnownTags
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.asked_revisions import CurrentRevision
@@ -44,9 +45,7 @@ async def check_language(
     request: Request,
     asked: CurrentRevision,
     response: Response,
-    if_none_match: Annotated[
-        str | None, Header(description="The ETag of a report that the caller has")
-    ] = None,
+    known: KnownTags,
 ) -> Any:
     """Return what other people will reach with a language, and what is wrong with it.
 
@@ -60,7 +59,7 @@ async def check_language(
     # come and go, with the faults that they show.
     shown = hashlib.sha256(json.dumps(faults).encode()).hexdigest()[:16]
     tag = f'"{state.revision.revision}-{__version__}-{shown}"'
-    if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
+    if tag in known:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
     cancelled = ProblemError(409, "check_cancelled", CANCELLED)
