@@ -37,11 +37,11 @@ from app.api.middleware.request_bodies import AnswerAfterBody, BodyLimit, BodyPa
 from app.api.middleware.request_log import RequestLog
 from app.api.middleware.roles import RoleRequired
 from app.api.middleware.safe_paths import SafePaths
-from app.api.middleware.shutdown import EndsInTime, OpenRequests, StudioServer
+from app.api.middleware.shutdown import OpenRequests, StudioServer
 from app.api.observation.heap import share_arenas
 from app.api.observation.logs import set_up
 from app.api.observation.metrics import Metrics
-from app.api.routes import events, invited, server_state
+from app.api.routes import events, invited, samples, server_state
 from app.api.routes.administration import audit, sign_in
 from app.api.routes.administration import metrics as metrics_routes
 from app.api.routes.clips import (
@@ -70,7 +70,6 @@ from app.api.routes.languages import (
     triggers,
 )
 from app.api.routes.recognitions import recognition_pages, recognitions
-from app.api.routes.samples import sample_clips, sample_languages
 from app.api.services.identities import Identities, check_tokens
 from app.api.services.invited_takes import settle_takes
 from app.api.services.running_studio import check_store, open_studio
@@ -173,8 +172,7 @@ def _build_routes() -> tuple[BaseRoute, ...]:
         previews.router,
         recognitions.router,
         recognition_pages.router,
-        sample_clips.router,
-        sample_languages.router,
+        samples.router,
         events.router,
         sign_in.router,
         audit.router,
@@ -321,6 +319,6 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     app.add_middleware(TokenRequired, settings=settings)
     app.add_middleware(SameOrigin, settings=settings)
     app.add_middleware(AnswerAfterBody)
-    app.add_middleware(EndsInTime, requests=app.state.requests)
+    app.add_middleware(app.state.requests.guard)
     app.add_middleware(SecurityHeaders)
     app.add_middleware(RequestLog, metrics=metrics)

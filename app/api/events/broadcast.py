@@ -9,11 +9,12 @@ import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 from uuid import uuid4
 
 from app.store.server_messages import Messages
 
+Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 SECONDS_PER_STREAM = 0.001
@@ -65,22 +66,29 @@ class Event:
         return value
 
 
-class Subscription:
-    """The unread events of one open stream."""
+class Unread(Generic[Item]):
+    """What one open stream has not read yet.
 
-    def __init__(self) -> None:
-        self._unread: asyncio.Queue[Event | None] = asyncio.Queue(MOST_UNREAD)
+    Parameters
+    ----------
+    most
+        Number of items kept.
 
-    def put(self, event: Event | None) -> None:
-        """Add an event, dropping the oldest of a full queue; None ends the stream."""
-        if self._unread.full():
-            self._unread.get_nowait()
-        self._unread.put_nowait(event)
+    """
 
-    async def __aiter__(self) -> AsyncIterator[Event]:
-        """Yield events as they come, until the server stops."""
-        while (event := await self._unread.get()) is not None:
-            yield event
+    def __init__(self, most: int) -> None:
+        self._items: asyncio.Queue[Item | None] = asyncio.Queue(most)
+
+    def put(self, item: Item | None) -> None:
+        """Add an item, dropping the oldest of a full queue; None ends the stream."""
+        if self._items.full():
+            self._items.get_nowait()
+        self._items.put_nowait(item)
+
+    async def __aiter__(self) -> AsyncIterator[Item]:
+        """Yield items as they come, until the end of the stream."""
+        while (item := await self._items.get()) is not None:
+            yield item
 
 
 Join = Callable[[Callable[[str], None], Callable[[], None]], Messages | None]
@@ -104,7 +112,7 @@ class Broadcast:
         self, join: Join | None = None, heard: Callable[[Event], None] | None = None
     ) -> None:
         self._loop = asyncio.get_running_loop()
-        self._subscriptions: set[Subscription] = set()
+        self._subscriptions: set[Unread[Event]] = set()
         self._closed = False
         self._heard = heard
         self._origin = uuid4().hex
@@ -124,9 +132,9 @@ class Broadcast:
                 self._messages.send(json.dumps(told))
 
     @contextmanager
-    def subscribe(self) -> Iterator[Subscription]:
+    def subscribe(self) -> Iterator[Unread[Event]]:
         """Open a stream of the events from now on; use it on the event loop."""
-        subscription = Subscription()
+        subscription = Unread[Event](MOST_UNREAD)
         self._subscriptions.add(subscription)
         if self._closed:
             subscription.put(None)

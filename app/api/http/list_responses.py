@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import lru_cache
-from typing import Annotated, Any, Protocol, TypeVar
+from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Response
 from pydantic import TypeAdapter
+
+from app.store import ClipStore, LanguageStore
 
 NOT_SENT_AGAIN: dict[int | str, dict[str, Any]] = {
     304: {"description": "The list that the caller has is still the newest"}
@@ -15,70 +17,37 @@ NOT_SENT_AGAIN: dict[int | str, dict[str, Any]] = {
 """OpenAPI ``responses`` of a list."""
 
 
-class Counted(Hashable, Protocol):
-    """A store that counts its changes."""
-
-    @property
-    def changes(self) -> int:
-        """Grows with every change."""
-
-
-Store = TypeVar("Store", bound=Counted)
+Store = TypeVar("Store", ClipStore, LanguageStore)
 View = TypeVar("View")
 Query = TypeVar("Query", bound=Hashable)
 
 
 def _tags(
     if_none_match: Annotated[
-        str | None, Header(description="The ETag of the list that the caller has")
+        str | None, Header(description="The ETag of the answer that the caller has")
     ] = None,
 ) -> frozenset[str]:
     return frozenset(tag.strip() for tag in (if_none_match or "").split(","))
 
 
 KnownTags = Annotated[frozenset[str], Depends(_tags)]
-"""ETags of the lists that the caller has."""
+"""ETags of the answers that the caller has."""
 
 
 def list_response(
-    views: Callable[[Store], list[View]], adapter: TypeAdapter[list[View]]
-) -> Callable[[Store, frozenset[str]], Response]:
-    """Return a function that answers with the list of a store's entries.
+    read: Callable[[Store, Query], tuple[list[View], dict[str, str]]],
+    adapter: TypeAdapter[list[View]],
+    kept: int,
+) -> Callable[[Store, frozenset[str], Query], Response]:
+    """Return a function that answers with the list of a store's entries, or a part of it.
 
     Every page lists the whole library at its start, maybe a thousand clips that change rarely. So
     the list is read and serialised only after a change, and a browser that has it gets a 304.
 
     Parameters
     ----------
-    views
-        Reads the list of views.
-    adapter
-        Writes it.
-
-    """
-
-    def read(store: Store, _query: None) -> tuple[list[View], dict[str, str]]:
-        return views(store), {}
-
-    answer_page = page_response(read, adapter, kept=1)
-
-    def answer(store: Store, known: frozenset[str]) -> Response:
-        return answer_page(store, known, None)
-
-    return answer
-
-
-def page_response(
-    read: Callable[[Store, Query], tuple[list[View], dict[str, str]]],
-    adapter: TypeAdapter[list[View]],
-    kept: int,
-) -> Callable[[Store, frozenset[str], Query], Response]:
-    """Return a function that answers with a part of the list of a store's entries.
-
-    Parameters
-    ----------
     read
-        Reads the part that a query selects, and the headers that state its position.
+        Reads the part that a query selects, all for None, and the headers that state its position.
     adapter
         Writes it.
     kept

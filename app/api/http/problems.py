@@ -86,6 +86,8 @@ class ProblemError(HTTPException):
         What is wrong, why, and what to do next.
     errors
         Each fault of the request, if there can be several.
+    pointer
+        Place of the one fault in the body, if it has one.
     headers
         Response headers.
     more
@@ -100,12 +102,13 @@ class ProblemError(HTTPException):
         detail: str,
         *,
         errors: Sequence[Fault] = (),
+        pointer: str | None = None,
         headers: Mapping[str, str] | None = None,
         **more: Any,
     ) -> None:
         super().__init__(status, detail, headers=dict(headers or {}))
         self.code = code
-        self.errors = errors
+        self.errors = errors if pointer is None else [Fault(pointer=pointer, detail=detail)]
         self.more = more
 
     def response(self) -> JSONResponse:
@@ -156,10 +159,8 @@ def schemas() -> dict[str, Any]:
 
 def install(app: FastAPI) -> None:
     """Make `app` answer every error with a problem document."""
-    app.add_exception_handler(RequestValidationError, _on_invalid_request)
-    app.add_exception_handler(HTTPException, _on_http_error)
-    app.add_exception_handler(ClientDisconnect, _on_disconnect)
-    for kind in (OsgError, store.StoreError, OSError, Exception):
+    own = OsgError, store.StoreError, OSError, Exception
+    for kind in (RequestValidationError, HTTPException, ClientDisconnect, *own):
         app.add_exception_handler(kind, _on_error)
 
 
@@ -168,6 +169,30 @@ def problem_of(error: Exception) -> ProblemError:
     match error:
         case ProblemError():
             return error
+        case HTTPException():
+            code = HTTPStatus(error.status_code).name.lower()
+            return ProblemError(error.status_code, code, str(error.detail), headers=error.headers)
+        case RequestValidationError():
+            return _convert_invalid_request(error)
+        case ClientDisconnect():
+            # Nobody reads this; a 400 keeps the server's log free of an error that is not its own.
+            return ProblemError(400, "client_left", "the client left before it was answered")
+        case store.StoreError():
+            return _convert_store_error(error)
+        case OsgError():
+            return _convert_recognition_error(error)
+        case OSError():
+            return _convert_os_error(error)
+    logger.error("unexpected error", exc_info=error)
+    return ProblemError(
+        500,
+        "internal",
+        "the server met an error that it does not know; its log has the details",
+    )
+
+
+def _convert_store_error(error: store.StoreError) -> ProblemError:
+    match error:
         case store.NotFound():
             return ProblemError(404, "not_found", str(error))
         case store.Conflict():
@@ -182,30 +207,21 @@ def problem_of(error: Exception) -> ProblemError:
             return _convert_quota(error)
         case store.TooManyInvitations():
             return ProblemError(409, "too_many_invitations", str(error))
+        case store.TestSetFull():
+            return ProblemError(409, "test_set_full", str(error))
         case store.InvitationClosed():
             # The rest of a body stays unread, so the connection cannot be used again.
             headers = {"Connection": "close"}
             return ProblemError(
                 403, "invitation_closed", str(error), headers=headers, reason=error.code
             )
-        case store.StoreError():
-            headers = {"Retry-After": RETRY_SECONDS}
-            return ProblemError(503, "store_unavailable", str(error), headers=headers)
-        case OsgError():
-            return _convert_recognition_error(error)
-        case OSError():
-            return _convert_os_error(error)
-    logger.error("unexpected error", exc_info=error)
-    return ProblemError(
-        500,
-        "internal",
-        "the server met an error that it does not know; its log has the details",
-    )
+    headers = {"Retry-After": RETRY_SECONDS}
+    return ProblemError(503, "store_unavailable", str(error), headers=headers)
 
 
 def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
-    problem = ProblemError(
-        507,
+    return ProblemError(
+        413 if error.alone else 507,  # Alone: no deletion helps.
         "quota_exceeded",
         str(error),
         # The rest of a body stays unread, so the connection cannot be used again.
@@ -213,17 +229,13 @@ def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
         used={"clips": error.usage.clips, "bytes": error.usage.bytes},
         limit=error.limit,
     )
-    if error.alone:  # No deletion helps.
-        problem.status_code = 413
-    return problem
 
 
 def _convert_recognition_error(error: OsgError) -> ProblemError:
     if isinstance(error, ModelError):
         return ProblemError(503, "model_missing", str(error))
     if isinstance(error, LanguageError):
-        fault = Fault(pointer=error.pointer, detail=str(error))
-        return ProblemError(422, "language_invalid", str(error), errors=[fault])
+        return ProblemError(422, "language_invalid", str(error), pointer=error.pointer)
     codes: dict[type, str] = {
         GestureError: "gesture_unusable",
         VideoError: "video_unreadable",
@@ -247,32 +259,16 @@ def _convert_os_error(error: OSError) -> ProblemError:
     return ProblemError(503, "storage_unavailable", detail, headers=headers)
 
 
-async def _on_disconnect(_request: Request, _error: Exception) -> JSONResponse:
-    # Nobody reads this response; a 400 keeps the server's log free of an error that is not its own.
-    return ProblemError(400, "client_left", "the client left before it was answered").response()
-
-
 async def _on_error(_request: Request, error: Exception) -> JSONResponse:
     return problem_of(error).response()
 
 
-async def _on_http_error(_request: Request, error: Exception) -> JSONResponse:
-    if isinstance(error, ProblemError):
-        return error.response()
-    assert isinstance(error, HTTPException)
-    status = HTTPStatus(error.status_code)
-    code = status.name.lower()
-    return ProblemError(status, code, str(error.detail), headers=error.headers).response()
-
-
-async def _on_invalid_request(_request: Request, error: Exception) -> JSONResponse:
-    assert isinstance(error, RequestValidationError)
+def _convert_invalid_request(error: RequestValidationError) -> ProblemError:
     faults = [_fault(item) for item in error.errors()]
     where = "; ".join(f"{f.parameter or f.pointer or 'body'}: {f.detail}" for f in faults[:3])
     more = f" (and {len(faults) - 3} more)" if len(faults) > 3 else ""
-    return ProblemError(
-        422, "request_invalid", f"the request is not valid: {where}{more}", errors=faults
-    ).response()
+    detail = f"the request is not valid: {where}{more}"
+    return ProblemError(422, "request_invalid", detail, errors=faults)
 
 
 def _fault(item: Mapping[str, Any]) -> Fault:

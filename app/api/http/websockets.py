@@ -1,11 +1,14 @@
-"""Websockets: close codes and the check of the Origin header."""
+"""Websockets: close codes, the check of the Origin header, and work in two directions."""
 
 from __future__ import annotations
 
-from typing import Final
+import asyncio
+from collections.abc import Coroutine
+from typing import Any, Final
 from urllib.parse import urlsplit
 
 from fastapi import WebSocket
+from starlette.websockets import WebSocketDisconnect
 
 UNSUPPORTED_DATA: Final = 1007
 POLICY_VIOLATION: Final = 1008
@@ -21,3 +24,20 @@ def same_origin(websocket: WebSocket) -> bool:
     """
     origin = websocket.headers.get("origin")
     return origin is None or urlsplit(origin).netloc == websocket.headers.get("host")
+
+
+async def until_one_ends(*directions: Coroutine[Any, Any, None]) -> None:
+    """Await coroutines until the first one ends, and end the others.
+
+    What one of them raises is raised, unless it is that the page has left.
+    """
+    tasks = [asyncio.create_task(direction) for direction in directions]
+    try:
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    finally:
+        for task in tasks:
+            task.cancel()
+        ends = await asyncio.gather(*tasks, return_exceptions=True)
+    for end in ends:
+        if isinstance(end, Exception) and not isinstance(end, WebSocketDisconnect):
+            raise end

@@ -15,7 +15,7 @@ from starlette.requests import ClientDisconnect, Request
 
 from app.api.http.problems import ProblemError
 from app.api.ingest.fields import LONGEST, UploadFields
-from app.api.middleware.request_bodies import too_large
+from app.api.middleware.request_bodies import stated_bytes, too_large
 from app.settings import Settings
 
 FRAME_BYTES = 64 * 1024
@@ -76,9 +76,7 @@ async def receive_file(
         507 when the disk is too full.
 
     """
-    stated = request.headers.get("content-length", "")
-    size = int(stated) if stated.isdecimal() else 0
-    require_space(target.parent, size, settings, reserved=reserved)
+    require_space(target.parent, stated_bytes(request.headers), settings, reserved=reserved)
     parser = _file_part(request, settings)
     with await run_in_threadpool(target.open, "wb") as file:
         try:
@@ -96,8 +94,7 @@ async def receive_file(
 
 async def receive_body(request: Request, target: Path, settings: Settings) -> int:
     """Write a whole body to `target`, and return its size; see `receive_file`."""
-    stated = request.headers.get("content-length", "")
-    require_space(target.parent, int(stated) if stated.isdecimal() else 0, settings)
+    require_space(target.parent, stated_bytes(request.headers), settings)
     size = 0
     with await run_in_threadpool(target.open, "wb") as file:
         try:
@@ -107,6 +104,11 @@ async def receive_body(request: Request, target: Path, settings: Settings) -> in
         except ClientDisconnect as error:
             raise _malformed("the upload was broken off") from error
     return size
+
+
+def least_size(request: Request) -> int:
+    """Return the bytes that the file of a form has at least, by the stated length of the body."""
+    return max(0, stated_bytes(request.headers) - FRAME_BYTES)
 
 
 def display_name(name: str) -> str:

@@ -7,7 +7,6 @@ import logging
 from collections import OrderedDict, deque
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 from typing import ParamSpec, TypeVar
@@ -17,9 +16,9 @@ from starlette.concurrency import run_in_threadpool
 from app import store
 from app.api.events.broadcast import Broadcast, Event
 from app.api.jobs.job import Job as RunningJob
-from app.api.jobs.job import JobCancelled, JobRunner, Progress, Report, run_task
+from app.api.jobs.job import JobCancelled, JobRunner, Report, run_task
 from app.api.workers.tasks import Record
-from app.api.workers.worker_messages import Failed, Finished
+from app.api.workers.worker_messages import Failed, Finished, Progress
 from app.api.workers.worker_processes import Workers
 from app.clip_sources import ReadOptions
 from app.settings import Settings
@@ -156,8 +155,8 @@ class ExtractionQueue:
 
     async def _run(self, job: store.Job) -> None:
         def event(progress: Progress) -> Event:
-            event = job_event(job)
-            return Event(event.kind, {**event.data, "progress": asdict(progress)})
+            event, told = job_event(job), progress.model_dump(exclude={"kind"})
+            return Event(event.kind, {**event.data, "progress": told})
 
         run = partial(self._extract, job)
         self._running.add(job.id)
@@ -172,7 +171,7 @@ class ExtractionQueue:
         """Extract a clip, unless its job was cancelled or it was deleted; return how it ended."""
         if not await persist(self._jobs.is_running, job.id):
             return None
-        report(Progress("starting"))
+        report(Progress(stage="starting"))
         try:
             clip = (await persist(self._clips.get, job.clip_id)).clip
         except store.NotFound:

@@ -7,8 +7,7 @@ import logging
 import time
 from collections import OrderedDict
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from starlette.concurrency import run_in_threadpool
@@ -21,7 +20,7 @@ from app.api.workers.worker_messages import (
     Answered,
     Failed,
     Finished,
-    Pose,
+    Progress,
     Progressed,
     RecognizedTake,
 )
@@ -42,43 +41,6 @@ logger = logging.getLogger(__name__)
 
 class JobCancelled(Exception):
     """Raised to everybody who waits for a job that was cancelled."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """How far a running job is.
-
-    Attributes
-    ----------
-    stage
-        Stage of an extraction: ``starting``, ``poses`` or ``saving``; other jobs name their own.
-    done, total
-        Frames or other pieces of work; `total` may be an estimate.
-    eta_s
-        Seconds still to go at the present rate, or None before there is one.
-    time
-        For an extraction: time of the newest frame with landmarks, in seconds after the clip's
-        first frame; None in the other stages.
-    pose
-        The body in that frame, or None if it shows nobody.
-    kept
-        Recordings of the frames so far that were written.
-
-    """
-
-    stage: str
-    done: int = 0
-    total: int = 0
-    eta_s: float | None = None
-    time: float | None = None
-    pose: Pose | None = None
-    kept: int = 0
-
-
-def progress_of(event: Event) -> Progress | None:
-    """Return the progress in an event; None if it has none."""
-    told = event.data.get("progress")
-    return None if told is None else Progress(**told)
 
 
 Report = Callable[[Progress], None]
@@ -117,19 +79,6 @@ class Job(Generic[Result]):
     cached: bool = False
 
 
-def task_job(
-    kind: str,
-    key: str,
-    event: Callable[[Progress], Event],
-    workers: Workers,
-    task: AnyTask,
-    *,
-    cached: bool = False,
-) -> Job[Finished | Failed]:
-    """Return a task of a worker process as a job."""
-    return Job(kind, key, event, partial(run_task, workers, task), cached=cached)
-
-
 def events_about(kind: str, **about: Any) -> Callable[[Progress], Event]:
     """Return what makes the events of a job that has no frames to show."""
 
@@ -153,8 +102,7 @@ async def run_task(
         nonlocal answered
         if isinstance(message, Progressed):
             eta = left.estimate(message.done, message.total, time.monotonic())
-            progress = (message.stage, message.done, message.total, eta)
-            report(Progress(*progress, message.time, message.pose, message.kept))
+            report(message.model_copy(update={"eta_s": eta}))
         # A repeated process gives its earlier answers again.
         elif keep is not None and message.index == answered:
             await run_in_threadpool(keep, message.index, message.take)
@@ -194,6 +142,7 @@ class _Run:
 
     job: Job[Any]
     broadcast: Broadcast
+    task: asyncio.Task[Any] = field(init=False)
     progress: Progress | None = None
     cancelled: bool = False
     waiting: int = 0
@@ -220,7 +169,7 @@ class JobRunner:
     def __init__(self, broadcast: Broadcast, metrics: Metrics | None = None) -> None:
         self._broadcast = broadcast
         self._metrics = metrics or Metrics()
-        self._runs: dict[str, tuple[_Run, asyncio.Task[Any]]] = {}
+        self._runs: dict[str, _Run] = {}
         self._elsewhere: dict[str, Progress] = {}
         self._closed = False
 
@@ -242,8 +191,8 @@ class JobRunner:
             return cached
         if job.key not in self._runs:
             self._start(job)
-        run: _Run = self._runs[job.key][0]
-        task: asyncio.Task[Result] = self._runs[job.key][1]
+        run = self._runs[job.key]
+        task: asyncio.Task[Result] = run.task
         run.waiting += 1
         try:
             # Not awaited directly: cancelling the job must not look like cancelling the caller.
@@ -259,7 +208,7 @@ class JobRunner:
     def progress(self, key: str) -> Progress | None:
         """Return the progress of a job, here or on another server; None if it is not running."""
         if key in self._runs:
-            return self._runs[key][0].progress
+            return self._runs[key].progress
         return self._elsewhere.get(key)
 
     def note(self, key: str, progress: Progress | None) -> None:
@@ -273,25 +222,24 @@ class JobRunner:
         """Cancel a job; return whether it ran. A job of the same key may begin at once."""
         if key not in self._runs:
             return False
-        run, task = self._runs.pop(key)
+        run = self._runs.pop(key)
         run.cancelled = True
-        task.cancel()
-        await asyncio.wait([task])
+        run.task.cancel()
+        await asyncio.wait([run.task])
         return True
 
     async def stop(self) -> None:
         """Cancel the jobs that are not resumable, and refuse new ones."""
         self._closed = True
-        for key in [key for key, (run, _) in self._runs.items() if not run.job.resumable]:
+        for key in [key for key, run in self._runs.items() if not run.job.resumable]:
             await self.cancel(key)
 
     def _start(self, job: Job[Any]) -> None:
         if self._closed and not job.resumable:
             raise JobCancelled
-        run = _Run(job, self._broadcast)
-        task = asyncio.create_task(self._observe(job, run))
-        self._runs[job.key] = run, task
-        task.add_done_callback(lambda _: self._end(run))
+        run = self._runs[job.key] = _Run(job, self._broadcast)
+        run.task = asyncio.create_task(self._observe(job, run))
+        run.task.add_done_callback(lambda _: self._end(run))
 
     async def _observe(self, job: Job[Result], run: _Run) -> Result:
         """Run a job; log and measure how it ends."""
@@ -315,7 +263,7 @@ class JobRunner:
             logger.info("job ended", extra={FIELDS: fields})
 
     def _end(self, run: _Run) -> None:
-        if run.job.key in self._runs and self._runs[run.job.key][0] is run:
+        if self._runs.get(run.job.key) is run:
             del self._runs[run.job.key]
 
 

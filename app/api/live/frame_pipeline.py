@@ -182,8 +182,8 @@ class FramePipeline:
         self._takes: LiveTakes | None = None
         self._trigger = SALUTE
         self._asked = -np.inf  # time of the last check of the trigger
-        self._spotter: Spotter | None = None
-        self._spots: Recognizer | None = None  # whose gestures the spotter finds
+        # Whose gestures are spotted, and what finds them.
+        self._spotting: tuple[Recognizer, Spotter] | None = None
         self._time = -np.inf
         self._looks: deque[float] = deque()
 
@@ -205,7 +205,7 @@ class FramePipeline:
         if takes is None or takes.frame_size != (width, height) or frame.time <= self._time:
             self._sight.reset()
             self._people.reset()
-            takes, self._spotter, self._asked = None, None, -np.inf
+            takes, self._spotting, self._asked = None, None, -np.inf
         trigger = self._find_trigger()
         if takes is None or takes.trigger != trigger:
             takes = self._takes = LiveTakes((width, height), trigger)
@@ -250,23 +250,21 @@ class FramePipeline:
             try:
                 recognizer = self._recognizer()
                 self._trigger = SALUTE if recognizer is None else recognizer.language.trigger
-                if recognizer is not None and self._trigger.spots:
-                    self._renew_spotter(recognizer)
+                known = None if self._spotting is None else self._spotting[0]
+                if recognizer is not None and self._trigger.spots and recognizer is not known:
+                    self._spotting = recognizer, Spotter(recognizer)
             except OsgError:  # no such language, or no gesture to spot in it
-                self._trigger, self._spotter = SALUTE, None
+                self._trigger, self._spotting = SALUTE, None
         return self._trigger
-
-    def _renew_spotter(self, recognizer: Recognizer) -> None:
-        if self._spotter is None or self._spots is not recognizer:
-            self._spotter, self._spots = Spotter(recognizer), recognizer
 
     def _spot(self, moment: PoseSequence) -> tuple[Recognized, ...]:
         """Return the gestures that ended, without a trigger around them."""
-        if self._spotter is None or self._spots is None:
+        if self._spotting is None:
             return ()
+        recognizer, spotter = self._spotting
         return tuple(
-            _view_answer(self._spots, each.recognition, each.start, each.end, closed=True)
-            for each in self._spotter.feed(moment)
+            _view_answer(recognizer, each.recognition, each.start, each.end, closed=True)
+            for each in spotter.feed(moment)
         )
 
     def _recognize(self, sight: Sight) -> tuple[Recognized, ...]:
@@ -275,7 +273,7 @@ class FramePipeline:
         try:
             return (answer_of(sight.take, self._recognizer()),)
         except OsgError as error:
-            return (_view_take(sight.take, problem=str(error)),)
+            return (_view_take(sight.take, str(error)),)
 
 
 def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
@@ -288,7 +286,7 @@ def answer_of(take: Take, recognizer: Recognizer | None) -> Recognized:
 
     """
     if recognizer is None:
-        return _view_take(take, problem="no language is chosen; choose one above")
+        return _view_take(take, "no language is chosen; choose one above")
     result = recognizer.recognize_take(take)
     return _view_answer(recognizer, result, take.start, take.end, closed=take.closed)
 
@@ -312,9 +310,8 @@ def _view_answer(
     )
 
 
-def _view_take(take: Take, **answer: object) -> Recognized:
-    about = {"start": take.start, "end": take.end, "closed": take.closed}
-    return Recognized.model_validate(about | answer)
+def _view_take(take: Take, problem: str) -> Recognized:
+    return Recognized(start=take.start, end=take.end, closed=take.closed, problem=problem)
 
 
 def decode_frame(jpeg: bytes) -> Image:

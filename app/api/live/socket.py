@@ -19,7 +19,12 @@ from starlette.concurrency import run_in_threadpool
 from starlette.websockets import WebSocketDisconnect
 
 from app.api.http.schemas.values import Body
-from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
+from app.api.http.websockets import (
+    POLICY_VIOLATION,
+    UNSUPPORTED_DATA,
+    same_origin,
+    until_one_ends,
+)
 from app.api.live.frame_pipeline import Frame, FramePipeline, Recognized
 from app.api.services.running_studio import CurrentStudio, Studio
 from app.recognition import OsgError, Recognizer
@@ -166,19 +171,7 @@ class _View:
             When something else ends it.
 
         """
-        tasks = [
-            asyncio.create_task(self._receive()),
-            asyncio.create_task(self._look()),
-        ]
-        try:
-            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-        finally:
-            for task in tasks:
-                task.cancel()
-            ends = await asyncio.gather(*tasks, return_exceptions=True)
-        for end in ends:
-            if isinstance(end, Exception) and not isinstance(end, WebSocketDisconnect):
-                raise end
+        await until_one_ends(self._receive(), self._look())
 
     def close(self) -> None:
         """Wait for the frame being processed, and release the models."""

@@ -35,11 +35,9 @@ class Audit:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on the request, and log it according to the answer."""
-        if scope["type"] != "http" or needed_role(scope["method"], scope["path"]) is Role.READ:
+        reads = scope["type"] != "http" or scope["method"] in SAFE_METHODS
+        if reads or needed_role(scope["method"], scope["path"]) is Role.READ:
             return await self._app(scope, receive, send)
-        if scope["method"] in SAFE_METHODS:
-            return await self._app(scope, receive, send)
-
         refused = False
 
         async def send_after_noting(message: Message) -> None:

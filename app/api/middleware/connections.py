@@ -36,14 +36,10 @@ class _Connection:
     """
 
     protocol: GuardedProtocol
+    transport: asyncio.Transport
     address: str
     idle_since: float
     cycle: Any = None
-
-    @property
-    def transport(self) -> asyncio.Transport:
-        transport: asyncio.Transport = self.protocol.transport
-        return transport
 
     @property
     def idle(self) -> bool:
@@ -78,7 +74,7 @@ class ConnectionGuard:
     def open(self, protocol: GuardedProtocol) -> None:
         """Count a new connection; if there are too many, close the one idle longest."""
         address = protocol.client[0] if protocol.client else "local"
-        connection = _Connection(protocol, address, time.monotonic())
+        connection = _Connection(protocol, protocol.transport, address, time.monotonic())
         self._connections[protocol.transport] = connection
         if len(self._connections) <= self._most * SHARE_OF_ADDRESS:
             return

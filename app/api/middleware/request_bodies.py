@@ -18,6 +18,12 @@ SMALL_BYTES = 16 * 1024
 """A body up to this size is awaited before an answer, and parsed on the event loop."""
 
 
+def stated_bytes(headers: Headers) -> int:
+    """Return the length that a request states of its body; 0 if it states none."""
+    stated = headers.get("content-length", "")
+    return int(stated) if stated.isdecimal() else 0
+
+
 class BodyLimit:
     """Limits request bodies by path.
 
@@ -44,8 +50,7 @@ class BodyLimit:
         path = scope["path"]
         place = path.rpartition("/")[0] + "/*"
         limit = self._exceptions.get(path, self._exceptions.get(place, self._default))
-        stated = Headers(scope=scope).get("content-length", "")
-        if stated.isdecimal() and int(stated) > limit:
+        if stated_bytes(Headers(scope=scope)) > limit:
             return await too_large(limit).response()(scope, receive, send)
         received = 0
 
@@ -142,8 +147,8 @@ class AnswerAfterBody:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Pass on the request, and the answer once a small body is complete."""
-        length = Headers(scope=scope).get("content-length", "") if scope["type"] == "http" else ""
-        if not (length.isdecimal() and 0 < int(length) <= SMALL_BYTES):
+        length = stated_bytes(Headers(scope=scope)) if scope["type"] == "http" else 0
+        if not 0 < length <= SMALL_BYTES:
             return await self._app(scope, receive, send)
         complete = False
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from functools import partial
 from typing import Any
 
 import uvicorn
@@ -27,14 +28,20 @@ FLUSH_SECONDS = 0.1
 
 
 class OpenRequests:
-    """Registry of the requests that a server is answering."""
+    """Registry of the requests that a server is answering; `guard` is its ASGI middleware."""
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[Any]] = set()
         self._ending = False
 
-    async def answer(self, app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
+    def guard(self, app: ASGIApp) -> ASGIApp:
+        """Return an app that answers as `app`, of which the requests are registered."""
+        return partial(self._answer, app)
+
+    async def _answer(self, app: ASGIApp, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request by `app`, or with 503 when the server stops before the answer begins."""
+        if scope["type"] != "http":
+            return await app(scope, receive, send)
         task = asyncio.current_task()
         assert task is not None
         begun = False
@@ -64,29 +71,6 @@ class OpenRequests:
             await asyncio.wait(waiting, timeout=seconds)
         for task in self._tasks:
             task.cancel()
-
-
-class EndsInTime:
-    """Registers the requests that are being answered.
-
-    Parameters
-    ----------
-    app
-        What answers.
-    requests
-        Registry of the requests.
-
-    """
-
-    def __init__(self, app: ASGIApp, requests: OpenRequests) -> None:
-        self._app = app
-        self._requests = requests
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on."""
-        if scope["type"] != "http":
-            return await self._app(scope, receive, send)
-        return await self._requests.answer(self._app, scope, receive, send)
 
 
 class StudioServer(uvicorn.Server):

@@ -37,8 +37,7 @@ class Metrics:
     """
 
     def __init__(self) -> None:
-        self._registry = CollectorRegistry()
-        registry = self._registry
+        registry = self._registry = CollectorRegistry()
         self.requests = Counter(
             "osg_requests", "Requests answered", ["method", "route", "status"], registry=registry
         )

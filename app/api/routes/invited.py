@@ -16,7 +16,7 @@ from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import invitations as schemas
 from app.api.http.schemas.values import Diver, Label
 from app.api.ingest.intake import UNSUPPORTED, Inspected, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import FRAME_BYTES, Upload, display_name, file_form, receive_file
+from app.api.ingest.multipart import Upload, display_name, file_form, least_size, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.gesture_edits import gesture_in
 from app.api.services.invited_takes import Returned, answer_question, require_unshown
@@ -79,8 +79,7 @@ async def send_take(
     """
     diver = diver.strip()
     await run_in_threadpool(_require_wanted, studio, invitation, label, diver)
-    stated = request.headers.get("content-length", "")
-    least = max(0, int(stated) - FRAME_BYTES) if stated.isdecimal() else 0
+    least = least_size(request)
     require_open(invitation, least)
     reserved = await require_place_in_queue(request, studio)
     await require_quota(quota, studio, least)

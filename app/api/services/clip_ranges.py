@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.api.http.problems import Fault, ProblemError
+from app.api.http.problems import ProblemError
 from app.recognition.errors import AmbiguousRangeError, RangeError
 from app.recognition.recording.clip_range import Demonstration, find_demonstration
 from app.recognition.recording.recording import Recording
@@ -30,5 +30,5 @@ def demonstration_in(
     except AmbiguousRangeError as error:
         raise ProblemError(422, "take_ambiguous", str(error)) from error
     except RangeError as error:
-        fault = Fault(pointer="/start" if start is not None else "/end", detail=str(error))
-        raise ProblemError(422, "range_empty", str(error), errors=[fault]) from error
+        pointer = "/start" if start is not None else "/end"
+        raise ProblemError(422, "range_empty", str(error), pointer=pointer) from error

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.api.http.problems import Fault, ProblemError
+from app.api.http.problems import ProblemError
 from app.api.http.schemas.gestures import (
     DemonstrationDraft,
     GestureChange,
@@ -14,7 +14,7 @@ from app.api.http.schemas.gestures import (
 )
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.running_studio import Studio
-from app.recognition import Gesture, GestureError, Language, PoseError
+from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
@@ -96,9 +96,7 @@ def gestures_from(
 
 
 def _refusal(status: int, code: str, index: int, draft: GestureDraft, reason: str) -> ProblemError:
-    detail = f"{draft.label}: {reason}"
-    fault = Fault(pointer=f"/gestures/{index}", detail=detail)
-    return ProblemError(status, code, detail, errors=[fault])
+    return ProblemError(status, code, f"{draft.label}: {reason}", pointer=f"/gestures/{index}")
 
 
 def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language:
@@ -160,8 +158,8 @@ def change_gesture_of(
     changed = gesture
     if demonstration is not None:
         diver = "" if change.demonstration is None else change.demonstration.diver
-        show = _show_further if change.further else _remake
-        changed = show(gesture, demonstration, change.salient or None, diver)
+        show = Gesture.with_demonstration if change.further else _remake
+        changed = show(gesture, demonstration.poses, diver, salient=change.salient or None)
     elif change.salient:
         changed = _set_salient(gesture, change.salient)
     switches = set_switches(changed.switches, change)
@@ -187,7 +185,7 @@ def add_demonstration_to(
     """
     gesture = gesture_in(language, draft.label)
     return language.with_changed(
-        _show_further(gesture, demonstration, draft.salient or None, draft.diver)
+        gesture.with_demonstration(demonstration.poses, draft.diver, salient=draft.salient or None)
     )
 
 
@@ -270,17 +268,14 @@ def require_free(
             detail = (
                 f"the label {label!r} looks like {taken!r}, which the language has; choose another"
             )
-        fault = Fault(pointer=pointer, detail=detail)
-        raise ProblemError(409, "label_taken", detail, errors=[fault])
+        raise ProblemError(409, "label_taken", detail, pointer=pointer)
 
 
 def _remake(
-    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
+    gesture: Gesture, poses: PoseSequence, diver: str, *, salient: Sequence[str] | None
 ) -> Gesture:
     """Replace the first demonstration; texts, command and switches stay."""
-    made = Gesture.from_demonstration(
-        gesture.label, demonstration.poses, salient=salient, diver=diver
-    )
+    made = Gesture.from_demonstration(gesture.label, poses, salient=salient, diver=diver)
     return replace(
         made,
         description=gesture.description,
@@ -290,20 +285,12 @@ def _remake(
     )
 
 
-def _show_further(
-    gesture: Gesture, demonstration: Demonstration, salient: list[str] | None, diver: str
-) -> Gesture:
-    """Add a demonstration; all else stays."""
-    return gesture.with_demonstration(demonstration.poses, diver, salient=salient)
-
-
 def _set_salient(gesture: Gesture, names: list[str]) -> Gesture:
     """Draw and describe a gesture again, with other salient keypoints."""
     try:
         return gesture.with_salient(names)
     except GestureError as error:
-        fault = Fault(pointer="/salient", detail=str(error))
-        raise ProblemError(422, "gesture_unusable", str(error), errors=[fault]) from error
+        raise ProblemError(422, "gesture_unusable", str(error), pointer="/salient") from error
 
 
 @dataclass(frozen=True)

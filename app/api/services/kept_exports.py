@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -16,19 +15,12 @@ MOST_KEPT: Final = 8
 """Most exports kept at the same time, so that they cannot fill the disk; the oldest is removed."""
 
 
-@dataclass(frozen=True)
-class _Kept:
-    """One file, and the timer that removes it."""
-
-    path: Path
-    removal: asyncio.TimerHandle
-
-
 class KeptExports:
     """Files by the ids that their clients chose; each can be taken once."""
 
     def __init__(self) -> None:
-        self._kept: dict[tuple[str, str], _Kept] = {}
+        # Each with the timer that removes it.
+        self._kept: dict[tuple[str, str], tuple[Path, asyncio.TimerHandle]] = {}
 
     def keep(self, clip_id: str, export_id: str, path: Path) -> None:
         """Keep the export of a clip for `KEEP_SECONDS`, in place of an older one with that id."""
@@ -37,15 +29,16 @@ class KeptExports:
         while len(self._kept) >= MOST_KEPT:
             self._remove(next(iter(self._kept)))
         removal = asyncio.get_running_loop().call_later(KEEP_SECONDS, self._remove, place)
-        self._kept[place] = _Kept(path, removal)
+        self._kept[place] = path, removal
 
     def take(self, clip_id: str, export_id: str) -> Path | None:
         """Return the file of an export, which the caller must remove; None if there is none."""
         kept = self._kept.pop((clip_id, export_id), None)
         if kept is None:
             return None
-        kept.removal.cancel()
-        return kept.path
+        path, removal = kept
+        removal.cancel()
+        return path
 
     def clear(self) -> None:
         """Remove all."""

@@ -1,14 +1,13 @@
-"""Conversion between languages in memory and the store's revisions."""
+"""Language documents: a language in memory as a revision to store, and the name of a copy."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container
-from dataclasses import replace
+from collections.abc import Container
 from itertools import chain, count
 
 from app.recognition import Language
 from app.recognition.language.language import MAX_NAME_LENGTH
-from app.store import Draft, LanguageRevision
+from app.store import Draft
 
 LONGEST_NAME = 200
 """Most characters of a language's name in lists."""
@@ -35,18 +34,6 @@ def draft_of(language: Language, change: str) -> Draft:
         document=language.to_json(),
         author=language.author,
     )
-
-
-def edit_document(
-    change: str, change_language: Callable[[Language], Language]
-) -> Callable[[LanguageRevision, int], Draft]:
-    """Return the `change` for `LanguageStore.edit`: it makes the next revision's document."""
-
-    def draft(head: LanguageRevision, number: int) -> Draft:
-        language = change_language(Language.from_json(head.document))
-        return draft_of(replace(language, revision=number), change)
-
-    return draft
 
 
 def name_of_copy(name: str, taken: Container[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import zip_longest
 from urllib.parse import urlencode
 
@@ -13,7 +14,7 @@ from app.api.http.revisions import revision_tag
 from app.api.http.schemas.gestures import DemonstrationView, GestureView, SourceView
 from app.api.http.schemas.languages import LanguageSummary, LanguageView
 from app.api.services.demonstration_sources import sources_in
-from app.api.services.language_documents import edit_document
+from app.api.services.language_documents import draft_of
 from app.api.services.running_studio import DocumentCache, Studio
 from app.recognition import Language
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
@@ -22,7 +23,7 @@ from app.recognition.language.file import seal, short_code
 from app.recognition.language.grammar_entry import grammar_to_entry
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.language.tuning_entry import tuning_to_entry
-from app.store import Draft, LanguageState, Quota
+from app.store import Draft, LanguageRevision, LanguageState, Quota
 
 
 def save_revision(
@@ -37,7 +38,11 @@ def save_revision(
 
     Errors as `LanguageStore.edit`.
     """
-    edit = edit_document(words, change)
+
+    def edit(head: LanguageRevision, number: int) -> Draft:
+        language = change(Language.from_json(head.document))
+        return draft_of(replace(language, revision=number), words)
+
     return studio.keep_within(
         quota, lambda: studio.languages.edit(language_id, edit, expected, quota)
     )

@@ -26,11 +26,12 @@ from app.api.events.broadcast import Event as BroadcastEvent
 from app.api.http.connection import compute_while_connected
 from app.api.http.problems import ProblemError
 from app.api.jobs.extraction_queue import ExtractionQueue
-from app.api.jobs.job import JobRunner, compute_in_place, progress_of
+from app.api.jobs.job import JobRunner, compute_in_place
 from app.api.observation.heap import keep_trimmed
 from app.api.observation.metrics import Metrics
 from app.api.services.kept_exports import KeptExports
 from app.api.services.sample_library import Samples
+from app.api.workers.worker_messages import Progress
 from app.api.workers.worker_processes import Workers
 from app.recognition import Language, Recognizer
 from app.recognition.recording.recording import Recording
@@ -178,9 +179,9 @@ class Studio:
     def _hear(self, event: BroadcastEvent) -> None:
         """Store the progress of another server's job."""
         if event.kind == "jobs":
-            progress = progress_of(event)
-            self.runner.note(event.data["id"], progress)
-            if progress is None:
+            told = event.data.get("progress")
+            self.runner.note(event.data["id"], None if told is None else Progress(**told))
+            if told is None:
                 self.extractions.look()
 
     async def stop_soon(self) -> None:
@@ -404,8 +405,8 @@ CurrentStudio = Annotated[Studio, Depends(_studio_of)]
 def computed(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
     """Decorate a route that computes for seconds: few run at a time, while their clients wait.
 
-    Its parameters must include ``studio``. A route with the parameter ``advance`` calls it between
-    its steps, and is ended there once its client has left.
+    A route with the parameter ``advance`` calls it between its steps, and is ended there once its
+    client has left.
     """
     return _limited(route, lambda studio: studio.computations)
 
@@ -415,35 +416,35 @@ def computed_briefly(route: Callable[..., Made]) -> Callable[..., Coroutine[Any,
     return _limited(route, lambda studio: studio.brief_computations)
 
 
+def edited(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
+    """Decorate a route that computes a change: few run at a time, and waiting takes no thread.
+
+    It goes on when its client leaves, so that the change is in the audit log.
+    """
+    return _limited(route, lambda studio: studio.edits, goes_on=True)
+
+
 def _limited(
-    route: Callable[..., Made], places: Callable[[Studio], asyncio.Semaphore]
+    route: Callable[..., Made],
+    places_of: Callable[[Studio], asyncio.Semaphore],
+    *,
+    goes_on: bool = False,
 ) -> Callable[..., Coroutine[Any, Any, Made]]:
     parameters = dict(signature(route).parameters)
     has_steps = parameters.pop("advance", None) is not None
 
     @wraps(route)
-    async def limited(*, connection: Request, studio: Studio, **given: Any) -> Made:
+    async def limited(*, connection: Request, **given: Any) -> Made:
         def compute(advance: Callable[[], None]) -> Made:
-            return route(studio=studio, **given, **({"advance": advance} if has_steps else {}))
+            return route(**given, **({"advance": advance} if has_steps else {}))
 
-        return await compute_while_connected(connection, places(studio), compute)
+        places = places_of(_studio_of(connection))
+        if goes_on:
+            return await compute_in_place(places, partial(route, **given))
+        return await compute_while_connected(connection, places, compute)
 
     asked = Parameter("connection", Parameter.KEYWORD_ONLY, annotation=Request)
     limited.__signature__ = signature(route).replace(  # type: ignore[attr-defined]
         parameters=[*parameters.values(), asked]
     )
-    return limited
-
-
-def edited(route: Callable[..., Made]) -> Callable[..., Coroutine[Any, Any, Made]]:
-    """Decorate a route that computes a change: few run at a time, and waiting takes no thread.
-
-    It goes on when its client leaves, so that the change is in the audit log. Its parameters must
-    include ``studio``.
-    """
-
-    @wraps(route)
-    async def limited(*, studio: Studio, **given: Any) -> Made:
-        return await compute_in_place(studio.edits, partial(route, studio=studio, **given))
-
     return limited

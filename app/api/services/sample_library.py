@@ -5,7 +5,6 @@ from __future__ import annotations
 import filecmp
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -26,26 +25,6 @@ CLIP_ENDINGS = frozenset({".mp4", ".webm"})
 logger = logging.getLogger(__name__)
 
 
-@dataclass(frozen=True)
-class SampleClip:
-    """A clip that comes with the program.
-
-    Attributes
-    ----------
-    name
-        File name, by which requests select it.
-    size
-        Bytes.
-    path
-        Path of the file.
-
-    """
-
-    name: str
-    size: int
-    path: Path
-
-
 class Samples:
     """The content of the samples' folder, which may be absent.
 
@@ -60,14 +39,10 @@ class Samples:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
-    def clips(self) -> dict[str, SampleClip]:
-        """Return the clips by name, in order."""
+    def clips(self) -> dict[str, Path]:
+        """Return the clips by file name, by which requests select them, in order."""
         files = sorted((self._folder / "clips").glob("**/*"))
-        return {
-            path.name: SampleClip(path.name, path.stat().st_size, path)
-            for path in files
-            if path.suffix in CLIP_ENDINGS
-        }
+        return {path.name: path for path in files if path.suffix in CLIP_ENDINGS}
 
     def find_recording(self, file: Path) -> Path | None:
         """Return the recording that comes with a sample clip; None for any other file."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 from app import store
@@ -25,15 +25,9 @@ from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_demonstration, find_surroundings
 
 
-@dataclass(frozen=True)
-class Recognised:
-    """A recognition that was just made, and its answer in plain JSON types."""
-
-    record: store.RecognitionRecord
-    answer: dict[str, Any]
-
-
-def recognize_range(studio: Studio, wanted: RecognitionRequest, quota: store.Quota) -> Recognised:
+def recognize_range(
+    studio: Studio, wanted: RecognitionRequest, quota: store.Quota
+) -> store.RecognitionRecord:
     """Recognise a range of a clip by the newest revision of a language, and store the answer.
 
     Raises
@@ -68,8 +62,7 @@ def recognize_range(studio: Studio, wanted: RecognitionRequest, quota: store.Quo
         expected=wanted.expected,
         result=json.dumps(answer, allow_nan=False),
     )
-    kept = studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))
-    return Recognised(kept, answer)
+    return studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))
 
 
 def require_landmarks_of(clip: store.Clip, poses: PoseSequence, language: Language) -> None:
@@ -223,9 +216,9 @@ def load_language(record: store.RecognitionRecord, studio: Studio) -> Language:
     return studio.language(state) if trial is None else try_gesture(studio, state, trial)
 
 
-def write_pair(answer: dict[str, Any]) -> str | None:
-    """Return the pair of an answer in plain JSON types as the store keeps it; None without one."""
-    return None if answer["pair"] is None else json.dumps(answer["pair"])
+def write_pair(pair: Sequence[str] | None) -> str | None:
+    """Return the pair of an answer as the store keeps it; None without one."""
+    return None if pair is None else json.dumps(pair)
 
 
 def read_pair(stored: str | None) -> tuple[str, str] | None:

@@ -1,15 +1,20 @@
-"""Take tables: makes the rows of a stored clip in the same way as the command line."""
+"""Take tables: the job that makes one, each row in the same way as the command line."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+import asyncio
+import time
+from collections.abc import Callable, Sequence
+from functools import partial
+from uuid import uuid4
 
 from app.api.http.problems import ProblemError, problem_of
+from app.api.jobs.job import Job, Report, TimeLeft, compute_in_place, events_about
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import require_landmarks_of
-from app.evaluation.take_table import row_of_fault, rows_of_clip
+from app.api.workers.worker_messages import Progress
+from app.evaluation.take_table import Row, row_of_fault, rows_of_clip
 from app.recognition import OsgError, Recognition, Take
 from app.recognition.recording.clip_range import SAME_MOMENT
 from app.store import Clip, LabelledTake, LanguageState, StoreError
@@ -18,9 +23,51 @@ SAME_TAKE = 0.5
 """Share of a take that a labelled take must cover to count as the same."""
 
 
+def take_table_job(
+    table_id: str,
+    clips: Sequence[Clip],
+    recognize: Callable[[Clip, Callable[[float], None]], list[Row]],
+    places: asyncio.Semaphore,
+) -> Job[list[Row]]:
+    """Return a job that recognises one clip after the other; every table is a job of its own.
+
+    Parameters
+    ----------
+    table_id
+        Id of the table in its events.
+    clips
+        The clips, in the order of the rows.
+    recognize
+        Returns the rows of one clip; reports the share of its takes that is done to its callback.
+    places
+        Limits the computations that run at the same time; further ones wait.
+
+    """
+
+    async def run(report: Report) -> list[Row]:
+        rows: list[Row] = []
+        left, done = TimeLeft(), 0
+        sizes = [max(1, clip.frames or 0) for clip in clips]
+        for at, (clip, size) in enumerate(zip(clips, sizes, strict=True), start=1):
+            stage, before = f"clip {at} of {len(sizes)}: {clip.name}", done
+
+            def advance(share: float, stage: str = stage, before: int = before) -> None:
+                frames = before + round(share * size)  # noqa: B023  # called in this turn alone
+                eta = left.estimate(frames, sum(sizes), time.monotonic())
+                report(Progress(stage=stage, done=frames, total=sum(sizes), eta_s=eta))
+
+            advance(0.0)
+            rows += await compute_in_place(places, partial(recognize, clip, advance))
+            done += size
+        return rows
+
+    key = f"table {table_id} {uuid4().hex}"
+    return Job("take_table", key, events_about("tables", id=table_id), run)
+
+
 def recognize_clip_takes(
     studio: Studio, state: LanguageState, clip: Clip, advance: Callable[[float], None]
-) -> list[dict[str, Any]]:
+) -> list[Row]:
     """Recognise every take of a clip, and return its rows with the clip's id.
 
     A clip that cannot be recognised is a row with its fault.

@@ -9,7 +9,7 @@ from typing import Any
 from app import __version__, store
 from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas import test_sets as schemas
-from app.api.jobs.job import Job, Progress, Report, events_about, run_task
+from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
@@ -17,7 +17,7 @@ from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
-from app.api.workers.worker_messages import Failed, Finished, RecognizedTake
+from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
 
 SAME_TAKE = 0.5
@@ -34,7 +34,9 @@ def add_labelled(
     NotFound
         When there is no such clip.
     ProblemError
-        409 while a clip's poses are not extracted or when the set is full, 422 for an empty range.
+        409 while a clip's poses are not extracted, 422 for an empty range.
+    TestSetFull
+        When the set would have more takes than it may.
 
     """
     takes = [
@@ -49,10 +51,7 @@ def add_labelled(
         for draft in drafts
         for start, end in _ranges(studio, draft, studio.languages.get(language_id))
     ]
-    try:
-        studio.labelled.add(takes)
-    except store.TestSetFull as error:
-        raise ProblemError(409, "test_set_full", str(error)) from error
+    studio.labelled.add(takes)
 
 
 def test_run_key(language_id: str, revision: int) -> str:
@@ -89,7 +88,8 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
             _keep(studio, state, takes[index], found)
 
     async def run(report: Report) -> Finished | Failed:
-        report(Progress("recognising", 0, len(takes)))  # It may have to wait for its turn.
+        # It may have to wait for its turn.
+        report(Progress(stage="recognising", total=len(takes)))
         task = TestRun(document=state.revision.document, takes=tuple(wanted))
         return await run_task(studio.workers, task, report, keep)
 
@@ -169,7 +169,7 @@ def _keep(
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
-        result.pair = write_pair(answer)
+        result.pair = write_pair(answer["pair"])
         result.confidence = answer["confidence"]
     studio.labelled.keep(result, take.expected)
 

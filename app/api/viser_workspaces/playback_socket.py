@@ -9,10 +9,15 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, WebSocket
 from pydantic import Field, TypeAdapter, ValidationError
-from starlette.websockets import WebSocketDisconnect
 
+from app.api.events.broadcast import Unread
 from app.api.http.schemas.values import Body
-from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA, same_origin
+from app.api.http.websockets import (
+    POLICY_VIOLATION,
+    UNSUPPORTED_DATA,
+    same_origin,
+    until_one_ends,
+)
 from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner
 from app.ui.playback import Playback, Position
 
@@ -63,61 +68,41 @@ async def follow_playback(
         await browser.close(code=POLICY_VIOLATION)
         return
     await browser.accept()
-    newest = _Newest(asyncio.get_running_loop())
-    end = workspace.playback.listen(newest.put_from_thread)
-    newest.put(workspace.playback.position)
-    sending = asyncio.create_task(_send(browser, newest))
-    try:
-        await _obey(browser, workspace.playback)
-    finally:
-        end()
-        sending.cancel()
-        await asyncio.gather(sending, return_exceptions=True)
+    # Only the newest position is kept: a slow browser skips frames and does not fall behind.
+    newest, loop = Unread[Position](1), asyncio.get_running_loop()
 
-
-class _Newest:
-    """Holds only the newest position: a slow browser skips frames and does not fall behind."""
-
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
-        self._loop = loop
-        self._position: Position | None = None
-        self._arrived = asyncio.Event()
-
-    def put_from_thread(self, position: Position) -> None:
+    def put_from_thread(position: Position) -> None:
         # The event loop may be closed when the server stops before the workspace.
         with contextlib.suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(self.put, position)
+            loop.call_soon_threadsafe(newest.put, position)
 
-    def put(self, position: Position) -> None:
-        self._position = position
-        self._arrived.set()
-
-    async def next(self) -> Position | None:
-        await self._arrived.wait()
-        self._arrived.clear()
-        return self._position
+    end = workspace.playback.listen(put_from_thread)
+    newest.put(workspace.playback.position)
+    try:
+        await until_one_ends(_obey(browser, workspace.playback), _send(browser, newest))
+    finally:
+        end()
 
 
-async def _send(browser: WebSocket, newest: _Newest) -> None:
-    with contextlib.suppress(WebSocketDisconnect, RuntimeError):
-        while (position := await newest.next()) is not None:
+async def _send(browser: WebSocket, newest: Unread[Position]) -> None:
+    with contextlib.suppress(RuntimeError):
+        async for position in newest:
             await browser.send_json(asdict(position))
 
 
 async def _obey(browser: WebSocket, playback: Playback) -> None:
-    with contextlib.suppress(WebSocketDisconnect):
-        while True:
-            try:
-                command = COMMAND.validate_json(await browser.receive_text())
-            except (ValidationError, KeyError):
-                await browser.close(code=UNSUPPORTED_DATA)
-                return
-            match command:
-                case Seek():
-                    playback.seek(command.frame)
-                case Step():
-                    playback.step(command.frames)
-                case Play():
-                    playback.play(command.speed)
-                case Loop():
-                    playback.set_loop(command.on)
+    while True:
+        try:
+            command = COMMAND.validate_json(await browser.receive_text())
+        except (ValidationError, KeyError):
+            await browser.close(code=UNSUPPORTED_DATA)
+            return
+        match command:
+            case Seek():
+                playback.seek(command.frame)
+            case Step():
+                playback.step(command.frames)
+            case Play():
+                playback.play(command.speed)
+            case Loop():
+                playback.set_loop(command.on)

@@ -7,11 +7,9 @@ viser checks neither origin nor token; both are checked here.
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
-from collections.abc import Coroutine
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import viser
 import websockets
@@ -22,7 +20,12 @@ from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 from websockets.typing import Subprotocol
 
-from app.api.http.websockets import POLICY_VIOLATION, SERVICE_RESTART, same_origin
+from app.api.http.websockets import (
+    POLICY_VIOLATION,
+    SERVICE_RESTART,
+    same_origin,
+    until_one_ends,
+)
 from app.api.viser_workspaces.workspace_lookup import CurrentWorkspaces, Owner, no_workspace
 from app.ui.loopback_server import RELAY_HEADERS
 
@@ -69,7 +72,7 @@ async def relay_viser(
     with contextlib.suppress(OSError, websockets.InvalidHandshake):
         async with _connect(port, browser.scope.get("subprotocols", [])) as server:
             await browser.accept(subprotocol=server.subprotocol)
-            await _until_one_ends(_to_viser(browser, server), _to_browser(server, browser))
+            await until_one_ends(_to_viser(browser, server), _to_browser(server, browser))
     with contextlib.suppress(RuntimeError, WebSocketDisconnect):
         await browser.close(code=SERVICE_RESTART)
 
@@ -88,22 +91,12 @@ def _connect(port: int, subprotocols: list[str]) -> websockets.connect:
 
 
 async def _to_viser(browser: WebSocket, server: ClientConnection) -> None:
-    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, KeyError):
+    with contextlib.suppress(ConnectionClosed, KeyError, RuntimeError):
         while True:
             await server.send(await browser.receive_bytes())
 
 
 async def _to_browser(server: ClientConnection, browser: WebSocket) -> None:
-    with contextlib.suppress(WebSocketDisconnect, ConnectionClosed, RuntimeError):
+    with contextlib.suppress(ConnectionClosed, RuntimeError):
         async for message in server:
             await browser.send_bytes(message if isinstance(message, bytes) else message.encode())
-
-
-async def _until_one_ends(*directions: Coroutine[Any, Any, None]) -> None:
-    tasks = [asyncio.create_task(direction) for direction in directions]
-    try:
-        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-    finally:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)

@@ -1,6 +1,6 @@
 """Tasks: the work of worker processes, one class for each kind, with its words for failure.
 
-A new kind is one more class in `AnyTask`; a route runs it by `app.api.jobs.job.task_job`.
+A new kind is one more class in `AnyTask`; a route runs it by `app.api.jobs.job.run_task`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from contextlib import closing
 from dataclasses import asdict
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import cv2
 import numpy as np
@@ -39,7 +39,7 @@ from app.clip_sources import (
     UnsupportedFile,
     source_named,
 )
-from app.recognition import Language, OsgError, Recognition, Recognizer, Recording
+from app.recognition import Language, OsgError, Recognizer, Recording
 from app.recognition.errors import LanguageError, ModelError, VideoError
 from app.recognition.estimation import create_estimator
 from app.recognition.health.check import check_health
@@ -192,17 +192,6 @@ class FindLandmarks(_ClipTask):
         _save(found.recording, self.recording, report)
 
 
-class ExportedRecognition(BaseModel):
-    """A recognition to write; `result` is `Recognition.to_dict`."""
-
-    start: float
-    end: float
-    language: str
-    revision: int
-    expected: str | None
-    result: dict[str, Any]
-
-
 class Export(Task):
     """Writes a clip and its recognitions as MCAP to `target`; `trigger` cuts its takes."""
 
@@ -219,7 +208,7 @@ class Export(Task):
     video: Reads
     recording: Reads
     target: Writes
-    recognitions: tuple[ExportedRecognition, ...]
+    recognitions: tuple[NamedRecognition, ...]
     trigger: TriggerEntry | None = None
 
     def run(self, report: Report) -> None:
@@ -229,14 +218,10 @@ class Export(Task):
         with contextlib.suppress(VideoError):
             probe_video(self.video)
             video = self.video
-        named = [
-            NamedRecognition(**(dict(each) | {"result": Recognition.from_dict(each.result)}))
-            for each in self.recognitions
-        ]
         write_bag(
             self.target,
             recording,
-            named,
+            self.recognitions,
             video=video,
             name=self.clip,
             trigger=entry_to_trigger(self.trigger),

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import AfterValidator, Base64Bytes, BaseModel, ConfigDict, Field, TypeAdapter
 
+from app.recognition.text.described import DESCRIBED
+
 if TYPE_CHECKING:
     from app.recognition.poses.sequence import FloatArray
 
@@ -55,14 +57,18 @@ class _Said(BaseModel):
 class TopicSeen(_Said):
     """A topic of a dive recording that a clip can be made of."""
 
-    name: Annotated[Line, Field(max_length=255)] = Field(
-        description="As in ROS, with its leading slash"
-    )
-    type: Line = Field(description="Of its messages, such as sensor_msgs/msg/Image")
+    model_config = DESCRIBED
+
+    name: Annotated[Line, Field(max_length=255)]
+    """As in ROS, with its leading slash."""
+    type: Line
+    """Of its messages, such as sensor_msgs/msg/Image."""
     use: Literal["pictures", "keypoints"]
     messages: Count
-    duration: float = Field(description="Seconds from its first message to its last")
-    width: Count = Field(description="Pixels of the upright picture")
+    duration: float
+    """Seconds from its first message to its last."""
+    width: Count
+    """Pixels of the upright picture."""
     height: Count
 
     @property
@@ -86,15 +92,17 @@ class Probed(_Said):
     picture: Picture | None = None
 
 
-class Progressed(_Said):
-    """Progress of the work, and the newest pose.
+class Progress(_Said):
+    """How far work is.
 
     Attributes
     ----------
     stage
-        ``poses`` or ``saving`` of a clip; other tasks name their own.
+        ``starting``, ``poses`` or ``saving`` of a clip; other work names its own.
     done, total
         Frames or other pieces of work; `total` is an estimate if the container does not count them.
+    eta_s
+        Seconds still to go at the present rate; None before there is one.
     time
         Time of the newest frame, in seconds after the first; None if no frame is shown.
     pose
@@ -104,13 +112,20 @@ class Progressed(_Said):
 
     """
 
-    kind: Literal["progressed"] = "progressed"
-    stage: Annotated[str, Field(max_length=32)]
-    done: Count
-    total: Count
+    stage: str
+    done: Count = 0
+    total: Count = 0
+    eta_s: float | None = None
     time: float | None = None
     pose: Pose | None = None
     kept: Count = 0
+
+
+class Progressed(Progress):
+    """Progress of a process; the server estimates the time left."""
+
+    kind: Literal["progressed"] = "progressed"
+    stage: Annotated[str, Field(max_length=32)]
 
 
 class RecognizedTake(_Said):

@@ -3091,12 +3091,12 @@ export interface components {
         TopicSeen: {
             /**
              * Name
-             * @description As in ROS, with its leading slash
+             * @description As in ROS, with its leading slash.
              */
             name: string;
             /**
              * Type
-             * @description Of its messages, such as sensor_msgs/msg/Image
+             * @description Of its messages, such as sensor_msgs/msg/Image.
              */
             type: string;
             /**
@@ -3108,12 +3108,12 @@ export interface components {
             messages: number;
             /**
              * Duration
-             * @description Seconds from its first message to its last
+             * @description Seconds from its first message to its last.
              */
             duration: number;
             /**
              * Width
-             * @description Pixels of the upright picture
+             * @description Pixels of the upright picture.
              */
             width: number;
             /** Height */

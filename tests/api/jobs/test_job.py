@@ -8,7 +8,8 @@ from collections.abc import Awaitable, Callable
 import pytest
 
 from app.api.events.broadcast import Broadcast, Event
-from app.api.jobs.job import Job, JobCancelled, JobRunner, Progress, Report, TimeLeft, events_about
+from app.api.jobs.job import Job, JobCancelled, JobRunner, Report, TimeLeft, events_about
+from app.api.workers.worker_messages import Progress
 
 
 class Counting:
@@ -24,7 +25,7 @@ class Counting:
 
     async def run(self, report: Report) -> int:
         self.runs += 1
-        report(Progress("counting", self.runs, 2))
+        report(Progress(stage="counting", done=self.runs, total=2))
         await self.go_on.wait()
         return self.runs
 
@@ -43,7 +44,7 @@ def test_who_asks_for_a_running_job_waits_for_it_and_its_progress_is_an_event() 
         with broadcast.subscribe() as events:
             waiting = [asyncio.create_task(runner.run(job.job)) for _ in range(2)]
             await asyncio.sleep(0.01)
-            assert runner.progress("count") == Progress("counting", 1, 2)
+            assert runner.progress("count") == Progress(stage="counting", done=1, total=2)
             job.go_on.set()
             assert await asyncio.gather(*waiting) == [1, 1]
             await asyncio.sleep(0.01)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from starlette.types import Message, Receive, Scope, Send
 
-from app.api.middleware.shutdown import EndsInTime, OpenRequests
+from app.api.middleware.shutdown import OpenRequests
 
 SCOPE: Scope = {"type": "http", "method": "GET", "path": "/", "headers": []}
 
@@ -32,7 +32,7 @@ async def asked(app: Any, requests: OpenRequests, *, seconds: float = 0.01) -> l
     async def receive() -> Message:
         return {"type": "http.request", "body": b"", "more_body": False}
 
-    request = asyncio.create_task(EndsInTime(app, requests)(SCOPE, receive, send))
+    request = asyncio.ensure_future(requests.guard(app)(SCOPE, receive, send))
     await asyncio.sleep(0)
     await requests.end(seconds)
     await request

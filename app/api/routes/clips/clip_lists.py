@@ -6,13 +6,14 @@ from typing import Annotated, Final
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Response
-from pydantic import TypeAdapter
+from pydantic import BaseModel, Field, TypeAdapter
 
-from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response, page_response
+from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.clips import ClipView
 from app.api.services.clip_responses import view_clip
 from app.api.services.running_studio import CurrentStudio
+from app.recognition.text.described import DESCRIBED
 from app.store import ClipQuery, ClipStore, JobStatus
 
 MOST_LISTED: Final = 1000
@@ -36,7 +37,26 @@ PAGE_HEADERS: Final = {
     },
 }
 
+ClipId = Annotated[str, Field(max_length=64)]
+
 router = APIRouter(prefix="/clips", tags=["clips"])
+
+
+class ListedClips(BaseModel):
+    """Which clips are listed."""
+
+    model_config = DESCRIBED
+
+    limit: Annotated[int | None, Field(ge=1, le=MOST_LISTED)] = None
+    """Most clips; by default all of them."""
+    after: ClipId | None = None
+    """The id of the last clip of the page before."""
+    q: Annotated[str, Field(max_length=LONGEST_NAME)] = ""
+    """What their names contain, in any case."""
+    status: list[JobStatus] | None = None
+    """Where their jobs stand; may be repeated."""
+    id: Annotated[list[ClipId] | None, Field(max_length=MOST_LISTED)] = None
+    """Only these clips; may be repeated."""
 
 
 @router.get(
@@ -49,38 +69,20 @@ router = APIRouter(prefix="/clips", tags=["clips"])
     },
 )
 def list_clips(
-    studio: CurrentStudio,
-    known: KnownTags,
-    limit: Annotated[
-        int | None, Query(ge=1, le=MOST_LISTED, description="Most clips; by default all of them")
-    ] = None,
-    after: Annotated[
-        str | None, Query(max_length=64, description="The id of the last clip of the page before")
-    ] = None,
-    q: Annotated[
-        str, Query(max_length=LONGEST_NAME, description="What their names contain, in any case")
-    ] = "",
-    status: Annotated[
-        list[JobStatus] | None, Query(description="Where their jobs stand; may be repeated")
-    ] = None,
-    id: Annotated[
-        list[Annotated[str, Query(max_length=64)]] | None,
-        Query(max_length=MOST_LISTED, description="Only these clips; may be repeated"),
-    ] = None,
+    studio: CurrentStudio, known: KnownTags, wanted: Annotated[ListedClips, Query()]
 ) -> Response:
     """List the clips, newest first: all of them, or a page of those that are asked for."""
-    query = ClipQuery(limit or MOST_LISTED, after, q.strip(), tuple(status or ()), tuple(id or ()))
-    if limit is None and query == ClipQuery(MOST_LISTED):
-        return _list_all(studio.clips, known)
-    return _list_page(studio.clips, known, query)
+    chosen = tuple(wanted.status or ()), tuple(wanted.id or ())
+    query = ClipQuery(wanted.limit or MOST_LISTED, wanted.after, wanted.q.strip(), *chosen)
+    if wanted.limit is None and query == ClipQuery(MOST_LISTED):
+        return _listed(studio.clips, known, None)
+    return _listed(studio.clips, known, query)
 
 
-def _read_all(clips: ClipStore) -> list[ClipView]:
-    return [view_clip(found) for found in clips.all()]
-
-
-def read_page(clips: ClipStore, query: ClipQuery) -> tuple[list[ClipView], dict[str, str]]:
-    """Return the clips of a page, and the headers that state its position."""
+def read_page(clips: ClipStore, query: ClipQuery | None) -> tuple[list[ClipView], dict[str, str]]:
+    """Return the clips of a page, and the headers that state its position; all without a query."""
+    if query is None:
+        return [view_clip(found) for found in clips.all()], {}
     page, headers = clips.page(query), {}
     if page.more:
         headers["Link"] = f'<?{_write_query(query, page.clips[-1].clip.id)}>; rel="next"'
@@ -101,5 +103,4 @@ def _write_query(query: ClipQuery, after: str) -> str:
     return urlencode({name: value for name, value in given.items() if value}, doseq=True)
 
 
-_list_all = list_response(_read_all, TypeAdapter(list[ClipView]))
-_list_page = page_response(read_page, TypeAdapter(list[ClipView]), KEPT_PAGES)
+_listed = list_response(read_page, TypeAdapter(list[ClipView]), KEPT_PAGES)

@@ -19,13 +19,12 @@ from app.api.http.schemas import clips as schemas
 from app.api.http.schemas.values import SoFar, TriggerLanguage
 from app.api.ingest.fields import UploadFields
 from app.api.ingest.intake import client_of, inspect, require_place_in_queue, store
-from app.api.ingest.multipart import FRAME_BYTES, file_form, receive_file
+from app.api.ingest.multipart import file_form, least_size, receive_file
 from app.api.ingest.quotas import SenderQuota, require_quota
 from app.api.services.clip_responses import shows_pictures, view_clip
 from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import CurrentStudio, Studio, computed_briefly
 from app.clip_sources.source import MADE_VIDEO
-from app.recognition.poses.sequence import PoseSequence
 from app.store import ClipWithJob, Job, JobStatus
 from app.store.tokens import digest
 
@@ -74,9 +73,7 @@ async def upload_clip(
     ):
         return await _repeat(request, studio, earlier)
     reserved = await require_place_in_queue(request, studio)
-    stated = request.headers.get("content-length", "")
-    least = int(stated) - FRAME_BYTES if stated.isdecimal() else 0
-    await require_quota(quota, studio, max(0, least))
+    await require_quota(quota, studio, least_size(request))
     with studio.clips.receiving() as partial:
         upload = await receive_file(request, partial, studio.settings, reserved=reserved)
         made = await inspect(
@@ -246,8 +243,19 @@ def get_poster(clip_id: str, studio: CurrentStudio) -> Response:
 def get_poses(clip_id: str, studio: CurrentStudio) -> Response:
     """Return the landmarks in every frame."""
     poses = studio.recording(clip_id).poses
-    # Built and serialised here, because pydantic would validate a million numbers again.
-    return Response(_poses_json(poses), media_type="application/json")
+    xy, confidence = np.round(poses.xy, PIXEL_DIGITS), poses.confidence
+    content = {
+        "landmarks": list(poses.landmarks),
+        "time": np.round(poses.time, TIME_DIGITS).tolist(),
+        "xy": np.where(np.isnan(xy), None, xy).tolist(),  # type: ignore[call-overload]
+        "confidence": None
+        if confidence is None
+        else np.round(confidence, CONFIDENCE_DIGITS).tolist(),
+        "frame_size": list(poses.frame_size),
+    }
+    # Serialised here, because pydantic would validate a million numbers again.
+    text = json.dumps(content, separators=(",", ":"), allow_nan=False)
+    return Response(text, media_type="application/json")
 
 
 @router.get("/{clip_id}/takes", responses=problem_responses(404, 409))
@@ -261,18 +269,3 @@ def get_takes(
     """List what lies between the salutes, or other triggers of a language."""
     state = None if language_id is None else studio.languages.get(language_id)
     return list(find_takes(studio, clip_id, state, so_far=so_far))
-
-
-def _poses_json(poses: PoseSequence) -> bytes:
-    xy = np.round(poses.xy, PIXEL_DIGITS)
-    confidence = poses.confidence
-    content = {
-        "landmarks": list(poses.landmarks),
-        "time": np.round(poses.time, TIME_DIGITS).tolist(),
-        "xy": np.where(np.isnan(xy), None, xy).tolist(),  # type: ignore[call-overload]
-        "confidence": None
-        if confidence is None
-        else np.round(confidence, CONFIDENCE_DIGITS).tolist(),
-        "frame_size": list(poses.frame_size),
-    }
-    return json.dumps(content, separators=(",", ":"), allow_nan=False).encode()

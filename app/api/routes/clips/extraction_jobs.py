@@ -13,8 +13,8 @@ from starlette.concurrency import run_in_threadpool
 from app.api.events.broadcast import Event
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.jobs import JobView
-from app.api.jobs.job import Progress
 from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.workers.worker_messages import Progress
 from app.store import Job, JobStatus, NotFound
 
 EVENT_STREAM: dict[int | str, dict[str, Any]] = {
@@ -63,13 +63,13 @@ def view_job(job: Job, progress: Progress | None) -> JobView:
     """Return a stored job with its progress."""
     status = JobStatus(job.status)
     frames = job.frames or 0
-    over = Progress(status.value, done=frames, total=frames)
+    over = Progress(stage=status.value, done=frames, total=frames)
     shown = progress if progress and status is JobStatus.RUNNING else over
     return JobView(
         **job.model_dump(include={"id", "clip_id", "error", "error_code"}),
         **job.model_dump(include={"created", "started", "finished"}),
         status=status,
-        **vars(shown),
+        **dict(shown),
     )
 
 

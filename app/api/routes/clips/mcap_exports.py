@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -15,11 +15,13 @@ from starlette.concurrency import run_in_threadpool
 from app.api.http.downloads import attachment_as_written
 from app.api.http.problems import ProblemError, file_responses, problem_responses
 from app.api.http.schemas.values import Body, Identifier, View
-from app.api.jobs.job import events_about, task_job
+from app.api.jobs.job import Job, events_about, run_task
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.api.workers.tasks import Export, ExportedRecognition
+from app.api.services.stored_recognitions import load_recognition
+from app.api.workers.tasks import Export
 from app.api.workers.worker_messages import Failed
+from app.bags.export_writer import NamedRecognition
 from app.recognition.language.trigger_entry import trigger_to_entry
 from app.recognition.triggers.trigger import SALUTE
 from app.store.models import new_id
@@ -113,7 +115,7 @@ async def _write(
         written = Path(folder) / target.name
         task = content.model_copy(update={"target": written})
         event = events_about("exports", id=export_id)
-        job = task_job("bag_export", key, event, studio.workers, task)
+        job = Job("bag_export", key, event, partial(run_task, studio.workers, task))
         ended = await await_job(request, studio, job)
         if isinstance(ended, Failed):
             raise ProblemError(503, ended.code, f"the MCAP file cannot be written: {ended.detail}")
@@ -142,13 +144,13 @@ def _export(studio: Studio, clip_id: str) -> Export:
         target=Path(),
         trigger=trigger_to_entry(trigger),
         recognitions=tuple(
-            ExportedRecognition(
+            NamedRecognition(
                 start=record.start,
                 end=record.end,
                 language=studio.languages.get(record.language_id, record.revision).revision.name,
                 revision=record.revision,
                 expected=record.expected,
-                result=json.loads(record.result),
+                result=load_recognition(record),
             )
             for record in records
         ),

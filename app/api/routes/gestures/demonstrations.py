@@ -11,14 +11,14 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Response
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas.gestures import DemonstrationDraft, DemonstrationView
 from app.api.http.schemas.languages import LanguageView
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source, sources_in
 from app.api.services.language_responses import view_demonstrations
-from app.api.services.running_studio import CurrentStudio, edited
+from app.api.services.running_studio import edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
 
@@ -30,34 +30,27 @@ Index = Annotated[
 
 
 @router.get("", responses=problem_responses(404))
-def list_demonstrations(
-    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
-) -> list[DemonstrationView]:
+def list_demonstrations(label: str, asked: CurrentRevision) -> list[DemonstrationView]:
     """List the demonstrations of a gesture."""
-    state = studio.languages.get(language_id, revision)
-    language = studio.language(state)
-    gesture = gesture_edits.gesture_in(language, label)
-    return view_demonstrations(state, gesture, sources_in(studio, language)[label])
+    gesture = gesture_edits.gesture_in(asked.language, label)
+    sources = sources_in(asked.studio, asked.language)[label]
+    return view_demonstrations(asked.state, gesture, sources)
 
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
-def add_demonstration(
-    draft: DemonstrationDraft, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def add_demonstration(draft: DemonstrationDraft, edit: CurrentEdit) -> LanguageView:
     """Add a take to a gesture as one more demonstration, by the same diver or another."""
-    demonstration = gesture_edits.demonstration_at(studio, draft, edit.trigger)
+    demonstration = gesture_edits.demonstration_at(edit.studio, draft, edit.trigger)
     changed = partial(gesture_edits.add_demonstration_to, draft=draft, demonstration=demonstration)
     state = edit.save(f"Add a demonstration of {draft.label}", changed)
-    keep_source(studio, state, draft.label, draft, demonstration, index=-1)
+    keep_source(edit.studio, state, draft.label, draft, demonstration, index=-1)
     return edit.answer(state)
 
 
 @router.delete("/{index}", responses=problem_responses(404, 409, 412))
 @edited
-def remove_demonstration(
-    index: Index, label: str, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def remove_demonstration(index: Index, label: str, edit: CurrentEdit) -> LanguageView:
     """Remove a demonstration of a gesture that has others; without the first, the next is first."""
     changed = partial(gesture_edits.remove_demonstration_from, label=label, index=index)
     return edit.answer(edit.save(f"Remove a demonstration of {label}", changed))
@@ -65,14 +58,9 @@ def remove_demonstration(
 
 @router.get("/{index}/image", response_class=Response, responses=IMAGE_RESPONSES)
 def get_demonstration_image(
-    language_id: str,
-    index: Index,
-    label: str,
-    studio: CurrentStudio,
-    revision: Revision = None,
-    marks: Marks = False,
+    index: Index, label: str, asked: CurrentRevision, marks: Marks = False
 ) -> Response:
     """Send the trajectory image of a demonstration."""
-    language = studio.language(studio.languages.get(language_id, revision))
-    shown = gesture_edits.require_demonstration(gesture_edits.gesture_in(language, label), index)
-    return send_trajectory_image(shown, revision, marks)
+    gesture = gesture_edits.gesture_in(asked.language, label)
+    shown = gesture_edits.require_demonstration(gesture, index)
+    return send_trajectory_image(shown, asked.number, marks)

@@ -12,14 +12,14 @@ import numpy as np
 from fastapi import APIRouter, Response
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas.clips import PosesView
 from app.api.http.schemas.gestures import GestureChange, GestureDraft, GesturesDraft
 from app.api.http.schemas.languages import LanguageView
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services import gesture_edits
 from app.api.services.demonstration_sources import keep_source
-from app.api.services.running_studio import CurrentStudio, computed_briefly, edited
+from app.api.services.running_studio import computed_briefly, edited
 from app.api.services.trajectory_images import IMAGE_RESPONSES, Marks, send_trajectory_image
 from app.recognition import Language, LanguageError
 from app.recognition.poses.trajectory import Trajectory
@@ -36,9 +36,9 @@ BORDER = 40
 
 @router.post("", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
-def add_gesture(draft: GestureDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
+def add_gesture(draft: GestureDraft, edit: CurrentEdit) -> LanguageView:
     """Save a demonstration as a new gesture of the language."""
-    demonstration = gesture_edits.demonstration_at(studio, draft, edit.trigger)
+    demonstration = gesture_edits.demonstration_at(edit.studio, draft, edit.trigger)
     gesture = gesture_edits.gesture_from(draft, demonstration)
 
     def edit_language(language: Language) -> Language:
@@ -46,48 +46,46 @@ def add_gesture(draft: GestureDraft, studio: CurrentStudio, edit: CurrentEdit) -
         return language.with_gesture(gesture)
 
     state = edit.save(f"Add {gesture.label}", edit_language)
-    keep_source(studio, state, gesture.label, draft, demonstration)
+    keep_source(edit.studio, state, gesture.label, draft, demonstration)
     return edit.answer(state)
 
 
 @router.post("/batch", status_code=201, responses=problem_responses(404, 409, 412))
 @edited
-def add_gestures(draft: GesturesDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
+def add_gestures(draft: GesturesDraft, edit: CurrentEdit) -> LanguageView:
     """Save several demonstrations as new gestures in one revision: all of them, or none."""
-    made = gesture_edits.gestures_from(studio, draft.gestures, edit.trigger)
+    made = gesture_edits.gestures_from(edit.studio, draft.gestures, edit.trigger)
     gestures = [gesture for gesture, _ in made]
     title = f"Add {', '.join(gesture.label for gesture in gestures)}"
     state = edit.save(title, partial(gesture_edits.add_gestures_to, gestures=gestures))
     for where, (gesture, demonstration) in zip(draft.gestures, made, strict=True):
-        keep_source(studio, state, gesture.label, where, demonstration)
+        keep_source(edit.studio, state, gesture.label, where, demonstration)
     return edit.answer(state)
 
 
 @router.patch("", responses=problem_responses(404, 409, 412))
 @router.patch("/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
-def change_gesture(
-    label: str, change: GestureChange, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def change_gesture(label: str, change: GestureChange, edit: CurrentEdit) -> LanguageView:
     """Change what a gesture says, what of it counts, or the demonstration that shows it."""
-    demonstration = None
-    if change.demonstration is not None:
-        demonstration = gesture_edits.demonstration_at(studio, change.demonstration, edit.trigger)
+    where, demonstration = change.demonstration, None
+    if where is not None:
+        demonstration = gesture_edits.demonstration_at(edit.studio, where, edit.trigger)
     changed = partial(
         gesture_edits.change_gesture_of, label=label, change=change, demonstration=demonstration
     )
     state = edit.save(f"Change {label}", changed)
-    if change.demonstration is not None and demonstration is not None:
+    if where is not None and demonstration is not None:
         now = label if change.label is None else change.label.strip()
         index = -1 if change.further else 0
-        keep_source(studio, state, now, change.demonstration, demonstration, index=index)
+        keep_source(edit.studio, state, now, where, demonstration, index=index)
     return edit.answer(state)
 
 
 @router.delete("", responses=problem_responses(404, 409, 412))
 @router.delete("/{label:path}", responses=problem_responses(404, 409, 412))
 @edited
-def remove_gesture(label: str, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
+def remove_gesture(label: str, edit: CurrentEdit) -> LanguageView:
     """Take a gesture out that no phrase needs; the revisions before still have it."""
 
     def edit_language(language: Language) -> Language:
@@ -102,28 +100,18 @@ def remove_gesture(label: str, studio: CurrentStudio, edit: CurrentEdit) -> Lang
 
 @router.get("/image", response_class=Response, responses=IMAGE_RESPONSES)
 @router.get("/{label:path}/image", response_class=Response, responses=IMAGE_RESPONSES)
-def get_gesture_image(
-    language_id: str,
-    label: str,
-    studio: CurrentStudio,
-    revision: Revision = None,
-    marks: Marks = False,
-) -> Response:
+def get_gesture_image(label: str, asked: CurrentRevision, marks: Marks = False) -> Response:
     """Send a gesture's trajectory image."""
-    language = studio.language(studio.languages.get(language_id, revision))
-    gesture = gesture_edits.gesture_in(language, label)
-    return send_trajectory_image(gesture, revision, marks)
+    gesture = gesture_edits.gesture_in(asked.language, label)
+    return send_trajectory_image(gesture, asked.number, marks)
 
 
 @router.get("/demonstration", responses=problem_responses(404))
 @router.get("/{label:path}/demonstration", responses=problem_responses(404))
 @computed_briefly
-def get_demonstration(
-    language_id: str, label: str, studio: CurrentStudio, revision: Revision = None
-) -> PosesView:
+def get_demonstration(label: str, asked: CurrentRevision) -> PosesView:
     """Return a gesture's demonstration as the language keeps it, laid out for drawing."""
-    language = studio.language(studio.languages.get(language_id, revision))
-    trajectory = gesture_edits.gesture_in(language, label).trajectory
+    trajectory = gesture_edits.gesture_in(asked.language, label).trajectory
     if trajectory is None:
         detail = f"{label[:80]!r} was imported without its demonstration: only its image is known"
         raise ProblemError(404, "no_demonstration", detail)

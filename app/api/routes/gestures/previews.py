@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 from pydantic import Field
 
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.values import Body, Label, View
 from app.api.services import gesture_edits
@@ -26,8 +26,6 @@ from app.recognition.health.finding import DUPLICATE, measure_visible_share
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing import salience
 from app.recognition.voters.registry import PAPER_VOTERS
-
-SWITCHES = ("direction", "tempo", "mirror", "hand_shape")
 
 DISPLACEMENT_DIGITS = 3
 """Decimals of a displacement in torso lengths: about a millimetre on a diver."""
@@ -185,8 +183,7 @@ def _draft(
         gesture_edits.gesture_in(language, request.label)
     elif where is None:
         detail = "a new gesture needs a demonstration: name its clip"
-        fault = Fault(pointer="/change/demonstration", detail=detail)
-        raise ProblemError(422, "request_invalid", detail, errors=[fault])
+        raise ProblemError(422, "request_invalid", detail, pointer="/change/demonstration")
     shown = (
         None if where is None else gesture_edits.demonstration_at(studio, where, language.trigger)
     )
@@ -202,19 +199,18 @@ def _view(
     faults: Sequence[schemas.DemonstrationFaultView] = (),
 ) -> PreviewView:
     trajectory, shown = draft.trajectory(), draft.demonstration
-    known = trajectory is not None and len(trajectory) > 0
     return PreviewView(
         problem=problem,
         image=None if gesture is None else _image(gesture, marks=marks),
         salient=[] if gesture is None else list(gesture.salient),
         held_shapes=0 if gesture is None else len(gesture.held_shapes),
-        keypoints=_keypoints(trajectory) if known and trajectory else [],
-        threshold=salience.find_least_displacement(trajectory) if known and trajectory else None,
+        keypoints=[] if trajectory is None else _keypoints(trajectory),
+        threshold=None if trajectory is None else salience.find_least_displacement(trajectory),
         unit="torso_length" if trajectory is None else trajectory.unit,
         descriptors=[] if gesture is None else _descriptors(gesture),
         start=None if shown is None else shown.start,
         end=None if shown is None else shown.end,
-        seconds=float(trajectory.time[-1] - trajectory.time[0]) if known and trajectory else None,
+        seconds=None if trajectory is None else float(trajectory.time[-1] - trajectory.time[0]),
         strokes="" if gesture is None else describe_strokes(transcribe_gesture(gesture)),
         faults=list(faults),
     )
@@ -259,7 +255,7 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
     words = describe_effects(
         gesture.switches, counting, hands=find_hands(gesture.salient), held=gesture.is_held
     )
-    counts: dict[str, bool | None] = dict.fromkeys(SWITCHES)
+    counts: dict[str, bool] = {}
     if counting is not None:
         sides_free = gesture.switches.mirror == "on" or not counting.sides
         counts = {
@@ -269,8 +265,6 @@ def _switch_views(gesture: Gesture, counting: Sensitivity | None) -> dict[str, S
             "hand_shape": counting.hand_shape,
         }
     return {
-        name: SwitchView(
-            position=getattr(gesture.switches, name), counts=counts[name], words=words[name]
-        )
-        for name in SWITCHES
+        name: SwitchView(position=position, counts=counts.get(name), words=words[name])
+        for name, position in vars(gesture.switches).items()
     }

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import json
-from functools import lru_cache
-from typing import Annotated, Any
+from functools import lru_cache, partial
+from typing import Any
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from app import __version__
+from app.api.http.list_responses import KnownTags
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import Revision
-from app.api.jobs.job import Job, events_about, task_job
+from app.api.jobs.job import Job, events_about, run_task
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
-from app.api.services.running_studio import CurrentStudio, Studio
+from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
@@ -42,13 +43,9 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 )
 async def check_language(
     request: Request,
-    language_id: str,
-    studio: CurrentStudio,
+    asked: CurrentRevision,
     response: Response,
-    revision: Revision = None,
-    if_none_match: Annotated[
-        str | None, Header(description="The ETag of a report that the caller has")
-    ] = None,
+    known: KnownTags,
 ) -> Any:
     """Return what other people will reach with a language, and what is wrong with it.
 
@@ -56,13 +53,13 @@ async def check_language(
     among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody
     who asked for it has left.
     """
-    state = await run_in_threadpool(studio.languages.get, language_id, revision)
+    studio, state = asked.studio, await run_in_threadpool(lambda: asked.state)
     faults = await run_in_threadpool(_find_faults, studio, state)
     # Another version of the recogniser may give another report for the same revision, and clips
     # come and go, with the faults that they show.
     shown = hashlib.sha256(json.dumps(faults).encode()).hexdigest()[:16]
     tag = f'"{state.revision.revision}-{__version__}-{shown}"'
-    if if_none_match is not None and tag in {each.strip() for each in if_none_match.split(",")}:
+    if tag in known:
         return Response(status_code=304, headers={"ETag": tag})
     response.headers["ETag"] = tag
     cancelled = ProblemError(409, "check_cancelled", CANCELLED)
@@ -75,12 +72,10 @@ async def check_language(
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))
-async def cancel_check(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> Response:
+async def cancel_check(asked: CurrentRevision) -> Response:
     """Cancel the check of a revision, for all who wait for it; does nothing where none runs."""
-    state = await run_in_threadpool(studio.languages.get, language_id, revision)
-    await studio.runner.cancel(_job(state, studio).key)
+    state = await run_in_threadpool(lambda: asked.state)
+    await asked.studio.runner.cancel(_job(state, asked.studio).key)
     return Response(status_code=204)
 
 
@@ -89,7 +84,8 @@ def _job(state: LanguageState, studio: Studio) -> Job[Finished | Failed]:
     document = state.revision.document
     key = f"check {hashlib.sha256(document.encode()).hexdigest()}"
     event = events_about("checks", id=state.record.id, revision=state.revision.revision)
-    return task_job("check", key, event, studio.workers, Check(document=document), cached=True)
+    run = partial(run_task, studio.workers, Check(document=document))
+    return Job("check", key, event, run, cached=True)
 
 
 def _find_faults(studio: Studio, state: LanguageState) -> list[dict[str, Any]]:

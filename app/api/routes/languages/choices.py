@@ -11,10 +11,10 @@ from fastapi import APIRouter
 from pydantic import Field, model_validator
 
 from app.api.http.problems import ProblemError, problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas import gestures as schemas
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Label, View
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
@@ -24,7 +24,6 @@ from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
 from app.recognition.health.choice import (
-    Confusions,
     Replacement,
     describe_people,
     find_replacements,
@@ -164,10 +163,11 @@ def choose_gestures(
     fixed = list(range(len(language.gestures)))
     chosen = confusions.choose(choice.keep, fixed)
     labels = [*language.labels, *(draft.label for draft in choice.gestures)]
-    left_out = []
+    kept, left_out = [*fixed, *chosen], []
     for index in sorted({*range(len(fixed), len(labels))} - {*chosen}):
-        other, words = _find_most_alike(confusions, index, [*fixed, *chosen])
-        left_out.append(LeftOutView(index=index - len(fixed), other=labels[other], words=words))
+        nearest = kept[int(np.argmax(confusions.rates[index, kept]))]
+        words = confusions.compare(index, nearest).words
+        left_out.append(LeftOutView(index=index - len(fixed), other=labels[nearest], words=words))
     return ChoiceView(
         keep=[each - len(fixed) for each in chosen],
         left_out=left_out,
@@ -178,11 +178,7 @@ def choose_gestures(
 @router.post("/{language_id}/replacements", responses=problem_responses(404))
 @computed
 def propose_replacements(
-    language_id: str,
-    wanted: ReplacementsRequest,
-    studio: CurrentStudio,
-    advance: Callable[[], None],
-    revision: Revision = None,
+    wanted: ReplacementsRequest, asked: CurrentRevision, advance: Callable[[], None]
 ) -> ReplacementsView:
     """Return the movements that fit best in the place of a gesture; nothing is written.
 
@@ -190,13 +186,12 @@ def propose_replacements(
     movements for a movement and held hand shapes for a held one, and the takes of the request;
     where none is told apart better, also the signs by which divers mean something else.
     """
-    state = studio.languages.get(language_id, revision)
-    language = studio.language(state)
+    studio, language = asked.studio, asked.language
     own = gesture_in(language, wanted.label)
     samples = list(_list_samples(studio, language, own))
     _require_few(language, len(samples) + len(wanted.gestures))
     candidates = [*samples, *_list_takes(studio, wanted.gestures, language, advance)]
-    known = _load_known(studio, state, language)
+    known = _load_known(studio, asked.state, language)
     views: list[ReplacementView] = []
     found: tuple[Replacement, ...] = ()
     # A robot would act on a sign that one diver shows to another, so others are proposed first.
@@ -213,18 +208,16 @@ def propose_replacements(
 
 @router.put("/{language_id}/replacements", responses=problem_responses(404, 409, 412))
 @edited
-def replace_gesture(
-    draft: ReplacementDraft, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def replace_gesture(draft: ReplacementDraft, edit: CurrentEdit) -> LanguageView:
     """Give a gesture another movement in one revision; label, command and description stay."""
     where, shown = draft.demonstration, None
     if where is None:
-        sample = studio.samples.movements().get(draft.sample or "")
+        sample = edit.studio.samples.movements().get(draft.sample or "")
         if sample is None:
             raise ProblemError(404, "not_found", f"there are no samples {draft.sample!r}")
         other = gesture_in(sample, draft.gesture or "")
     else:
-        shown = demonstration_at(studio, where, edit.trigger)
+        shown = demonstration_at(edit.studio, where, edit.trigger)
         other = Gesture.from_demonstration(draft.label, shown.poses, diver=where.diver)
 
     def edit_language(language: Language) -> Language:
@@ -235,14 +228,8 @@ def replace_gesture(
 
     state = edit.save(f"Change the movement of {draft.label}", edit_language)
     if where is not None and shown is not None:
-        keep_source(studio, state, draft.label, where, shown)
+        keep_source(edit.studio, state, draft.label, where, shown)
     return edit.answer(state)
-
-
-def _find_most_alike(confusions: Confusions, left_out: int, kept: Sequence[int]) -> tuple[int, str]:
-    """Return which of the kept gestures another one is most like, and how much."""
-    nearest = kept[int(np.argmax(confusions.rates[left_out, kept]))]
-    return nearest, confusions.compare(left_out, nearest).words
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,13 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.http.connection import while_connected
 from app.api.http.downloads import attachment
-from app.api.http.problems import Fault, ProblemError, file_responses, problem_responses
-from app.api.http.revisions import Revision, revision_tag
+from app.api.http.problems import ProblemError, file_responses, problem_responses
+from app.api.http.revisions import revision_tag
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Name, View
 from app.api.ingest.multipart import receive_body
 from app.api.ingest.quotas import SenderQuota
+from app.api.routes.asked_revisions import AskedRevision, CurrentRevision
 from app.api.services.language_documents import LONGEST_NAME
 from app.api.services.language_responses import announce, save_language
 from app.api.services.running_studio import CurrentStudio, Studio, computed
@@ -24,7 +25,7 @@ from app.api.workers.worker_messages import Failed
 from app.recognition.language.export_format import FileFormat
 from app.recognition.language.file_schema import FORMAT, VERSION
 from app.recognition.language.requirements import find_requirements
-from app.store import Draft, LanguageState, Quota
+from app.store import Draft, Quota
 
 SMALL_BYTES = 512 * 1024
 """Largest file that is read in a thread, within half a second: thirty gestures in our format."""
@@ -64,19 +65,14 @@ async def import_language(
     responses=file_responses("The language file", "application/json", "application/xml"),
 )
 @computed
-def export_language(
-    language_id: str,
-    studio: CurrentStudio,
-    format: FileFormat = FileFormat.OSG_STUDIO,
-    revision: Revision = None,
-) -> Response:
+def export_language(asked: CurrentRevision, format: FileFormat = FileFormat.OSG_STUDIO) -> Response:
     """Send the language as the file that robots load."""
-    state = studio.languages.get(language_id, revision)
+    row = asked.state.revision
     headers = {
-        "Content-Disposition": attachment(state.revision.name, format.suffix),
-        "ETag": revision_tag(state.revision.revision),
+        "Content-Disposition": attachment(row.name, format.suffix),
+        "ETag": revision_tag(row.revision),
     }
-    return Response(_content(studio, state, format), media_type=format.media_type, headers=headers)
+    return Response(_content(asked, format), media_type=format.media_type, headers=headers)
 
 
 class ExportedFile(View):
@@ -109,21 +105,18 @@ class ExportView(View):
 
 @router.get("/{language_id}/export/contents", responses=problem_responses(404))
 @computed
-def describe_export(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> ExportView:
+def describe_export(asked: CurrentRevision) -> ExportView:
     """Return what the export holds, before it is taken to the robot."""
-    state = studio.languages.get(language_id, revision)
-    language = studio.language(state)
+    language = asked.language
     return ExportView(
         name=language.name,
-        revision=state.revision.revision,
+        revision=asked.state.revision.revision,
         schema_format=FORMAT,
         schema_version=VERSION,
         files=[
             ExportedFile(
                 format=file,
-                bytes=len(_content(studio, state, file).encode()),
+                bytes=len(_content(asked, file).encode()),
                 complete=file is FileFormat.OSG_STUDIO,
             )
             for file in FileFormat
@@ -133,11 +126,11 @@ def describe_export(
     )
 
 
-def _content(studio: Studio, state: LanguageState, format: FileFormat) -> str:
+def _content(asked: AskedRevision, format: FileFormat) -> str:
     """Return the content of a language file; our own is sent as the revision was saved."""
     if format is FileFormat.OSG_STUDIO:
-        return state.revision.document
-    return format.write(studio.language(state))
+        return asked.state.revision.document
+    return format.write(asked.language)
 
 
 async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLanguage:
@@ -147,10 +140,7 @@ async def _read(file: Path, size: int, name: str, studio: Studio) -> ImportedLan
         return await run_in_threadpool(read_language, content, name)
     ended = await studio.workers.run(Import(file=file, name=name))
     if isinstance(ended, Failed):
-        faults = (
-            [] if ended.pointer is None else [Fault(pointer=ended.pointer, detail=ended.detail)]
-        )
-        raise ProblemError(422, ended.code, ended.detail, errors=faults)
+        raise ProblemError(422, ended.code, ended.detail, pointer=ended.pointer)
     return ImportedLanguage.model_validate(ended.result)
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas.values import View
-from app.api.services.running_studio import CurrentStudio, computed_briefly
+from app.api.routes.asked_revisions import CurrentRevision
+from app.api.services.running_studio import computed_briefly
 from app.recognition.features.trajectory_image import SIMPLIFICATION
 from app.recognition.gestures.profile import DEFAULT_PROFILE, PROFILES, ProfileName
 from app.recognition.gestures.tuning import MAX_SIMPLIFICATION
@@ -46,13 +46,10 @@ class SettingsView(View):
 
 @router.get("/{language_id}/settings", responses=problem_responses(404))
 @computed_briefly
-def get_settings(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> SettingsView:
+def get_settings(asked: CurrentRevision) -> SettingsView:
     """Return profile and tuning of a language beside the defaults; `PATCH` changes them."""
-    state = studio.languages.get(language_id, revision)
-    language = studio.language(state)
-    weights = dict(studio.recognizer(state).vote.weights) if language.gestures else {}
+    language = asked.language
+    weights = dict(asked.studio.recognizer(asked.state).vote.weights) if language.gestures else {}
     return SettingsView(
         profile=language.profile,
         default_profile=DEFAULT_PROFILE,

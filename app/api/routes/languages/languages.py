@@ -10,8 +10,8 @@ from fastapi import APIRouter, Response
 from pydantic import TypeAdapter
 
 from app.api.http.list_responses import NOT_SENT_AGAIN, KnownTags, list_response
-from app.api.http.problems import Fault, ProblemError, problem_responses
-from app.api.http.revisions import ExpectedRevision, Revision
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.revisions import ExpectedRevision
 from app.api.http.schemas.languages import (
     LanguageChange,
     LanguageDraft,
@@ -19,6 +19,7 @@ from app.api.http.schemas.languages import (
     LanguageView,
 )
 from app.api.ingest.quotas import SenderQuota
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services.language_documents import draft_of, name_of_copy
 from app.api.services.language_responses import (
@@ -54,22 +55,18 @@ def create_language(
 )
 def list_languages(studio: CurrentStudio, known: KnownTags) -> Response:
     """List the languages, oldest first."""
-    return _listed(studio.languages, known)
+    return _listed(studio.languages, known, None)
 
 
 @router.get("/{language_id}", responses=problem_responses(404))
-def get_language(
-    language_id: str, studio: CurrentStudio, response: Response, revision: Revision = None
-) -> LanguageView:
+def get_language(asked: CurrentRevision, response: Response) -> LanguageView:
     """Describe a language in its newest or an older revision."""
-    return answer(studio, studio.languages.get(language_id, revision), response)
+    return answer(asked.studio, asked.state, response)
 
 
 @router.patch("/{language_id}", responses=problem_responses(404, 409, 412))
 @edited
-def change_language(
-    change: LanguageChange, studio: CurrentStudio, edit: CurrentEdit
-) -> LanguageView:
+def change_language(change: LanguageChange, edit: CurrentEdit) -> LanguageView:
     """Rename a language or its author, change its phrases, or how it is recognised."""
     fields = change.model_dump(exclude={"grammar", "tuning"}, exclude_none=True)
     if "grammar" in change.model_fields_set:
@@ -77,9 +74,9 @@ def change_language(
     if "tuning" in change.model_fields_set:
         fields["tuning"] = entry_to_tuning(change.tuning)
     if change.name is not None:
-        _require_readable(change.name, studio, edit.language_id)
+        _require_readable(change.name, edit.studio, edit.language_id)
     if not fields:
-        return answer(studio, studio.languages.get(edit.language_id), edit.response)
+        return answer(edit.studio, edit.studio.languages.get(edit.language_id), edit.response)
     return edit.answer(edit.save(_describe(fields), lambda language: replace(language, **fields)))
 
 
@@ -106,19 +103,14 @@ def _describe(fields: Mapping[str, Any]) -> str:
 @router.post("/{language_id}/duplicate", status_code=201, responses=problem_responses(404))
 @edited
 def duplicate_language(
-    language_id: str,
-    studio: CurrentStudio,
-    quota: SenderQuota,
-    response: Response,
-    revision: Revision = None,
+    asked: CurrentRevision, quota: SenderQuota, response: Response
 ) -> LanguageView:
     """Make another language of a language's newest or an older revision."""
-    state = studio.languages.get(language_id, revision)
+    studio, original = asked.studio, asked.language
     taken = {each.revision.name for each in studio.languages.all()}
-    original = studio.language(state)
     name = name_of_copy(original.name, taken)
     copy = replace(original, name=name, created=None, revision=1)
-    change = f"Copy of {original.name}, revision {state.revision.revision}"
+    change = f"Copy of {original.name}, revision {asked.state.revision.revision}"
     return announce(studio, save_language(studio, quota, draft_of(copy, change)), response)
 
 
@@ -144,12 +136,13 @@ def _require_readable(name: str, studio: Studio, language_id: str | None = None)
         known = state.revision.name
         if state.record.id != language_id and known != name and are_confusable(name, known):
             detail = f"the name {name!r} looks like that of the language {known!r}; choose another"
-            fault = Fault(pointer="/name", detail=detail)
-            raise ProblemError(409, "name_taken", detail, errors=[fault])
+            raise ProblemError(409, "name_taken", detail, pointer="/name")
 
 
-def _summaries(languages: LanguageStore) -> list[LanguageSummary]:
-    return [view_summary(state) for state in languages.all()]
+def _summaries(
+    languages: LanguageStore, _all: None
+) -> tuple[list[LanguageSummary], dict[str, str]]:
+    return [view_summary(state) for state in languages.all()], {}
 
 
-_listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]))
+_listed = list_response(_summaries, TypeAdapter(list[LanguageSummary]), kept=1)

@@ -9,10 +9,10 @@ import numpy as np
 from fastapi import APIRouter, Query
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas.values import Label, View
+from app.api.routes.asked_revisions import CurrentRevision
 from app.api.services.gesture_edits import gesture_in
-from app.api.services.running_studio import CurrentStudio, computed
+from app.api.services.running_studio import computed
 from app.recognition.explanation.alignment import Alignment
 from app.recognition.explanation.pair_difference import PairDifference, compare_pair
 from app.recognition.gestures.gesture import Gesture
@@ -52,15 +52,13 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 @router.get("/{language_id}/contrast", responses=problem_responses(404))
 @computed
 def contrast_gestures(
-    language_id: str,
-    studio: CurrentStudio,
+    asked: CurrentRevision,
     advance: Callable[[], None],
     one: Annotated[Label, Query(description="A gesture's label")],
     other: Annotated[Label, Query(description="Another one's")],
-    revision: Revision = None,
 ) -> ContrastView:
     """Return in what two gestures differ, and which of their moments correspond."""
-    recognizer = studio.recognizer(studio.languages.get(language_id, revision), "full")
+    recognizer = asked.studio.recognizer(asked.state, "full")
     language = recognizer.language
     for label in (one, other):
         gesture_in(language, label)

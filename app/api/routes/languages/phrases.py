@@ -9,9 +9,9 @@ from fastapi import APIRouter, Query
 from pydantic import Field
 
 from app.api.http.problems import problem_responses
-from app.api.http.revisions import Revision
 from app.api.http.schemas.values import View
-from app.api.services.running_studio import CurrentStudio, DocumentCache, computed_briefly
+from app.api.routes.asked_revisions import CurrentRevision
+from app.api.services.running_studio import DocumentCache, computed_briefly
 from app.recognition import Language
 from app.recognition.decision.result import Pair
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
@@ -93,9 +93,7 @@ class PhrasesView(View):
 @router.get("/{language_id}/phrases", responses=problem_responses(404))
 @computed_briefly
 def describe_phrases(
-    language_id: str,
-    studio: CurrentStudio,
-    revision: Revision = None,
+    asked: CurrentRevision,
     gesture: Shown = [],  # noqa: B006  FastAPI copies it
     then: Literal["wait", "pause"] = "wait",
 ) -> PhrasesView:
@@ -104,17 +102,14 @@ def describe_phrases(
     They are taken to be shown without a pause; `then` says whether a pause longer than the
     grammar's time-out follows.
     """
-    state = studio.languages.get(language_id, revision)
-    grammar = studio.language(state).grammar or Grammar()
+    row, grammar = asked.state.revision, asked.language.grammar or Grammar()
     parser = PhraseParser(grammar)
     events = [event for shown in gesture for event in _feed(parser, shown)]
     if then == "pause":
         events += parser.expire(2 * grammar.timeout)
     return PhrasesView(
-        revision=state.revision.revision,
-        ambiguities=[
-            AmbiguityView(**asdict(each)) for each in _ambiguities.get(state.revision.document)
-        ],
+        revision=row.revision,
+        ambiguities=[AmbiguityView(**asdict(each)) for each in _ambiguities.get(row.document)],
         examples={each.name: list(grammar.example(each)) for each in grammar.phrases},
         events=[PhraseEventView.model_validate(event.to_dict()) for event in events],
         expected=list(parser.expected),

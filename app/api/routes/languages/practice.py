@@ -17,6 +17,7 @@ from app.api.services.gesture_edits import gesture_in
 from app.api.services.running_studio import CurrentStudio, Studio, edited
 from app.api.services.stored_recognitions import (
     load_context,
+    load_recognition,
     read_pair,
     recognize_range,
     write_pair,
@@ -114,8 +115,8 @@ def show_gesture(
         detail = "this clip is a demonstration of the language, which is recognised by construction"
         raise ProblemError(409, "is_demonstration", detail)
     shown = draft.model_dump(exclude={"diver"})
-    made = recognize_range(studio, RecognitionRequest(language_id=language_id, **shown), quota)
-    record = made.record
+    record = recognize_range(studio, RecognitionRequest(language_id=language_id, **shown), quota)
+    answer = load_recognition(record)
     take = studio.practice.keep(
         PracticeTake(
             language_id=language_id,
@@ -123,8 +124,8 @@ def show_gesture(
             start=record.start,
             diver=draft.diver.strip(),
             expected=draft.expected,
-            label=made.answer["label"],
-            pair=write_pair(made.answer),
+            label=answer.label,
+            pair=write_pair(answer.pair),
             revision=record.revision,
             recognition_id=record.id,
             added_by=quota.owner,

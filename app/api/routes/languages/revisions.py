@@ -28,11 +28,9 @@ def list_revisions(language_id: str, studio: CurrentStudio) -> list[schemas.Revi
 
 @router.post("/revert", responses=problem_responses(404, 412))
 @edited
-def revert_language(
-    to: schemas.LanguageRevert, studio: CurrentStudio, edit: CurrentEdit
-) -> schemas.LanguageView:
+def revert_language(to: schemas.LanguageRevert, edit: CurrentEdit) -> schemas.LanguageView:
     """Make a new revision with the content of an older one."""
-    older = studio.language(studio.languages.get(edit.language_id, to.revision))
+    older = edit.studio.language(edit.studio.languages.get(edit.language_id, to.revision))
     return edit.answer(edit.save(f"Go back to revision {to.revision}", lambda _newest: older))
 
 

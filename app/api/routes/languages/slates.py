@@ -6,8 +6,8 @@ from fastapi import APIRouter, Response
 
 from app.api.http.downloads import attachment
 from app.api.http.problems import file_responses
-from app.api.http.revisions import Revision
-from app.api.services.running_studio import CurrentStudio, computed_briefly
+from app.api.routes.asked_revisions import CurrentRevision
+from app.api.services.running_studio import computed_briefly
 from app.ui.slate.layout import lay_out
 from app.ui.slate.pdf import to_pdf
 from app.ui.slate.svg import to_svg
@@ -23,13 +23,10 @@ router = APIRouter(prefix="/languages", tags=["languages"])
     responses=file_responses("The slate", SVG),
 )
 @computed_briefly
-def get_slate_as_svg(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> Response:
+def get_slate_as_svg(asked: CurrentRevision) -> Response:
     """Send a language as one printable page, in the fonts of whoever opens it."""
-    state = studio.languages.get(language_id, revision)
-    content = to_svg(lay_out(studio.language(state)))
-    return _file(content.encode("utf-8"), SVG, attachment(state.revision.name, ".svg"))
+    content = to_svg(lay_out(asked.language))
+    return _file(content.encode("utf-8"), SVG, attachment(asked.state.revision.name, ".svg"))
 
 
 @router.get(
@@ -38,13 +35,10 @@ def get_slate_as_svg(
     responses=file_responses("The slate", PDF),
 )
 @computed_briefly
-def get_slate_as_pdf(
-    language_id: str, studio: CurrentStudio, revision: Revision = None
-) -> Response:
+def get_slate_as_pdf(asked: CurrentRevision) -> Response:
     """Send a language as one printable page, with its fonts inside."""
-    state = studio.languages.get(language_id, revision)
-    content = to_pdf(lay_out(studio.language(state)))
-    return _file(content, PDF, attachment(state.revision.name, ".pdf"))
+    content = to_pdf(lay_out(asked.language))
+    return _file(content, PDF, attachment(asked.state.revision.name, ".pdf"))
 
 
 def _file(content: bytes, media_type: str, disposition: str) -> Response:

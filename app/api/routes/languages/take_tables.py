@@ -9,10 +9,9 @@ from starlette.concurrency import run_in_threadpool
 
 from app.api.http.problems import problem_responses
 from app.api.http.schemas.take_tables import TakeRowView, TakeTableRequest, TakeTableView
-from app.api.jobs.take_table import take_table_job
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.running_studio import CurrentStudio, Studio
-from app.api.services.take_tables import recognize_clip_takes
+from app.api.services.take_tables import recognize_clip_takes, take_table_job
 from app.evaluation.take_table import write_csv
 from app.store import Clip, LanguageState
 

@@ -8,11 +8,11 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import Field
 
-from app.api.http.problems import Fault, ProblemError, problem_responses
+from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.languages import LanguageView
 from app.api.http.schemas.values import Body, Identifier, Seconds
 from app.api.routes.language_edits import CurrentEdit
-from app.api.services.running_studio import CurrentStudio, Studio, edited
+from app.api.services.running_studio import Studio, edited
 from app.recognition import Language
 from app.recognition.errors import TriggerError
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH
@@ -49,8 +49,9 @@ router = APIRouter(prefix="/languages", tags=["languages"])
 
 @router.put("/{language_id}/trigger", responses=problem_responses(404, 409, 412))
 @edited
-def change_trigger(draft: TriggerDraft, studio: CurrentStudio, edit: CurrentEdit) -> LanguageView:
+def change_trigger(draft: TriggerDraft, edit: CurrentEdit) -> LanguageView:
     """Choose what begins and ends a take; the takes of all clips are then found by it."""
+    studio = edit.studio
     start = None if draft.start is None else _pose(studio, draft.start, "/start")
     stop = None if draft.stop is None else _pose(studio, draft.stop, "/stop")
 
@@ -86,5 +87,4 @@ def _pose(studio: Studio, where: HeldPose, pointer: str) -> ArmPose:
 
 
 def _refusal(reason: str, pointer: str) -> ProblemError:
-    fault = Fault(pointer=pointer, detail=reason)
-    return ProblemError(422, "trigger_unusable", reason, errors=[fault])
+    return ProblemError(422, "trigger_unusable", reason, pointer=pointer)

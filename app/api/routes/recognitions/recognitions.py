@@ -32,7 +32,7 @@ def recognize(
     request: RecognitionRequest, studio: CurrentStudio, quota: SenderQuota
 ) -> RecognitionView:
     """Recognise a take, a range or all of a clip, and keep the answer."""
-    record = recognize_range(studio, request, quota).record
+    record = recognize_range(studio, request, quota)
     studio.broadcast.publish("recognitions", id=record.id, clip_id=record.clip_id)
     return view_recognition(record)
 
@@ -78,8 +78,8 @@ def explain_recognition(
     # The recognition never changes, but the known takes by which remedies are judged do.
     response.headers["Cache-Control"] = "private, max-age=60"
     explanation = explain(context, meant)
-    others = [] if explanation.right else [explanation.nearest]
-    notes = write_notes(studio, record, context.language, *others)
+    nearest = None if explanation.right else explanation.nearest
+    notes = write_notes(studio, record, context.language, nearest)
     notes = [note for note in notes if note != explanation.sentence]
     located = tuple(locate_cuts(studio, context.language, explanation.counterfactuals))
     content = dict(explanation) | {"counterfactuals": located}

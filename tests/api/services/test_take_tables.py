@@ -9,8 +9,10 @@ from collections.abc import Callable
 import pytest
 
 from app.api.events.broadcast import Broadcast
-from app.api.jobs.job import JobCancelled, JobRunner, Progress
-from app.api.jobs.take_table import Rows, take_table_job
+from app.api.jobs.job import JobCancelled, JobRunner
+from app.api.services.take_tables import take_table_job
+from app.api.workers.worker_messages import Progress
+from app.evaluation.take_table import Row
 from app.store import Clip
 
 
@@ -21,7 +23,7 @@ def clip_of(name: str, frames: int) -> Clip:
 def test_progress_counts_the_frames_of_all_clips() -> None:
     told: list[Progress] = []
 
-    def recognize(clip: Clip, advance: Callable[[float], None]) -> Rows:
+    def recognize(clip: Clip, advance: Callable[[float], None]) -> list[Row]:
         advance(0.5)
         return [{"clip": clip.name}]
 
@@ -42,7 +44,7 @@ def test_a_cancelled_table_recognises_no_further_take() -> None:
     begun, cancelled, ended = threading.Event(), threading.Event(), threading.Event()
     takes: list[int] = []
 
-    def recognize(clip: Clip, advance: Callable[[float], None]) -> Rows:
+    def recognize(clip: Clip, advance: Callable[[float], None]) -> list[Row]:
         try:
             for take in range(3):
                 takes.append(take)

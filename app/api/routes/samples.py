@@ -1,0 +1,69 @@
+"""Routes of the sample clips and languages that come with the program."""
+
+from __future__ import annotations
+
+import shutil
+
+from fastapi import APIRouter, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from app.api.http.problems import ProblemError, problem_responses
+from app.api.http.schemas.clips import ClipAccepted
+from app.api.http.schemas.languages import LanguageView
+from app.api.http.schemas.samples import SampleChoice, SampleLanguageView, SampleView
+from app.api.ingest.intake import inspect, require_place_in_queue, store
+from app.api.ingest.multipart import display_name
+from app.api.ingest.quotas import SenderQuota, require_quota
+from app.api.services.language_documents import draft_of
+from app.api.services.language_responses import announce, save_language
+from app.api.services.running_studio import CurrentStudio
+from app.api.services.sample_library import SEEDED
+
+router = APIRouter(prefix="/samples", tags=["samples"])
+
+
+@router.get("", responses=problem_responses())
+def list_samples(studio: CurrentStudio) -> list[SampleView]:
+    """List the sample clips."""
+    clips = studio.samples.clips()
+    return [SampleView(name=name, size=file.stat().st_size) for name, file in clips.items()]
+
+
+@router.post("", status_code=202, responses=problem_responses(404, 415, 429))
+async def import_sample(
+    request: Request, chosen: SampleChoice, studio: CurrentStudio, quota: SenderQuota
+) -> ClipAccepted:
+    """Add a sample clip to the clips, as if it had been uploaded."""
+    samples = await run_in_threadpool(studio.samples.clips)
+    if chosen.name not in samples:
+        raise ProblemError(404, "not_found", f"there is no sample clip {chosen.name!r}")
+    sample = samples[chosen.name]
+    size = sample.stat().st_size
+    await require_place_in_queue(request, studio)
+    await require_quota(quota, studio, size)
+    with studio.clips.receiving() as partial:
+        await run_in_threadpool(shutil.copyfile, sample, partial)
+        made = await inspect(partial, studio, name=display_name(sample.name), size=size)
+        return await store(made, partial, studio, request)
+
+
+@router.get("/languages", responses=problem_responses())
+def list_sample_languages(studio: CurrentStudio) -> list[SampleLanguageView]:
+    """List the sample languages, whether or not they are among the languages."""
+    return [
+        SampleLanguageView(name=name, title=language.name, labels=list(language.labels))
+        for name, language in studio.samples.languages().items()
+    ]
+
+
+@router.post("/languages", status_code=201, responses=problem_responses(404))
+def add_sample_language(
+    chosen: SampleChoice, studio: CurrentStudio, quota: SenderQuota, response: Response
+) -> LanguageView:
+    """Add a sample language to the languages, as it was brought at the first start."""
+    language = studio.samples.languages().get(chosen.name)
+    if language is None:
+        raise ProblemError(404, "not_found", f"there is no sample language {chosen.name!r}")
+    draft = draft_of(language, SEEDED)
+    state = save_language(studio, quota, draft, language.revision, sample=chosen.name)
+    return announce(studio, state, response)

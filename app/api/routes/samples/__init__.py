@@ -1,1 +1,0 @@
-"""Routers of the samples that come with the program."""
