@@ -100,7 +100,6 @@ class FaultKind(str, Enum):
     keypoints_jumped = "keypoints_jumped", "has keypoints that jump"
     keypoints_missing = "keypoints_missing", "has a keypoint that is often not seen"
     no_hand = "no_hand", "shows no hand, but hands count"
-    unlike_takes = "unlike_takes", "is unlike its takes"
 
 
 REMEDIES: Final[dict[Remedy, str]] = {

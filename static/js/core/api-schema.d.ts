@@ -763,7 +763,7 @@ export interface components {
          * @description What is wrong with a demonstration, the gravest first, and that as a clause about it.
          * @enum {string}
          */
-        FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand" | "unlike_takes";
+        FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand";
         /**
          * FileFormat
          * @description The language files.
