@@ -106,7 +106,7 @@ class Recognizer:
             if traits.rejects
             else MajorityVote(language.gestures, tuning)
         )
-        self._reads_hands = traits.compares_motion and any(
+        self._reads_hands = isinstance(self.vote, FusedVote) and any(
             gesture.is_held for gesture in language.gestures
         )
         self._reads_sequences = self._reads_hands and any(

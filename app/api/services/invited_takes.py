@@ -64,7 +64,6 @@ REASONS: Final[dict[FaultKind, str]] = {
     FaultKind.keypoints_missing: "An arm is often not seen. Step back until both arms stay in "
     "the picture.",
     FaultKind.no_hand: "Hand not seen. Show it again nearer.",
-    FaultKind.unlike_takes: "It is unlike the gesture. Look at the drawing, and show it again.",
 }
 """What the person who shows is told of a fault: cause, then what to do."""
 

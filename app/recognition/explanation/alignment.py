@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict
 
 from app.recognition.decision.result import WRITTEN
 from app.recognition.features.motion import build_movement, find_hands
@@ -16,71 +15,49 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.matching.dtw import BAND, dtw_pairs
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.trajectory import Trajectory
+from app.recognition.text.described import DESCRIBED
 from app.recognition.voters.motion_voters import Path
 
 DIGITS = 4
 """Decimals of costs and seconds in JSON: a tenth of a millisecond."""
 
 
-Places = Annotated[
-    list[list[tuple[float, float]]],
-    Field(description="Step by step and part by part, x right and y down."),
-]
+Places = list[list[tuple[float, float]]]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Alignment:
-    """The best DTW alignment of a query's path with a gesture's; rounded in JSON.
+class Alignment(BaseModel):
+    """The best DTW alignment of a query's path with a gesture's; rounded in JSON."""
 
-    Attributes
-    ----------
-    label
-        The gesture's.
-    voter
-        ``path``, whose distance it is.
-    parts
-        P landmarks.
-    pairs
-        S corresponding steps of the query and of the gesture.
-    time
-        Seconds in the query's clock of each of its steps.
-    gesture_time
-        Seconds in the demonstration of each of the gesture's steps.
-    query, gesture
-        Step by step each landmark's position relative to its mean, x right and
-        y down, in sizes of the gesture: the costs are the distances between corresponding
-        positions, divided by the number of steps.
-    costs
-        The contribution of each pair and part to the voter's distance, >= 0.
-    distance
-        The voter's distance, in its unit: the sum of the costs.
-    backward, mirrored
-        Whether the gesture is traversed backwards, and whether it is its mirror image.
-    demonstration
-        Which of the gesture's demonstrations it is, from 0.
-
-    """
-
-    __pydantic_config__ = WRITTEN
+    model_config = ConfigDict(**DESCRIBED, **WRITTEN)
 
     label: str
+    """The gesture's."""
     voter: str = Path.name
+    """``path``, whose distance it is."""
     parts: tuple[str, ...]
-    pairs: Annotated[
-        list[tuple[int, int]],
-        Field(description="Corresponding steps of the take and of the gesture."),
-    ]
+    """P landmarks."""
+    pairs: list[tuple[int, int]]
+    """S corresponding steps of the take and of the gesture."""
     time: list[float]
+    """Seconds in the take's clock of each of its steps."""
     gesture_time: list[float]
+    """Seconds in the demonstration of each of the gesture's steps."""
     query: Places
+    """Step by step and part by part the take's position relative to its mean, x right and y down,
+    in sizes of the gesture: the costs are the distances between corresponding positions, divided by
+    the number of steps."""
     gesture: Places
-    costs: Annotated[
-        list[list[float]], Field(description="Per pair and part; their sum is `distance`.")
-    ]
+    """The same of the gesture."""
+    costs: list[list[float]]
+    """Per pair and part, >= 0; their sum is `distance`."""
     distance: float
+    """The voter's distance, in its unit."""
     backward: bool
+    """Whether the gesture is traversed backwards."""
     mirrored: bool
+    """Whether it is the gesture's mirror image."""
     demonstration: int = 0
+    """Which of the gesture's demonstrations it is, from 0."""
 
 
 def align(
@@ -135,21 +112,17 @@ def align(
     return Alignment(
         label=gesture.label,
         parts=tuple(landmarks),
-        pairs=[(one, other) for one, other in pairs.tolist()],
+        pairs=pairs.tolist(),
         time=_round(start + moved.reached),
         gesture_time=_round(whole.reached[traversal.order]),
-        query=_list_places(moved.figure),
-        gesture=_list_places(shown.figure),
+        query=_round(moved.figure),
+        gesture=_round(shown.figure),
         costs=_round(costs),
         distance=_round(costs.sum()),
         backward=traversal.backward,
         mirrored=mirrored,
         demonstration=demonstration,
     )
-
-
-def _list_places(figure: FloatArray) -> list[list[tuple[float, float]]]:
-    return [[(x, y) for x, y in step] for step in _round(figure)]
 
 
 def _round(values: FloatArray) -> Any:

@@ -189,7 +189,7 @@ def _judge_demonstration(
     evidence = Evidence(unlike=apart / max(among, 1e-9), failing=failing / len(own), gain=MOST_GAIN)
     if evidence.weigh() < least:
         return
-    tried = []
+    tried, gains = list[Blame](), list[float]()
     for change, changed, (start, end) in _list_changes(
         known.recognizer, gesture, number, takes, medoid
     ):
@@ -199,7 +199,7 @@ def _judge_demonstration(
         repaired, broken = (
             sum(index != left_out for index in rows) for rows in known.try_change(after)
         )
-        gain = (repaired - broken) / (len(own) - (left_out is not None))
+        gains.append((repaired - broken) / (len(own) - (left_out is not None)))
         tried.append(
             Blame(
                 label=gesture.label,
@@ -211,15 +211,14 @@ def _judge_demonstration(
                 failing=failing,
                 repaired=repaired,
                 broken=broken,
-                evidence=replace(evidence, gain=gain),
+                evidence=evidence,
             )
         )
     if tried:
         first = tried[0]
         half = max(FEWEST_FAILING, failing / 2)
         chosen = first if not first.broken and first.repaired >= half else tried[-1]
-        gain = max(each.evidence.gain for each in tried)
-        yield replace(chosen, evidence=replace(evidence, gain=gain))
+        yield replace(chosen, evidence=replace(evidence, gain=max(gains)))
 
 
 def _list_changes(

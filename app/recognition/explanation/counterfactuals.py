@@ -279,7 +279,9 @@ def list_interventions(
     """
     yield list(_cuts(context, expected, blame, faulty=faulty))
     yield from _trims(context)
-    yield from _repairs(context)
+    repaired = float(repair_poses(context.poses).touched.mean())
+    if repaired > 0:
+        yield [Intervention("keypoint_repair", repaired, {"on": not context.recognizer.repairs})]
     yield from _gestures(context, expected)
 
 
@@ -302,10 +304,8 @@ def _cuts(
 
 def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
     """Move the start, the end, or both, within the take, and keep most of the stroke."""
-    start, end, first, last = (
-        float(each)
-        for time in (context.poses.time, context.whole.time)
-        for each in (time[0], time[-1])
+    (start, end), (first, last) = (
+        (float(poses.time[0]), float(poses.time[-1])) for poses in (context.poses, context.whole)
     )
     steps = np.arange(1, TRIM_STEPS + 1) * TRIM_STEP * (end - start)
     ways = ((1, 0), (0, -1), (1, -1), (-1, 0), (0, 1))
@@ -323,13 +323,6 @@ def _trims(context: RecognitionContext) -> Iterator[list[Intervention]]:
             for a, b in inside
             if min(b, end) - max(a, start) >= LEAST_KEPT * (end - start) - 1e-9 > 0
         ]
-
-
-def _repairs(context: RecognitionContext) -> Iterator[list[Intervention]]:
-    """Switch the repair of keypoints on or off, if it changes any."""
-    share = float(repair_poses(context.poses).touched.mean())
-    if share > 0:
-        yield [Intervention("keypoint_repair", share, {"on": not context.recognizer.repairs})]
 
 
 def _gestures(context: RecognitionContext, expected: str) -> Iterator[list[Intervention]]:

@@ -100,7 +100,6 @@ class FaultKind(str, Enum):
     keypoints_jumped = "keypoints_jumped", "has keypoints that jump"
     keypoints_missing = "keypoints_missing", "has a keypoint that is often not seen"
     no_hand = "no_hand", "shows no hand, but hands count"
-    unlike_takes = "unlike_takes", "is unlike its takes"
 
 
 REMEDIES: Final[dict[Remedy, str]] = {
@@ -165,8 +164,10 @@ class ClipOutline:
     def of(cls, recording: Recording, trigger: Trigger = SALUTE) -> ClipOutline:
         """Return the parts of a recording."""
         time = recording.poses.time
+        scores = np.maximum(*trigger.score(recording.poses, recording.salute))
+        hold = POSE_SECONDS if trigger.start else HOLD_SECONDS
         return cls(
-            triggers=find_triggers(recording, trigger),
+            triggers=find_held(time, scores, hold),
             strokes=tuple(
                 (take.stroke_start, take.stroke_end)
                 for take in takes_in(recording, trigger=trigger)
@@ -179,15 +180,6 @@ class ClipOutline:
     def count_triggers(self, start: float, end: float) -> int:
         """Return how many triggers a range of seconds contains, wholly or in part."""
         return sum(min(b, end) - max(a, start) >= LEAST_OVERLAP for a, b in self.triggers)
-
-
-def find_triggers(
-    recording: Recording, trigger: Trigger = SALUTE
-) -> tuple[tuple[float, float], ...]:
-    """Return start and end, in seconds, of every trigger held long enough."""
-    scores = np.maximum(*trigger.score(recording.poses, recording.salute))
-    hold = POSE_SECONDS if trigger.start else HOLD_SECONDS
-    return find_held(recording.poses.time, scores, hold)
 
 
 def describe_count(trigger: Trigger, count: int) -> str:
@@ -297,11 +289,9 @@ def _find_ways(
         repair = repair_poses(poses.between(start, end))
         if not repair.poses.seen.any() or repair.trajectory.unit != "torso_length":
             continue
-        time = repair.trajectory.time
-        first = _measure_way(repair.trajectory.xy, time, repair.trajectory.landmarks)
-        last = _measure_way(
-            repair.trajectory.xy[::-1], time[-1] - time[::-1], repair.trajectory.landmarks
-        )
+        stroke, time = repair.trajectory, repair.trajectory.time
+        first = _measure_way(stroke.xy, time, stroke.landmarks)
+        last = _measure_way(stroke.xy[::-1], time[-1] - time[::-1], stroke.landmarks)
         if first is None or last is None or time[-1] - last - first < LEAST_REST:
             continue
         better = repair.poses.time[0] + first, repair.poses.time[-1] - last

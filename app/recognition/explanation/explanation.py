@@ -10,8 +10,7 @@ from typing import Annotated, Any, Final
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
-from app.recognition.decision.result import WRITTEN, Distance, Recognition
-from app.recognition.decision.score_table import ScoreTable
+from app.recognition.decision.result import WRITTEN, Distance
 from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.blame import Blame, find_blame
@@ -185,12 +184,8 @@ class Explanation(BaseModel):
                 f"{first.broken}."
             )
         followed = UNFOLLOWED.isdisjoint(each.kind for each in self.causes)
-        if (
-            self.causes
-            and followed
-            and self.transcript.shown
-            and self.transcript.differs is not None
-        ):
+        differs = self.transcript.shown and self.transcript.differs is not None
+        if self.causes and followed and differs:
             yield describe_transcript(self.transcript, self.expected)
         yield from (f"Also: {each.sentence}" for each in self.causes[1:3])
         if followed and self.facing is not None and abs(self.facing) >= CLEARLY_TURNED:
@@ -232,7 +227,8 @@ def explain(
         )
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
-    other = _find_other(result, expected)
+    rival = result.nearest if result.nearest != expected else result.runner_up
+    other = None if rival is None else result.gestures.index(rival)
     gesture = table.find_nearest_demonstration(context.language.gestures, at)
     blame: tuple[Blame, ...] = ()
     if wanted := with_counterfactuals and result.label != expected:
@@ -246,18 +242,21 @@ def explain(
     if wanted:
         faulty = any(each.kind is CauseKind.demonstration for each in causes)
         found, tried = find_counterfactuals(context, expected, blame, faulty=faulty)
+    turned = 0.0
+    if other is not None and np.isfinite(table.scores[[at, other]]).all():
+        turned = float(table.turned[at] - table.turned[other])
     answered = ("profile", "label", "nearest", "runner_up", "confidence", "between", "disagreed")
     return Explanation(
         **{name: getattr(result, name) for name in (*answered, "fault", "support")},
         expected=expected,
-        other=None if other is None else result.gestures[other],
+        other=rival,
         score=float(table.scores[at]),
         other_score=math.inf if other is None else float(table.scores[other]),
         novelty=float(table.novelty[at]),
         votes=dict(Counter(result.counted.values()).most_common()),
         breakdown=break_down_votes(table, result, at, other),
         facing=table.facing,
-        turned=_difference(table, at, other),
+        turned=turned,
         alignments=tuple(
             alignment
             for index in (at, other)
@@ -273,18 +272,6 @@ def explain(
         counterfactuals=found,
         tried=tried,
     )
-
-
-def _find_other(result: Recognition, expected: str) -> int | None:
-    """Return the nearest gesture, or the runner-up where the nearest is the expected one."""
-    other = result.nearest if result.nearest != expected else result.runner_up
-    return None if other is None else result.gestures.index(other)
-
-
-def _difference(table: ScoreTable, expected: int, other: int | None) -> float:
-    if other is None or not np.isfinite(table.scores[[expected, other]]).all():
-        return 0.0
-    return float(table.turned[expected] - table.turned[other])
 
 
 def _align(context: RecognitionContext, at: int) -> Alignment | None:

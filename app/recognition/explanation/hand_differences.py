@@ -105,7 +105,8 @@ def find_held_difference(
         if apart := measure_distance(query, example):
             found += [
                 HandDifference(share * apart / whole, where + words)
-                for share, words in _list_shares(query, example, label)
+                for differences in (_fingers(query, example, label), _turn(query, example))
+                for share, words in differences
             ]
     return _find_largest(found)
 
@@ -142,13 +143,6 @@ def _pair_parts(
     return choices[nearest], distances[nearest]
 
 
-def _list_shares(query: HandShape, example: HandShape, label: str) -> Iterator[tuple[float, str]]:
-    """Yield the shares and the words of all differences between two held hands."""
-    whole = measure_distance(query, example)
-    yield from _fingers(query, example, whole, label)
-    yield from _turn(query, example, whole)
-
-
 def find_moving_hand_difference(
     label: str, hands: Sequence[HandShape], shown: Sequence[HandShape]
 ) -> HandDifference | None:
@@ -181,8 +175,7 @@ def find_moving_hand_difference(
     example = known[worst]
     either = [_turn_to(hand, example) for hand in (seen[worst], seen[worst].mirror())]
     query = min(either, key=lambda hand: measure_distance(hand, example))
-    whole = measure_distance(query, example)
-    return _find_largest([HandDifference(*each) for each in _fingers(query, example, whole, label)])
+    return _find_largest([*_fingers(query, example, label)])
 
 
 def _turn_to(hand: HandShape, example: HandShape) -> HandShape:
@@ -226,10 +219,9 @@ def measure_bends(hand: HandShape) -> FloatArray:
     return np.asarray(np.interp(-shares, -reach, bends), dtype=np.float64)
 
 
-def _fingers(
-    query: HandShape, example: HandShape, whole: float, label: str
-) -> Iterator[tuple[float, str]]:
-    """Yield the share and the words of every finger that differs clearly."""
+def _fingers(query: HandShape, example: HandShape, label: str) -> Iterator[HandDifference]:
+    """Yield how every finger differs."""
+    whole = measure_distance(query, example)
     more = measure_bends(query) - measure_bends(example)
     for finger, name in enumerate(FINGERS):
         inner, joints = 1 + 4 * finger, slice(2 + 4 * finger, 5 + 4 * finger)
@@ -242,17 +234,18 @@ def _fingers(
             words = (
                 f"the {name} is bent {_round(more[finger - 1])} degrees {word} than in {label!r}"
             )
-        yield share, words
+        yield HandDifference(share, words)
 
 
-def _turn(query: HandShape, example: HandShape, whole: float) -> Iterator[tuple[float, str]]:
-    """Yield the share and the words of a turn in the image."""
+def _turn(query: HandShape, example: HandShape) -> Iterator[HandDifference]:
+    """Yield the turn in the image, if it is clear."""
     one, other = (hand.xy[_MIDDLE] - hand.xy[_WRIST] for hand in (query, example))
     turned = np.degrees(np.arctan2(other[0] * one[1] - other[1] * one[0], one @ other))
     if abs(turned) >= CLEARLY_TURNED:
         way = "clockwise" if turned > 0 else "anticlockwise"
         left = measure_distance(query.turn(-turned), example)
-        yield _share(whole, left), f"the hand is turned by {_round(turned)} degrees {way}"
+        words = f"the hand is turned by {_round(turned)} degrees {way}"
+        yield HandDifference(_share(measure_distance(query, example), left), words)
 
 
 def _share(whole: float, left: float) -> float:

@@ -13,10 +13,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Annotated, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
-from pydantic import Field, computed_field
+from pydantic import computed_field
 
 from app.recognition.decision.result import WRITTEN
 from app.recognition.features.motion import STEPS, parse_body_part
@@ -170,7 +170,8 @@ class Transcript:
     Attributes
     ----------
     shown, expected
-        The pieces of both, in seconds of the take's and of the demonstration's clock.
+        The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
+        clock.
     differs
         Index of the first piece that differs, in both; None where none does.
 
@@ -178,8 +179,8 @@ class Transcript:
 
     __pydantic_config__ = WRITTEN
 
-    shown: Annotated[tuple[Piece, ...], Field(description="Of the take, hand after hand.")]
-    expected: Annotated[tuple[Piece, ...], Field(description="Of the gesture.")]
+    shown: tuple[Piece, ...]
+    expected: tuple[Piece, ...]
     differs: int | None
 
 
@@ -261,10 +262,8 @@ def compare_transcripts(
 
 def _count_alike(shown: Sequence[Piece], expected: Sequence[Piece]) -> int:
     """Return how many pieces agree before the first one that differs."""
-    for number, (one, other) in enumerate(zip(shown, expected, strict=False)):
-        if one.differs(other):
-            return number
-    return min(len(shown), len(expected))
+    pairs = zip(shown, expected, strict=False)
+    return len([*itertools.takewhile(lambda pair: not pair[0].differs(pair[1]), pairs)])
 
 
 def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) -> tuple[str, ...]:
@@ -277,14 +276,11 @@ def find_drawing_landmarks(trajectory: Trajectory, salient: Sequence[str] = ()) 
         for name, part in parts.items()
         if part.endswith("wrist") and part.partition("_")[0] in arms
     ]
-    extents = {name: measure_extent(_path_of(trajectory, name)) for name in wrists or names}
+    paths = dict(zip(trajectory.landmarks, np.moveaxis(trajectory.xy, 1, 0), strict=True))
+    extents = {name: measure_extent(paths[name]) for name in wrists or names}
     most = max(extents.values(), default=0.0)
     least = OTHER_HAND * most if wrists else most
     return tuple(name for name in extents if extents[name] >= least and most > LEAST_MOVING)
-
-
-def _path_of(trajectory: Trajectory, name: str) -> FloatArray:
-    return trajectory.xy[:, trajectory.landmarks.index(name)]
 
 
 def _follow(trajectory: Trajectory, name: str, start: float) -> list[Piece]:
@@ -419,7 +415,9 @@ class _Run:
     def name(self, hand: str, start: float) -> Piece:
         """Return the run as a piece."""
         turn, chord = self.turn, self.xy[-1] - self.xy[0]
-        is_bent = abs(turn) >= STRAIGHT and _is_monotone(self.headings)
+        turns = np.diff(self.headings)
+        is_one_way = abs(turns.sum()) >= 0.6 * np.abs(turns).sum()
+        is_bent = abs(turn) >= STRAIGHT and is_one_way
         kind: PieceKind = "curve"
         if abs(turn) >= LOOP or (is_bent and self.direct < CLOSED):
             kind = "loop"
@@ -436,12 +434,6 @@ class _Run:
             start=start + float(self.time[0]),
             end=start + float(self.time[-1]),
         )
-
-
-def _is_monotone(headings: FloatArray) -> bool:
-    """Return whether a path turns mostly one way."""
-    turns = np.diff(headings)
-    return bool(abs(turns.sum()) >= 0.6 * np.abs(turns).sum())
 
 
 def describe_transcript(transcript: Transcript, label: str) -> str:

@@ -284,7 +284,6 @@ def compare_with(
     if (
         not isinstance(vote, FusedVote)
         or shown.trajectory is None
-        or shown.is_held
         or len(shown.trajectory) < 2
         or len(query) < 2
         or not shown.salient

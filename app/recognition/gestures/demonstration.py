@@ -209,12 +209,8 @@ class Demonstration:
     def mirror(self) -> Demonstration:
         """Return the mirror image, as if shown with the other hand."""
         trajectory = self.trajectory.compute_once("mirrored", self.trajectory.mirror)
-        if self.is_held:
-            return replace(self, trajectory=trajectory, image=draw_hands(*trajectory.held_shapes))
         salient = tuple(sorted(other_side(name) for name in self.salient))
-        drawing = draw(trajectory.select(salient))
-        descriptors = describe_drawing(drawing, PAPER_VOTERS)
-        return Demonstration(trajectory, salient, drawing.image, descriptors, self.diver)
+        return replace(self, trajectory=trajectory, salient=salient).redraw()
 
     def turn(self, degrees: int) -> Demonstration:
         """Return the demonstration as seen when its diver is turned, see `Trajectory.turn`."""

@@ -74,23 +74,6 @@ SETTINGS: Final[Mapping[str, int | float]] = MappingProxyType(
 images and descriptors are computed again."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Rates:
-    """Estimated error rates of the thresholds in files of version 0.2 and before.
-
-    Attributes
-    ----------
-    miss
-        Share of other people's takes of the gesture that are rejected.
-    false_alarm
-        Share of simulated out-of-vocabulary movements that are recognised as the gesture.
-
-    """
-
-    miss: float
-    false_alarm: float
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Gesture:
     """A labelled gesture of a language.
@@ -110,8 +93,9 @@ class Gesture:
     descriptors
         Per voter's name its descriptor of the image; empty when the image is.
     thresholds, rates
-        Of files of version 0.2 and before, which reject by them; kept for robots of these versions,
-        and not used.
+        Of files of version 0.2 and before, which reject by them, and the shares ``miss`` and
+        ``false_alarm`` of errors that these estimate; kept for robots of these versions, and not
+        used.
     description
         What the gesture looks like or means, in words.
     command
@@ -137,7 +121,7 @@ class Gesture:
     trajectory: Trajectory | None = None
     descriptors: Mapping[str, FloatArray] = field(default_factory=dict)
     thresholds: Mapping[str, float] = field(default_factory=dict)
-    rates: Rates | None = None
+    rates: Mapping[str, float] | None = None
     description: str = ""
     command: str | dict[str, Any] | None = None
     switches: Switches = AUTOMATIC

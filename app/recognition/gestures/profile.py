@@ -25,8 +25,6 @@ class Profile:
         Voters in the order of results.
     rejects
         Whether it rejects movements that are no gesture, by a limit of the language.
-    compares_motion
-        Whether it compares movements, not drawings alone.
     repairs_keypoints
         Whether side swaps and outliers of the query are repaired first.
 
@@ -35,17 +33,12 @@ class Profile:
     name: ProfileName
     voters: tuple[Voter, ...]
     rejects: bool
-    compares_motion: bool
     repairs_keypoints: bool
 
 
 PROFILES: Final[dict[str, Profile]] = {
-    "paper": Profile(
-        "paper", PAPER_VOTERS, rejects=False, compares_motion=False, repairs_keypoints=False
-    ),
-    "full": Profile(
-        "full", MOTION_VOTERS, rejects=True, compares_motion=True, repairs_keypoints=True
-    ),
+    "paper": Profile("paper", PAPER_VOTERS, rejects=False, repairs_keypoints=False),
+    "full": Profile("full", MOTION_VOTERS, rejects=True, repairs_keypoints=True),
 }
 """Profiles by name. ``paper``: the seven voters of the paper, majority vote. ``full``: a few
 distances of movements and hands, fused."""

@@ -60,9 +60,15 @@ class Tuning:
     @property
     def words(self) -> str:
         """The tuning as a clause after "recognised"; weight factors of 1 are not mentioned."""
-        words = [describe_weight(*each) for each in self.weights.items() if each[1] != 1]
+        words = [
+            f"with {factor:g} times the weight on the voter {humanize(voter)}"
+            if factor
+            else f"without the voter {humanize(voter)}"
+            for voter, factor in self.weights.items()
+            if factor != 1
+        ]
         if self.simplification != SIMPLIFICATION:
-            words.append(describe_simplification(self.simplification))
+            words.append(f"with drawings simplified by {self.simplification:g} pixels")
         if self.keypoints_repaired is not None:
             words.append(describe_repair(self.keypoints_repaired))
         return join_words(words) or "as the profile does"
@@ -88,19 +94,6 @@ class Tuning:
 
 
 AS_THE_PROFILE = Tuning()
-
-
-def describe_weight(voter: str, factor: float) -> str:
-    """Return a weight factor in words."""
-    name = humanize(voter)
-    if factor == 0:
-        return f"without the voter {name}"
-    return f"with {factor:g} times the weight on the voter {name}"
-
-
-def describe_simplification(tolerance: float) -> str:
-    """Return a simplification tolerance in words."""
-    return f"with drawings simplified by {tolerance:g} pixels"
 
 
 def describe_repair(repaired: bool) -> str:

@@ -8,10 +8,9 @@ grammar without ambiguities here gives every message one meaning.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple, cast
 
 from app.recognition.health.finding import Finding, FindingKind
 from app.recognition.phrases.automaton import BEFORE, Parse, PhraseAutomaton
@@ -20,15 +19,20 @@ from app.recognition.text.wording import join_words
 
 AmbiguityKind = Literal["same_sequence", "overlap", "run_together", "prefix", "unreachable"]
 
-_KINDS: Final[Mapping[AmbiguityKind, FindingKind]] = MappingProxyType(
-    {
-        "same_sequence": "phrases_same_sequence",
-        "overlap": "phrases_overlap",
-        "run_together": "phrases_run_together",
-        "prefix": "phrases_prefix",
-        "unreachable": "phrases_unreachable",
-    }
-)
+MESSAGES: Final[dict[AmbiguityKind, str]] = {
+    "same_sequence": "the phrases {!r} and {!r} are both shown as {shown}, so neither is obeyed; "
+    "let them differ in a gesture",
+    "overlap": "the phrase {!r} reads {shown} in two ways: a gesture may fill a slot or be "
+    "something else; give the slot other gestures, or put a gesture of its own between",
+    "run_together": "{shown} can be split into phrases in two ways: choose a start and an end "
+    "gesture that no phrase uses",
+    "prefix": "after {shown} the message is complete, but may continue with {following}: the robot "
+    "waits {timeout:g} s, and what it does depends on how fast the diver is; choose an end gesture "
+    "that no phrase uses",
+    "unreachable": "the phrase {!r} is never understood: each of its sequences has another "
+    "meaning, too; give it a gesture of its own",
+}
+"""What is wrong and what to do, by the names of the phrases and the gestures shown."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,8 @@ class Ambiguity:
 
     def finding(self) -> Finding:
         """Return the ambiguity as a finding of the health report."""
-        return Finding(_KINDS[self.kind], (), self.message, error=True)
+        kind = cast("FindingKind", f"phrases_{self.kind}")
+        return Finding(kind, (), self.message, error=True)
 
 
 class _Lead(NamedTuple):
@@ -82,17 +87,19 @@ def find_ambiguities(grammar: Grammar) -> tuple[Ambiguity, ...]:
     """Find the ambiguities of a grammar, with one example for each pair of phrases."""
     single = PhraseAutomaton(grammar, most_phrases=1)
     search = _PairSearch(single)
-    double = [_of_two_parses(single, *found) for found in search.two_parses()]
-    found = [*double, *(_prefix(single, *each) for each in search.prefixes())]
+    double = [_tell("same_sequence", single, *each) for each in search.two_parses()]
+    found = [*double, *(_tell("prefix", single, *each) for each in search.prefixes())]
     if not found and _may_run_together(grammar):
         whole = PhraseAutomaton(grammar)
         search = _PairSearch(whole)
-        found += [_run_together(whole, *each) for each in search.two_parses()][:1]
-        found += [_prefix(whole, *each) for each in search.prefixes()][:1]
+        found += [_tell("run_together", whole, *each) for each in search.two_parses()][:1]
+        found += [_tell("prefix", whole, *each) for each in search.prefixes()][:1]
     suspects = {name for each in double for name in each.phrases}
     for index, phrase in enumerate(grammar.phrases):
         if phrase.name in suspects and _is_unreachable(single, index):
-            found.append(_unreachable(grammar, index))
+            message = MESSAGES["unreachable"].format(phrase.name)
+            example = grammar.example(phrase)
+            found.append(Ambiguity("unreachable", (phrase.name,), example, message))
     return tuple(found)
 
 
@@ -159,8 +166,8 @@ class _PairSearch:
 
     def _following(self, pair: _Pair) -> Iterator[tuple[str, _Pair]]:
         one, other, lead = pair
-        theirs = self._automaton.moves(other)
-        for label, mine in self._automaton.moves(one).items():
+        theirs = self._automaton.moves[other]
+        for label, mine in self._automaton.moves[one].items():
             for target, added in mine:
                 for their_target, their_added in theirs.get(label, ()):
                     yield label, (target, their_target, _extend_lead(lead, added, their_added))
@@ -199,14 +206,14 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
             other in automaton.accepting and lead != _Lead((), ()) for other, lead in others
         ):
             return False
-        for label, moves in automaton.moves(position).items():
+        for label, moves in automaton.moves[position].items():
             for target, added in moves:
                 if automaton.positions[target].phrase not in (None, phrase):
                     continue
                 beside = frozenset(
                     (their_target, _extend_lead(lead, added, their_added))
                     for other, lead in others
-                    for their_target, their_added in automaton.moves(other).get(label, ())
+                    for their_target, their_added in automaton.moves[other].get(label, ())
                 )
                 following: _Walk = (target, beside)
                 if following not in known:
@@ -215,63 +222,19 @@ def _is_unreachable(automaton: PhraseAutomaton, phrase: int) -> bool:
     return True
 
 
-def _of_two_parses(
-    automaton: PhraseAutomaton, gestures: tuple[str, ...], one: int, other: int
+def _tell(
+    kind: AmbiguityKind, automaton: PhraseAutomaton, gestures: tuple[str, ...], *ends: int
 ) -> Ambiguity:
-    names = _names(automaton, one, other)
-    shown = ", ".join(gestures)
-    if len(names) == 1:
-        message = (
-            f"the phrase {names[0]!r} reads {shown} in two ways: a gesture may fill a slot or be "
-            "something else; give the slot other gestures, or put a gesture of its own between"
-        )
-        return Ambiguity("overlap", names, gestures, message)
-    message = (
-        f"the phrases {names[0]!r} and {names[1]!r} are both shown as {shown}, so neither is "
-        "obeyed; let them differ in a gesture"
-    )
-    return Ambiguity("same_sequence", names, gestures, message)
-
-
-def _run_together(
-    automaton: PhraseAutomaton, gestures: tuple[str, ...], one: int, other: int
-) -> Ambiguity:
-    return Ambiguity(
-        "run_together",
-        _names(automaton, one, other),
-        gestures,
-        f"{', '.join(gestures)} can be split into phrases in two ways: choose a start and an end "
-        "gesture that no phrase uses",
-    )
-
-
-def _prefix(
-    automaton: PhraseAutomaton, gestures: tuple[str, ...], over: int, goes_on: int
-) -> Ambiguity:
-    next_labels = sorted(automaton.moves(goes_on))
-    return Ambiguity(
-        "prefix",
-        _names(automaton, over, goes_on),
-        gestures,
-        f"after {', '.join(gestures)} the message is complete, but may continue with "
-        f"{join_words(next_labels, last='or')}: the robot waits "
-        f"{automaton.grammar.timeout:g} s, and what it does depends on how fast "
-        "the diver is; choose an end gesture that no phrase uses",
-    )
-
-
-def _unreachable(grammar: Grammar, index: int) -> Ambiguity:
-    phrase = grammar.phrases[index]
-    return Ambiguity(
-        "unreachable",
-        (phrase.name,),
-        grammar.example(phrase),
-        f"the phrase {phrase.name!r} is never understood: each of its sequences has another "
-        "meaning, too; give it a gesture of its own",
-    )
-
-
-def _names(automaton: PhraseAutomaton, *positions: int) -> tuple[str, ...]:
+    """Return the ambiguity of a message that two walks read, by the positions that they reach."""
     phrases = automaton.grammar.phrases
-    indices = [automaton.positions[position].phrase for position in positions]
-    return tuple(dict.fromkeys(phrases[index].name for index in indices if index is not None))
+    indices = [automaton.positions[position].phrase for position in ends]
+    names = tuple(dict.fromkeys(phrases[index].name for index in indices if index is not None))
+    if kind == "same_sequence" and len(names) == 1:
+        kind = "overlap"
+    message = MESSAGES[kind].format(
+        *names,
+        shown=", ".join(gestures),
+        following=join_words(sorted(automaton.moves[ends[-1]]), last="or"),
+        timeout=automaton.grammar.timeout,
+    )
+    return Ambiguity(kind, names, gestures, message)

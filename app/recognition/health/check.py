@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 
@@ -77,8 +78,8 @@ def check_health(
     forecast = make_forecast(
         language, advance=_count_steps(progress, "other people's demonstrations", shown)
     )
-    count = _count_steps(progress, "numbers of people", shown * max(0, forecast.people - 2))
-    forecast = replace(forecast, curve=measure_curve(language, forecast, advance=count))
+    advance = _count_steps(progress, "numbers of people", shown * max(0, forecast.people - 2))
+    forecast = replace(forecast, curve=measure_curve(language, forecast, advance=advance))
     recognizer = Recognizer(language, "full")
     compare = _count_steps(progress, "distances", len(language.gestures))
     distances = _measure_distances(recognizer, compare)
@@ -113,14 +114,8 @@ def check_health(
 
 def _count_steps(progress: Progress, stage: str, total: int) -> Callable[[], None]:
     """Return a function that reports one more step of a stage; a total of 0 is unknown."""
-    done = 0
-
-    def advance() -> None:
-        nonlocal done
-        done += 1
-        progress(stage, done, total)
-
-    return advance
+    steps = count(1)
+    return lambda: progress(stage, next(steps), total)
 
 
 def _measure_distances(recognizer: Recognizer, advance: Callable[[], None]) -> FloatArray:

@@ -9,7 +9,7 @@ apart does not count: the limit of a language follows from that (`docs/results.m
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence, Set
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Final
@@ -23,6 +23,7 @@ from app.recognition.gestures.gesture import Gesture
 from app.recognition.health.forecast import compare_people
 from app.recognition.language.language import Language
 from app.recognition.poses.sequence import FloatArray
+from app.recognition.poses.trajectory import Trajectory
 from app.recognition.recognizer import Recognizer
 from app.recognition.text.look_alikes import find_confusable
 
@@ -277,13 +278,20 @@ def measure_confusions(
     total, shown = np.zeros((size, size)), np.zeros(size)
     nearest, mixed = np.full((size, size), np.inf), np.zeros((size, size))
     people, rows = compare_people(language, advance)
-    rows += _compare_takes(language, known, advance)
+    labels, recognizer = language.labels, Recognizer(language, "full")
+    takes = [(labels.index(each.label), each.query) for each in known if each.label in labels]
+    rows += _compare(recognizer, takes, advance)
     compared = np.bincount([own for own, _ in rows], minlength=size).astype(np.float64)
     for own, novelty in rows:
         mixed[own] += novelty < novelty[own]
     # Of gestures that one person has shown and nobody repeated, distances alone are known.
     left = {*range(size - only_seen)} - {own for own, _ in rows}
-    rows += _compare_demonstrations(language, left, advance)
+    demonstrations = [
+        (own, condense(gesture.trajectory))
+        for own, gesture in enumerate(language.gestures)
+        if own in left and gesture.trajectory is not None
+    ]
+    rows += _compare(recognizer, demonstrations, advance)
     for own, novelty in rows:
         total[own] += np.minimum(np.nan_to_num(novelty, nan=FAR, posinf=FAR), FAR)
         nearest[own] = np.fmin(nearest[own], novelty)
@@ -293,26 +301,13 @@ def measure_confusions(
     apart = np.nan_to_num(apart, nan=FAR)
     rates = (np.exp(-apart / SPREAD) + np.exp(-apart.T / SPREAD)) / 2
     np.fill_diagonal(rates, 0.0)
-    return Confusions(tuple(language.labels), rates, nearest, mixed, compared, max(people, 1))
+    return Confusions(labels, rates, nearest, mixed, compared, max(people, 1))
 
 
-def _compare_demonstrations(
-    language: Language, chosen: Set[int], advance: Callable[[], None]
+def _compare(
+    recognizer: Recognizer, takes: Iterable[tuple[int, Trajectory]], advance: Callable[[], None]
 ) -> Iterator[tuple[int, FloatArray]]:
-    """Yield index and novelties of each chosen gesture that has a demonstration."""
-    recognizer = Recognizer(language, "full")
-    for index, gesture in enumerate(language.gestures):
-        if index in chosen and gesture.trajectory is not None:
-            yield index, recognizer.compare(condense(gesture.trajectory)).novelty
-            advance()
-
-
-def _compare_takes(
-    language: Language, known: Sequence[KnownTake], advance: Callable[[], None]
-) -> Iterator[tuple[int, FloatArray]]:
-    """Yield the gesture's index and the novelty for all of each known take."""
-    recognizer = Recognizer(language, "full") if known else None
-    for take in known:
-        if recognizer is not None and take.label in language.labels:
-            yield language.labels.index(take.label), recognizer.compare(take.query).novelty
-            advance()
+    """Yield the index of the gesture of each take, and its novelty ``(G,)`` for all gestures."""
+    for own, take in takes:
+        yield own, recognizer.compare(take).novelty
+        advance()

@@ -169,18 +169,14 @@ class Forecast:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""
-        curve = [{"people": each.people, **to_plain(each.right)} for each in self.curve]
-        plain: dict[str, Any] = to_plain(
-            {
-                "people": self.people,
-                "words": self.words,
-                "asks_more": self.asks_more,
-                "curve": curve,
-                **self.counts(),
-                "failed": [each for each in self.readings if each.outcome != "right"],
-            }
-        )
-        return plain
+        return {
+            "people": self.people,
+            "words": self.words,
+            "asks_more": self.asks_more,
+            "curve": [{"people": each.people, **to_plain(each.right)} for each in self.curve],
+            **to_plain(self.counts()),
+            "failed": to_plain([each for each in self.readings if each.outcome != "right"]),
+        }
 
 
 def make_forecast(language: Language, *, advance: Callable[[], None] = lambda: None) -> Forecast:
@@ -266,12 +262,11 @@ def compare_people(
 
     """
     divers = _list_divers(language)
-    compared = [
-        (diver, own, table.novelty)
-        for diver in divers
-        for own, _, _, table in _compare_diver(language, diver, set(divers) - {diver}, advance)
-    ]
-    return len({diver for diver, *_ in compared}), [(own, novelty) for _, own, novelty in compared]
+    found = []
+    for diver in divers:
+        compared = _compare_diver(language, diver, set(divers) - {diver}, advance)
+        found.append([(own, table.novelty) for own, _, _, table in compared])
+    return sum(map(bool, found)), [row for rows in found for row in rows]
 
 
 def _read_diver(

@@ -38,8 +38,11 @@ def find_known_signs(
     meanings = {gesture.label: gesture.description for gesture in known.gestures}
     for gesture in language.gestures:
         read = [_recognize(recognizer, shown) for shown in gesture.trajectories]
-        signs = [each.nearest for each in read if each is not None and _is_alike(each)]
-        sign = next((each for each in signs if not _same_word(each, gesture.label)), None)
+        # Whether it is accepted does not matter: a pair looks like a sign too, and of gestures that
+        # a language lacks every second one is accepted.
+        signs = [each.nearest for each in read if each and each.nearest_novelty < ALIKE]
+        own = gesture.label.casefold()
+        sign = next((each for each in signs if each.casefold() != own), None)
         if sign is not None:
             meaning = f' ("{meanings[sign]}")' if meanings[sign] else ""
             yield Finding(
@@ -57,16 +60,3 @@ def _recognize(recognizer: Recognizer, shown: Trajectory) -> Recognition | None:
         return recognizer.recognize_trajectory(condense(shown))
     except PoseError:  # no landmark that a sign needs moves
         return None
-
-
-def _is_alike(result: Recognition) -> bool:
-    """Return whether a take is nearer to its nearest gesture than other people's takes mostly are.
-
-    Whether it is accepted does not matter: a pair looks like a sign too, and of gestures that a
-    language lacks every second one is accepted.
-    """
-    return result.nearest_novelty < ALIKE
-
-
-def _same_word(one: str, other: str) -> bool:
-    return one.casefold() == other.casefold()

@@ -66,10 +66,7 @@ class GestureHealth:
     def to_dict(self, forecast: Forecast) -> dict[str, Any]:
         """Return plain JSON types, with the gesture's part of the forecast."""
         near = self.nearest and dict(zip(("label", "distance"), self.nearest, strict=True))
-        plain: dict[str, Any] = to_plain(
-            vars(self) | {"nearest": near} | forecast.counts(self.label)
-        )
-        return plain
+        return dict(to_plain(vars(self) | {"nearest": near} | forecast.counts(self.label)))
 
 
 @dataclass(frozen=True)

@@ -58,15 +58,15 @@ class TriggerHealth:
     set_off_by: tuple[str, ...]
 
 
-def check_trigger(trigger: Trigger, *, seed: int = 0) -> TriggerHealth | None:
+def check_trigger(trigger: Trigger) -> TriggerHealth | None:
     """Count the rates of a trigger in simulated movement; None unless it is a pose of the arms."""
     if trigger.start is None:
         return None
     poses = [pose for pose in (trigger.start, trigger.stop) if pose is not None]
-    missed = max((_count_missed(pose, seed) for pose in poses), key=lambda each: each.rate)
+    missed = max(map(_count_missed, poses), key=lambda each: each.rate)
     begun: dict[str, int] = {}
     seconds = 0.0
-    for movement in simulate_background_motion(EXAMPLES, seed=seed):
+    for movement in simulate_background_motion(EXAMPLES):
         shown = movement.trajectory
         seconds += float(shown.time[-1])
         if times := _count_held(trigger.start, shown):
@@ -124,8 +124,8 @@ def _check_gesture(label: str, shown: Trajectory, poses: Sequence[ArmPose]) -> I
         yield Finding("trigger_passed", (label,), message)
 
 
-def _count_missed(pose: ArmPose, seed: int) -> Rate:
-    people = simulate_held_poses(pose, PEOPLE, seed=seed)
+def _count_missed(pose: ArmPose) -> Rate:
+    people = simulate_held_poses(pose, PEOPLE)
     seen = sum(_run(create_held_pose(), each.time, pose.score(each.places)) > 0 for each in people)
     return Rate(len(people) - seen, len(people))
 

@@ -12,11 +12,10 @@ from pydantic import BaseModel, Field
 
 from app.recognition.decision.outcome import MOST_REFUSED_AT_ALL
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH
-from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH
 from app.recognition.gestures.profile import DEFAULT_PROFILE, ProfileName
 from app.recognition.gestures.switches import Switch
 from app.recognition.gestures.tuning import MAX_FACTOR, MAX_SIMPLIFICATION
-from app.recognition.language.grammar_entry import GrammarEntry
+from app.recognition.language.grammar_entry import FiniteFloat, GrammarEntry, Name, Text
 from app.recognition.language.trigger_entry import TriggerEntry
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.text.described import STRICT
@@ -34,11 +33,8 @@ MAX_FILE_BYTES = 64_000_000
 MAX_HAND_COORDINATE = 5.0
 """Largest coordinate of a hand: of 21 points of size 1 none is farther from their centroid."""
 
-Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Landmark = Annotated[str, Field(min_length=1)]
-Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
 Diver = Annotated[str, Field(max_length=MAX_DIVER_LENGTH)]
-FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
 HandCoordinates = Annotated[
     list[Annotated[FiniteFloat, Field(ge=-MAX_HAND_COORDINATE, le=MAX_HAND_COORDINATE)]],
     Field(min_length=len(HAND_LANDMARKS), max_length=len(HAND_LANDMARKS)),
@@ -111,19 +107,7 @@ class RatesEntry(_Model):
     """Share of out-of-vocabulary movements that are accepted."""
 
 
-EncodedImage = Annotated[
-    str,
-    Field(
-        max_length=100_000,
-        description="224 x 224 PNG in base64: the salient landmarks' paths, or the held hand, "
-        "white on black.",
-    ),
-]
-
-Descriptors = Annotated[
-    dict[str, list[FiniteFloat]],
-    Field(description="Per voter its description of the image."),
-]
+EncodedImage = Annotated[str, Field(max_length=100_000)]
 
 
 class DemonstrationEntry(_Model):
@@ -134,7 +118,9 @@ class DemonstrationEntry(_Model):
     shape."""
     trajectory: TrajectoryEntry
     image: EncodedImage
-    descriptors: Descriptors
+    """224 x 224 PNG in base64: the salient landmarks' paths, or the held hand, white on black."""
+    descriptors: dict[str, list[FiniteFloat]]
+    """Per voter its description of the image."""
     diver: Diver = ""
     """Name of the diver who shows it. Left out when not known."""
 
@@ -154,7 +140,9 @@ class GestureEntry(_Model):
     trajectory: TrajectoryEntry | None
     """null where the gesture was imported from a file of images."""
     image: EncodedImage
-    descriptors: Descriptors
+    """224 x 224 PNG in base64: the salient landmarks' paths, or the held hand, white on black."""
+    descriptors: dict[str, list[FiniteFloat]]
+    """Per voter its description of the image."""
     thresholds: dict[str, FiniteFloat]
     """Per voter the distance at which versions up to 0.2 reject the gesture; not used since, and
     computed anew by these versions where empty."""

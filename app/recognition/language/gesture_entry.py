@@ -14,7 +14,7 @@ from app.recognition.features.contour import BinaryImage
 from app.recognition.features.png import decode_png, encode_png
 from app.recognition.features.trajectory_image import SIZE
 from app.recognition.gestures.demonstration import Demonstration, check_diver
-from app.recognition.gestures.gesture import Gesture, Rates, check_command, check_label
+from app.recognition.gestures.gesture import Gesture, check_command, check_label
 from app.recognition.gestures.switches import AUTOMATIC, Switches
 from app.recognition.language.file_schema import (
     DemonstrationEntry,
@@ -30,16 +30,18 @@ from app.recognition.poses.trajectory import Trajectory
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.voters.registry import PAPER_VOTERS
 
+HANDS = ("hands", "then_hands", "moving_hands")
+"""Keys of a trajectory that hold shapes of hands."""
+
 
 def gesture_to_entry(gesture: Gesture) -> GestureEntry:
     """Return the file's entry of a gesture."""
-    rates = gesture.rates
     return GestureEntry(
         label=gesture.label,
         description=gesture.description,
         command=gesture.command,
         thresholds=dict(gesture.thresholds),
-        rates=None if rates is None else RatesEntry(**vars(rates)),
+        rates=None if gesture.rates is None else RatesEntry(**gesture.rates),
         demonstrations=[DemonstrationEntry(**_list_shown(each)) for each in gesture.further],
         **vars(gesture.switches),
         **_list_shown(gesture),
@@ -67,11 +69,10 @@ def entry_to_gesture(entry: GestureEntry, pointer: str) -> Gesture:
         check_label(entry.label)
     with point_to(pointer + "/command"):
         check_command(entry.command)
-    rates = entry.rates
     return Gesture(
         label=entry.label,
         thresholds=entry.thresholds,
-        rates=None if rates is None else Rates(**vars(rates)),
+        rates=None if entry.rates is None else entry.rates.model_dump(),
         description=entry.description,
         command=entry.command,
         switches=Switches(**{name: getattr(entry, name) for name in vars(AUTOMATIC)}),
@@ -133,9 +134,7 @@ def _trajectory_entry(trajectory: Trajectory) -> TrajectoryEntry:
             )
             for index, name in enumerate(trajectory.landmarks)
         ],
-        hands=[_hand_entry(hand) for hand in trajectory.hands],
-        then_hands=[_hand_entry(hand) for hand in trajectory.then_hands],
-        moving_hands=[_hand_entry(hand) for hand in trajectory.moving_hands],
+        **{name: [_hand_entry(hand) for hand in getattr(trajectory, name)] for name in HANDS},
     )
 
 
@@ -174,9 +173,7 @@ def _trajectory(entry: TrajectoryEntry, pointer: str) -> Trajectory:
         time=np.array(entry.time),
         unit=entry.unit,
         depth=np.array(depths, dtype=np.float64).T if has_depth else None,
-        hands=_hands(entry.hands, pointer + "/hands"),
-        then_hands=_hands(entry.then_hands, pointer + "/then_hands"),
-        moving_hands=_hands(entry.moving_hands, pointer + "/moving_hands"),
+        **{name: _hands(getattr(entry, name), f"{pointer}/{name}") for name in HANDS},
     )
     _check_sequence(trajectory, pointer + "/then_hands")
     return trajectory

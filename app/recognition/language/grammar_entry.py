@@ -29,15 +29,11 @@ MAX_ENTRIES = 100
 
 Name = Annotated[str, Field(min_length=1, max_length=MAX_LABEL_LENGTH)]
 Text = Annotated[str, Field(max_length=MAX_TEXT_LENGTH)]
-Number = Annotated[float, Field(allow_inf_nan=False)]
+FiniteFloat = Annotated[float, Field(allow_inf_nan=False)]
 SlotValue = Annotated[
-    Name | int | Number, Field(description="Text or a number, as the slot type says.")
+    Name | int | FiniteFloat, Field(description="Text or a number, as the slot type says.")
 ]
 Times = Annotated[int, Field(ge=0, le=MAX_REPEAT)]
-Gestures = Annotated[
-    list[Name],
-    Field(min_length=1, max_length=MAX_ENTRIES, description="Labels, any of which will do."),
-]
 
 
 class _Model(BaseModel):
@@ -53,7 +49,8 @@ Most = Annotated[Times, Field(ge=1, description="How often at most. Left out whe
 class GesturesEntry(_Model):
     """One gesture out of some, which carries no value."""
 
-    gestures: Gestures
+    gestures: Annotated[list[Name], Field(min_length=1, max_length=MAX_ENTRIES)]
+    """Labels, any of which will do."""
     least: Least = 1
     most: Most = 1
 
@@ -150,7 +147,7 @@ class GrammarEntry(_Model):
     start: Label = None
     end: Label = None
     cancel: Label = None
-    timeout: Annotated[Number, Field(gt=0)]
+    timeout: Annotated[FiniteFloat, Field(gt=0)]
     """Most seconds between the end of a gesture and the start of the next."""
     most_phrases: Annotated[int, Field(ge=1)] = 1
     """Phrases in one message. Left out when 1."""

@@ -20,7 +20,7 @@ from xml.etree import ElementTree
 
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.language.language import Language
-from app.recognition.phrases.grammar_parts import FRAME
+from app.recognition.phrases.grammar import FRAME
 
 SUFFIX = ".ldf"
 

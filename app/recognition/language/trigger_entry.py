@@ -13,15 +13,7 @@ from app.recognition.triggers.trigger import SALUTE, Trigger, TriggerKind
 
 Coordinate = Annotated[float, Field(allow_inf_nan=False, ge=-10, le=10)]
 
-PlaceEntry = Annotated[
-    list[Coordinate],
-    Field(
-        min_length=2,
-        max_length=2,
-        description="x to the image's right and y down from the middle of the shoulders, in torso "
-        "lengths.",
-    ),
-]
+PlaceEntry = Annotated[list[Coordinate], Field(min_length=2, max_length=2)]
 
 
 class _Model(BaseModel):
@@ -29,7 +21,11 @@ class _Model(BaseModel):
 
 
 class ArmPoseEntry(_Model):
-    """A pose of the arms: where elbows and wrists are held."""
+    """A pose of the arms: where elbows and wrists are held.
+
+    Each place is x to the image's right and y down from the middle of the shoulders, in torso
+    lengths.
+    """
 
     left_elbow: PlaceEntry
     left_wrist: PlaceEntry

@@ -7,10 +7,9 @@ parser and the search for ambiguities work gesture by gesture.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import chain
 from typing import NamedTuple
 
 from app.recognition.phrases.grammar import Grammar
@@ -89,10 +88,9 @@ class PhraseAutomaton:
     def __init__(self, grammar: Grammar, most_phrases: int | None = None) -> None:
         self.grammar = grammar
         self.positions: list[Position] = []
-        self._follow: list[set[int]] = []
-        self._first: set[int] = set()
+        self._follow: dict[int, set[int]] = {BEFORE: set()}
         accepting: set[int] = set()
-        before: set[int] | None = None  # None: the beginning
+        before = {BEFORE}
         for turn in range(most_phrases or grammar.most_phrases):
             before, over = self._add_turn(turn, before)
             accepting |= over
@@ -100,14 +98,11 @@ class PhraseAutomaton:
 
     def following(self, position: int) -> frozenset[int]:
         """Return the positions that may follow."""
-        return frozenset(self._first if position == BEFORE else self._follow[position])
-
-    def moves(self, position: int) -> Mapping[str, Sequence[tuple[int, Parse]]]:
-        """Return by label the positions that it leads to, each with its addition to the parse."""
-        return self._moves[position]
+        return frozenset(self._follow[position])
 
     @cached_property
-    def _moves(self) -> dict[int, dict[str, list[tuple[int, Parse]]]]:
+    def moves(self) -> Mapping[int, Mapping[str, Sequence[tuple[int, Parse]]]]:
+        """By position and label the positions that follow, each with its addition to the parse."""
         table: dict[int, dict[str, list[tuple[int, Parse]]]] = {}
         for position in range(BEFORE, len(self.positions)):
             moves = table.setdefault(position, {})
@@ -129,7 +124,7 @@ class PhraseAutomaton:
             added += (Contribution(there.phrase, there.slot, there.values[label]),)
         return added
 
-    def _add_turn(self, turn: int, before: set[int] | None) -> tuple[set[int], set[int]]:
+    def _add_turn(self, turn: int, before: set[int]) -> tuple[set[int], set[int]]:
         """Add one more phrase to a message.
 
         Returns
@@ -152,21 +147,19 @@ class PhraseAutomaton:
                 over.update(fragment.last)
                 continue
             end = self._add(Position({grammar.end: None}, index, turn, inside=False))
-            self._join(set(fragment.last), (end,))
+            self._join(fragment.last, (end,))
             over.add(end)
         return done, over
 
-    def _join(self, before: set[int] | None, targets: Sequence[int]) -> None:
-        if before is None:
-            self._first.update(targets)
-            return
+    def _join(self, before: Iterable[int], targets: Sequence[int]) -> None:
         for position in before:
             self._follow[position].update(targets)
 
     def _add(self, position: Position) -> int:
+        added = len(self.positions)
         self.positions.append(position)
-        self._follow.append(set())
-        return len(self.positions) - 1
+        self._follow[added] = set()
+        return added
 
     def _sequence(self, parts: Sequence[Part], phrase: int, turn: int) -> _Fragment:
         whole = _Fragment()
@@ -194,9 +187,9 @@ class PhraseAutomaton:
         return _Fragment((added,), (added,), nullable=False)
 
     def _concatenate(self, one: _Fragment, other: _Fragment) -> _Fragment:
-        self._join(set(one.last), other.first)
+        self._join(one.last, other.first)
         return _Fragment(
-            first=tuple(chain(one.first, other.first if one.nullable else ())),
-            last=tuple(chain(other.last, one.last if other.nullable else ())),
+            first=(*one.first, *(other.first if one.nullable else ())),
+            last=(*other.last, *(one.last if other.nullable else ())),
             nullable=one.nullable and other.nullable,
         )

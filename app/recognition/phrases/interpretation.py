@@ -85,23 +85,18 @@ def _meaning(grammar: Grammar, phrase: Phrase, values: Mapping[str, list[Value]]
         command: str | dict[str, Any] | None = fill_template(phrase.command, known)
     else:
         command = _fill(phrase.command, known)
-    return Meaning(phrase.name, shown, command, _speak(phrase, known, shown))
+    if phrase.says:
+        spoken = speak_template(phrase.says, known, shown.keys())
+    else:
+        values_told = (f"{name} {speak_value(value)}" for name, value in shown.items())
+        spoken = ", ".join([phrase.name, *values_told])
+    return Meaning(phrase.name, shown, command, spoken)
 
 
 def _value(grammar: Grammar, slot: Slot, values: list[Value], *, repeated: bool) -> SlotValue:
     if grammar.slot_type(slot.slot_type).reads_as == "digits":
         return int("".join(map(str, values)))
     return values if repeated else values[0]
-
-
-def _speak(
-    phrase: Phrase, known: Mapping[str, SlotValue | None], shown: Mapping[str, SlotValue]
-) -> str:
-    if phrase.says:
-        return speak_template(phrase.says, known, shown.keys())
-    return ", ".join(
-        [phrase.name, *(f"{name} {speak_value(value)}" for name, value in shown.items())]
-    )
 
 
 def _fill(command: Any, values: Mapping[str, SlotValue | None]) -> Any:

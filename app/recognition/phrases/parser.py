@@ -7,7 +7,7 @@ message is read back, so that the diver can cancel it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -146,7 +146,9 @@ class PhraseParser:
     @property
     def expected(self) -> tuple[str, ...]:
         """Labels that may come next, in the grammar's order."""
-        possible = {label for position in self._message.parses for label in self._moves(position)}
+        possible = {
+            label for position in self._message.parses for label in self._automaton.moves[position]
+        }
         return tuple(label for label in self._labels if label in possible)
 
     @property
@@ -208,7 +210,7 @@ class PhraseParser:
             return self._handle_unexpected(label, start, end)
         gestures = (*before.gestures, label)
         self._message = _Message(following, gestures, before.start, end)
-        if not any(self._moves(position) for position in following):
+        if not any(self._automaton.moves[position] for position in following):
             return (self._end_message(label, self._complete()),)
         return (self._event("continues", label),)
 
@@ -220,14 +222,11 @@ class PhraseParser:
         restarted = self._advance(label, start, end) if label == self.grammar.start else ()
         return (dropped, *restarted)
 
-    def _moves(self, position: int) -> Mapping[str, Iterable[tuple[int, Parse]]]:
-        return self._automaton.moves(position)
-
     def _following(self, label: str) -> dict[int, tuple[Parse, ...]]:
         """Return the parses of the message with one more gesture, by position."""
         following: dict[int, tuple[Parse, ...]] = {}
         for position, parses in self._message.parses.items():
-            for target, added in self._moves(position).get(label, ()):
+            for target, added in self._automaton.moves[position].get(label, ()):
                 known = following.get(target, ())
                 more = [*known, *(parse + added for parse in parses)]
                 following[target] = tuple(dict.fromkeys(more))[:ENOUGH]

@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, check_command
-from app.recognition.phrases.grammar_parts import GrammarParts
 from app.recognition.phrases.phrase import (
     MAX_REPEAT,
     Group,
@@ -23,6 +22,9 @@ from app.recognition.phrases.phrase import (
 from app.recognition.phrases.templates import find_placeholders, find_template_fault
 from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.strict_json import build_pointer
+
+if TYPE_CHECKING:  # it validates itself by this module
+    from app.recognition.phrases.grammar import Grammar
 
 MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
@@ -45,7 +47,7 @@ SLOT_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 """Name of a placeholder, which is also a valid parameter name on any robot."""
 
 
-def check_grammar(grammar: GrammarParts) -> None:
+def check_grammar(grammar: Grammar) -> None:
     """Check that a grammar is consistent.
 
     Raises
@@ -76,7 +78,7 @@ def check_grammar(grammar: GrammarParts) -> None:
             )
 
 
-def _check_frame(grammar: GrammarParts) -> None:
+def _check_frame(grammar: Grammar) -> None:
     if not 0 < grammar.timeout <= MAX_TIMEOUT:  # NaN is not either
         raise LanguageError(
             f"must be above 0 and at most {MAX_TIMEOUT:g} seconds, got {grammar.timeout}",
@@ -135,8 +137,8 @@ def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool
     return isinstance(value, int) and value >= 0 and (together or value <= 9)
 
 
-def _check_phrase(grammar: GrammarParts, phrase: Phrase, pointer: str) -> None:
-    if not phrase.parts or all(_may_be_left_out(part) for part in phrase.parts):
+def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
+    if not phrase.parts or all(part.least == 0 for part in phrase.parts):
         raise LanguageError(
             f"{phrase.name!r} can be shown without any gesture: make one part required",
             pointer + "/parts",
@@ -152,7 +154,7 @@ def _check_phrase(grammar: GrammarParts, phrase: Phrase, pointer: str) -> None:
     _check_words(phrase, pointer)
 
 
-def _check_part(grammar: GrammarParts, part: Part, pointer: str) -> None:
+def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
     if not 0 <= part.least <= part.most or not 1 <= part.most <= MAX_REPEAT:
         raise LanguageError(
             f"least {part.least} and most {part.most}: must be 0 <= least <= most and 1 <= most <= "
@@ -165,13 +167,13 @@ def _check_part(grammar: GrammarParts, part: Part, pointer: str) -> None:
     elif isinstance(part, Slot):
         _check_slot(grammar, part, pointer)
     else:
-        if not part.parts or all(_may_be_left_out(each) for each in part.parts):
+        if not part.parts or all(each.least == 0 for each in part.parts):
             raise LanguageError("a group needs a part that is not optional", pointer + "/parts")
         for index, member in enumerate(part.parts):
             _check_part(grammar, member, pointer + build_pointer("parts", index))
 
 
-def _check_slot(grammar: GrammarParts, slot: Slot, pointer: str) -> None:
+def _check_slot(grammar: Grammar, slot: Slot, pointer: str) -> None:
     if not SLOT_NAME.fullmatch(slot.name):
         raise LanguageError(
             f"{slot.name!r} is no name of a slot: a small letter, then at most 39 small letters, "
@@ -247,10 +249,6 @@ def _names_in(command: Any) -> set[str]:
     if isinstance(command, list):
         return {name for each in command for name in _names_in(each)}
     return set()
-
-
-def _may_be_left_out(part: Part) -> bool:
-    return part.least == 0
 
 
 def _longest(part: Part) -> int:

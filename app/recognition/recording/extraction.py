@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing
+from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import Final, TypedDict
 
@@ -66,12 +66,10 @@ def record(
     clip: str | Path,
     *,
     estimator: PoseEstimator | None = None,
-    progress: Progress | None = None,
-    observer: Observer | None = None,
     limits: VideoLimits | None = None,
     water: WaterCorrection = "auto",
-    keep_so_far: KeepSoFar | None = None,
     turn: Turn = 0,
+    **following: Unpack[Following],
 ) -> Recording:
     """Find body and hands in every frame of a clip.
 
@@ -84,19 +82,19 @@ def record(
     estimator
         The pose estimator; it is reset first and left open. None: the default one. The poses have
         the landmarks that it can find.
-    progress
-        Called after every frame.
-    observer
-        Called with the landmarks of every frame, before `progress` counts it.
     limits
         Limits of the clip's size and length.
     water
         Whether colour and contrast are corrected before estimation: as the models find most
         (`WaterSight`), always, or never.
-    keep_so_far
-        Called now and then with what is recorded until then.
     turn
         By how much the pictures are turned before anything is found in them.
+    progress
+        Called after every frame.
+    observer
+        Called with the landmarks of every frame, before `progress` counts it.
+    keep_so_far
+        Called now and then with what is recorded until then.
 
     Raises
     ------
@@ -106,7 +104,6 @@ def record(
         When the default estimator's models are not installed.
 
     """
-    following = Following(progress=progress, observer=observer, keep_so_far=keep_so_far)
     with read_frames(clip, limits, turn) as reader:
         return record_frames(reader, estimator=estimator, water=water, **following)
 
@@ -116,7 +113,9 @@ def record_frames(
     *,
     estimator: PoseEstimator | None = None,
     water: WaterCorrection = "auto",
-    **following: Unpack[Following],
+    progress: Progress | None = None,
+    observer: Observer | None = None,
+    keep_so_far: KeepSoFar | None = None,
 ) -> Recording:
     """Find body and hands in the frames of an open source; see `record`.
 
@@ -128,10 +127,25 @@ def record_frames(
         When the default estimator's models are not installed.
 
     """
-    if estimator is not None:
-        return _record(frames, estimator, water, **following)
-    with closing(create_estimator()) as own:
-        return _record(frames, own, water, **following)
+    with closing(create_estimator()) if estimator is None else nullcontext(estimator) as used:
+        sight = WaterSight(used, water)
+        sight.reset()
+        collector = _Collector(frames.info, used)
+        done, due = 0, FIRST_SECONDS
+        for frame in read_ahead(frames):
+            found = sight.estimate(frame.image, frame.time)
+            collector.add(frame.time, found)
+            if observer is not None:
+                observer(frame, found)
+            done = frame.index + 1
+            if keep_so_far is not None and frame.time >= due:
+                due = max(frame.time + FIRST_SECONDS, GROWTH * frame.time)
+                keep_so_far(collector.recording(frames.warnings))
+            if progress is not None:
+                progress(done, _expected_frames(frames.info, frame))
+    if progress is not None:
+        progress(done, done)
+    return collector.recording(frames.warnings)
 
 
 def extract_poses(
@@ -274,34 +288,6 @@ def _warn_of_turn(poses: PoseSequence) -> Iterator[str]:
 
 def _sort_hands(found: FrameLandmarks) -> tuple[Hand, ...]:
     return tuple(sorted(found.hands, key=lambda hand: hand.size, reverse=True))
-
-
-def _record(
-    frames: FrameSource,
-    estimator: PoseEstimator,
-    water: WaterCorrection,
-    progress: Progress | None = None,
-    observer: Observer | None = None,
-    keep_so_far: KeepSoFar | None = None,
-) -> Recording:
-    sight = WaterSight(estimator, water)
-    sight.reset()
-    collector = _Collector(frames.info, estimator)
-    done, due = 0, FIRST_SECONDS
-    for frame in read_ahead(frames):
-        found = sight.estimate(frame.image, frame.time)
-        collector.add(frame.time, found)
-        if observer is not None:
-            observer(frame, found)
-        done = frame.index + 1
-        if keep_so_far is not None and frame.time >= due:
-            due = max(frame.time + FIRST_SECONDS, GROWTH * frame.time)
-            keep_so_far(collector.recording(frames.warnings))
-        if progress is not None:
-            progress(done, _expected_frames(frames.info, frame))
-    if progress is not None:
-        progress(done, done)
-    return collector.recording(frames.warnings)
 
 
 def read_ahead(frames: Iterable[VideoFrame]) -> Iterator[VideoFrame]:

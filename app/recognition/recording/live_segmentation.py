@@ -69,7 +69,6 @@ class LiveTakes:
         self.trigger = trigger
         self._machine = TakeMachine.of(trigger)
         self._moments: deque[PoseSequence] = deque()
-        self._gap: Bracket | None = None
 
     def __len__(self) -> int:
         """Return the number of frames kept."""
@@ -108,8 +107,7 @@ class LiveTakes:
             float(each[0]) for each in self.trigger.score(moment, np.array([salute], np.float64))
         )
         take = self._cut(self._machine.update(time, begin, end))
-        self._gap = self._machine.gap
-        if self._gap is None:
+        if self._machine.gap is None:
             self._drop_old_frames(time)
         return Sight(
             score=max(begin, end),
@@ -129,7 +127,7 @@ class LiveTakes:
         None where the last frame began no take, or too little or too much lies in between.
 
         """
-        return self._cut(self._gap)
+        return self._cut(self._machine.gap)
 
     def end_gap(self) -> None:
         """Let the trigger that began a take with the last frame end the gap before it instead."""

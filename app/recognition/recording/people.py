@@ -25,7 +25,6 @@ from app.recognition.estimation.person_tracker import (
 from app.recognition.poses.frame import FrameLandmarks, Hand
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.salute import (
-    ENTER_SCORE,
     LONGEST_TAKE,
     SHORTEST_TAKE,
     HeldTrigger,
@@ -140,8 +139,8 @@ class People:
         if len(tracks) > 1:
             marks, notes = self._find_marks({track: self._find_held(track) for track in tracks})
         if not marks and tracks:
-            standing_out = self._find_most_prominent(tracks) if len(tracks) > 1 else tracks[0]
-            marks = [_Salutes(standing_out, 0.0, 0.0)]
+            always = [_Salutes(track, -np.inf, np.inf) for track in tracks]
+            marks = [max(always, key=self._measure_prominence) if tracks[1:] else always[0]]
             notes = ["the body is that of the person who stands out most"]
         index, salute = [], []
         for time, who, people, stray in zip(
@@ -198,8 +197,6 @@ class People:
             people[who.index(track)].salute if track in who else 0.0
             for who, people in zip(self._joined, self._seen, strict=True)
         ]
-        if max(scores, default=0.0) < ENTER_SCORE:
-            return []
         trigger, held = HeldTrigger(), list[tuple[float, float]]()
         for time, score in zip(self._time, scores, strict=True):
             if not trigger.update(time, score):
@@ -252,23 +249,16 @@ class People:
     def _measure_prominence(self, mark: _Salutes) -> float:
         """Return the prominence of a person between two moments, for each frame between them."""
         rows = [row for row, time in enumerate(self._time) if mark.start <= time <= mark.end]
-        return self._prominence_in(mark.track, rows) / max(len(rows), 1)
-
-    def _find_most_prominent(self, tracks: Sequence[int]) -> int:
-        every = range(len(self._time))
-        return max(tracks, key=lambda track: self._prominence_in(track, every))
-
-    def _prominence_in(self, track: int, rows: Sequence[int]) -> float:
         seen = [
-            self._seen[row][self._joined[row].index(track)]
+            self._seen[row][self._joined[row].index(mark.track)]
             for row in rows
-            if track in self._joined[row]
+            if mark.track in self._joined[row]
         ]
         if not seen:
             return 0.0
         xy = np.stack([person.xy for person in seen])
         scores = np.array([person.score for person in seen])
-        return prominence_over(xy, np.broadcast_to(scores[:, None], xy.shape[:2]))
+        return prominence_over(xy, np.broadcast_to(scores[:, None], xy.shape[:2])) / len(rows)
 
 
 def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> float:
@@ -300,12 +290,11 @@ def prominence_over(xy: FloatArray, confidence: FloatArray | None = None) -> flo
 def split_hands(found: FrameLandmarks) -> tuple[tuple[tuple[Hand, ...], ...], tuple[Hand, ...]]:
     """Return the hands of each body in a frame, and those that belong to none."""
     owners = [find_owner(hand, found.bodies) for hand in found.hands]
-    shared = tuple(
-        tuple(hand for hand, owner in zip(found.hands, owners, strict=True) if owner == place)
-        for place in range(len(found.bodies))
-    )
-    stray = tuple(hand for hand, owner in zip(found.hands, owners, strict=True) if owner is None)
-    return shared, stray
+
+    def list_hands(place: int | None) -> tuple[Hand, ...]:
+        return tuple(hand for hand, of in zip(found.hands, owners, strict=True) if of == place)
+
+    return tuple(map(list_hands, range(len(found.bodies)))), list_hands(None)
 
 
 def keep_person(found: FrameLandmarks, place: int | None) -> FrameLandmarks:

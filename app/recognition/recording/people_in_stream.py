@@ -171,9 +171,8 @@ class PeopleInStream:
         """Keep the frames of others from the first one of an ignored salute on."""
         for track, found in kept.items():
             diver = self._divers[track]
-            if self._open is None or track == self._owner:
-                diver.frames.clear()
-            elif diver.ignored or diver.held or salutes[track] >= LEAVE_SCORE:
+            salutes_on = diver.ignored or diver.held or salutes[track] >= LEAVE_SCORE
+            if self._open is not None and track != self._owner and salutes_on:
                 diver.frames.append((time, found))
             else:
                 diver.frames.clear()
@@ -181,8 +180,7 @@ class PeopleInStream:
     def _drop_gone(self) -> None:
         """Forget people who cannot be known again, so that memory does not grow."""
         alive = self._tracks.alive
-        for track in [track for track in self._divers if track not in alive]:
-            del self._divers[track]
+        self._divers = {track: each for track, each in self._divers.items() if track in alive}
 
     def _end_take(self) -> None:
         self._open = None

@@ -176,10 +176,9 @@ def find_stroke(
     if motion is None:
         return whole
     motion = motion.between(motion.slowest(opening), motion.slowest(closing) if closing else end)
-    pieces = split_pieces(motion)
     pieces = [
         piece
-        for piece in pieces
+        for piece in split_pieces(motion)
         if (motion.time[piece.last] > whole.start and motion.time[piece.first] < whole.end)
         or not (posed or measure_extent(motion.xy[piece.first : piece.last + 1]) < UNREST)
     ]

@@ -165,8 +165,8 @@ class FrameReader(Iterator[VideoFrame]):
             self._first = next(self._decoded, None)
             if self._first is None:
                 raise VideoError(
-                    f"{self._path.name}: no frame of its {_codec(self._stream)} video can be "
-                    "read, the file is damaged or cut short; record or export it again"
+                    f"{self._path.name}: no frame of its {self._stream.codec_context.name} video "
+                    "can be read, the file is damaged or cut short; record or export it again"
                 )
             self.info = _info(self._container, self._stream, self._first, turn)
             self._limits.require_pixels(self.info.width, self.info.height)
@@ -300,15 +300,13 @@ def read_frames(path: str | Path, limits: VideoLimits | None = None, turn: Turn 
     return FrameReader(path, limits, turn)
 
 
-def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
-    """Blend a picture with transparency over a plain background.
+def over_background(image: Image) -> Image:
+    """Blend a picture with transparency over `ALPHA_BACKGROUND`.
 
     Parameters
     ----------
     image
         ``(height, width, 4)`` RGB and alpha, not premultiplied.
-    grey
-        The background's brightness, 0 to 255.
 
     Returns
     -------
@@ -316,7 +314,7 @@ def over_background(image: Image, grey: int = ALPHA_BACKGROUND) -> Image:
 
     """
     alpha = image[..., 3:].astype(np.float32) / 255
-    blended = alpha * image[..., :3] + (1 - alpha) * grey
+    blended = alpha * image[..., :3] + (1 - alpha) * ALPHA_BACKGROUND
     return np.rint(blended).astype(np.uint8)
 
 
@@ -404,10 +402,6 @@ def nominal_step(stream: VideoStream) -> float:
     return float(1 / rate) if rate else FALLBACK_STEP
 
 
-def _codec(stream: VideoStream) -> str:
-    return stream.codec_context.name
-
-
 def _time_base(frame: DecodedFrame, stream: VideoStream) -> Fraction:
     return frame.time_base or stream.time_base or Fraction(1, av.time_base)
 
@@ -457,7 +451,7 @@ def _info(
         duration=_stated_seconds(container, stream, frame),
         frames=stream.frames or None,
         rotation=rotation,
-        codec=_codec(stream),
+        codec=stream.codec_context.name,
     )
 
 

@@ -10,59 +10,45 @@ export interface components {
         /**
          * Alignment
          * @description The best DTW alignment of a query's path with a gesture's; rounded in JSON.
-         *
-         *     Attributes
-         *     ----------
-         *     label
-         *         The gesture's.
-         *     voter
-         *         ``path``, whose distance it is.
-         *     parts
-         *         P landmarks.
-         *     pairs
-         *         S corresponding steps of the query and of the gesture.
-         *     time
-         *         Seconds in the query's clock of each of its steps.
-         *     gesture_time
-         *         Seconds in the demonstration of each of the gesture's steps.
-         *     query, gesture
-         *         Step by step each landmark's position relative to its mean, x right and
-         *         y down, in sizes of the gesture: the costs are the distances between corresponding
-         *         positions, divided by the number of steps.
-         *     costs
-         *         The contribution of each pair and part to the voter's distance, >= 0.
-         *     distance
-         *         The voter's distance, in its unit: the sum of the costs.
-         *     backward, mirrored
-         *         Whether the gesture is traversed backwards, and whether it is its mirror image.
-         *     demonstration
-         *         Which of the gesture's demonstrations it is, from 0.
          */
         Alignment: {
-            /** Label */
+            /**
+             * Label
+             * @description The gesture's.
+             */
             label: string;
             /**
              * Voter
+             * @description ``path``, whose distance it is.
              * @default path
              */
             voter: string;
-            /** Parts */
+            /**
+             * Parts
+             * @description P landmarks.
+             */
             parts: string[];
             /**
              * Pairs
-             * @description Corresponding steps of the take and of the gesture.
+             * @description S corresponding steps of the take and of the gesture.
              */
             pairs: [
                 number,
                 number
             ][];
-            /** Time */
+            /**
+             * Time
+             * @description Seconds in the take's clock of each of its steps.
+             */
             time: number[];
-            /** Gesture Time */
+            /**
+             * Gesture Time
+             * @description Seconds in the demonstration of each of the gesture's steps.
+             */
             gesture_time: number[];
             /**
              * Query
-             * @description Step by step and part by part, x right and y down.
+             * @description Step by step and part by part the take's position relative to its mean, x right and y down, in sizes of the gesture: the costs are the distances between corresponding positions, divided by the number of steps.
              */
             query: [
                 number,
@@ -70,7 +56,7 @@ export interface components {
             ][][];
             /**
              * Gesture
-             * @description Step by step and part by part, x right and y down.
+             * @description The same of the gesture.
              */
             gesture: [
                 number,
@@ -78,17 +64,27 @@ export interface components {
             ][][];
             /**
              * Costs
-             * @description Per pair and part; their sum is `distance`.
+             * @description Per pair and part, >= 0; their sum is `distance`.
              */
             costs: number[][];
-            /** Distance */
+            /**
+             * Distance
+             * @description The voter's distance, in its unit.
+             */
             distance: number;
-            /** Backward */
+            /**
+             * Backward
+             * @description Whether the gesture is traversed backwards.
+             */
             backward: boolean;
-            /** Mirrored */
+            /**
+             * Mirrored
+             * @description Whether it is the gesture's mirror image.
+             */
             mirrored: boolean;
             /**
              * Demonstration
+             * @description Which of the gesture's demonstrations it is, from 0.
              * @default 0
              */
             demonstration: number;
@@ -129,27 +125,18 @@ export interface components {
         /**
          * ArmPoseEntry
          * @description A pose of the arms: where elbows and wrists are held.
+         *
+         *     Each place is x to the image's right and y down from the middle of the shoulders, in torso
+         *     lengths.
          */
         ArmPoseEntry: {
-            /**
-             * Left Elbow
-             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
-             */
+            /** Left Elbow */
             left_elbow: number[];
-            /**
-             * Left Wrist
-             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
-             */
+            /** Left Wrist */
             left_wrist: number[];
-            /**
-             * Right Elbow
-             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
-             */
+            /** Right Elbow */
             right_elbow: number[];
-            /**
-             * Right Wrist
-             * @description x to the image's right and y down from the middle of the shoulders, in torso lengths.
-             */
+            /** Right Wrist */
             right_wrist: number[];
         };
         /**
@@ -776,7 +763,7 @@ export interface components {
          * @description What is wrong with a demonstration, the gravest first, and that as a clause about it.
          * @enum {string}
          */
-        FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand" | "unlike_takes";
+        FaultKind: "whole_clip" | "contains_salute" | "reaches_salute" | "cut_short" | "contains_rest" | "other_person" | "keypoints_jumped" | "keypoints_missing" | "no_hand";
         /**
          * FileFormat
          * @description The language files.
@@ -3126,20 +3113,15 @@ export interface components {
          *     Attributes
          *     ----------
          *     shown, expected
-         *         The pieces of both, in seconds of the take's and of the demonstration's clock.
+         *         The pieces of both, hand after hand, in seconds of the take's and of the demonstration's
+         *         clock.
          *     differs
          *         Index of the first piece that differs, in both; None where none does.
          */
         Transcript: {
-            /**
-             * Shown
-             * @description Of the take, hand after hand.
-             */
+            /** Shown */
             shown: components["schemas"]["Piece"][];
-            /**
-             * Expected
-             * @description Of the gesture.
-             */
+            /** Expected */
             expected: components["schemas"]["Piece"][];
             /** Differs */
             differs: number | null;

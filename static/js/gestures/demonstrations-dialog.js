@@ -44,7 +44,6 @@ const SHORT_FAULTS = {
   keypoints_jumped: "keypoints jump",
   keypoints_missing: "keypoints missing",
   no_hand: "no hand seen",
-  unlike_takes: "unlike its takes",
 };
 
 /**

@@ -11,7 +11,6 @@ from app.recognition.explanation.demonstration_faults import (
     FaultKind,
     find_demonstration_faults,
     find_range_faults,
-    find_triggers,
 )
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.segmentation import takes_in
@@ -65,7 +64,7 @@ def test_salutes_that_a_range_contains_are_counted(start: float, end: float, cou
 def test_a_take_contains_none_of_its_salutes() -> None:
     made = recording_of("circle", "line")
     outline = ClipOutline.of(made)
-    assert len(find_triggers(made)) == 4
+    assert len(outline.triggers) == 4
     counts = [outline.count_triggers(take.start, take.end) for take in takes_in(made)]
     assert counts == [0, 0]
 

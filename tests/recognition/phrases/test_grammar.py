@@ -12,8 +12,7 @@ import pytest
 
 from app.recognition import Gesture, Language, LanguageError
 from app.recognition.language.file import seal
-from app.recognition.phrases.grammar import Grammar
-from app.recognition.phrases.grammar_parts import DEFAULT_TIMEOUT
+from app.recognition.phrases.grammar import DEFAULT_TIMEOUT, Grammar
 from app.recognition.phrases.parser import PhraseParser
 from app.recognition.phrases.phrase import OneOf
 from tests.published_schemas import LANGUAGE_FILE
