@@ -140,7 +140,7 @@ class People:
             marks, notes = self._find_marks({track: self._find_held(track) for track in tracks})
         if not marks and tracks:
             always = [_Salutes(track, -np.inf, np.inf) for track in tracks]
-            marks = [max(always, key=self._measure_prominence) if tracks[1:] else always[0]]
+            marks = [max(always, key=self._measure_prominence)]
             notes = ["the body is that of the person who stands out most"]
         index, salute = [], []
         for time, who, people, stray in zip(

@@ -174,74 +174,97 @@ def salute_score(hand_xy: FloatArray) -> float:
     if not all(map(cmath.isfinite, points)):
         return 0.0
     try:
-        return score_condition(_measure_excess(points))
+        shape = _HandShape.of(points)
     except OverflowError:  # distances too large for a float
         return 0.0
+    # The score grows with the excess, so the least excess is of the least fulfilled condition.
+    return score_condition(max(_clear_salute(shape), _wide_salute(shape)))
 
 
-def _measure_excess(points: list[complex]) -> float:
-    """Return the excess of the least fulfilled condition of a salute, straight or wide.
+@dataclass(frozen=True, eq=False)
+class _HandShape:
+    """Measures of a hand, of index, middle, ring and little finger in this order.
 
-    Its score is the least one, since the score of a condition grows with the excess. Measured are,
-    of index, middle, ring and little finger in this order: ``straight`` (4) shares, ``length`` (4)
-    and ``stretch`` (4) palms; ``index_pair``, ``spread`` and ``little_pair``, degrees from a finger
-    to the next, away from the thumb; ``gap_ratio``, the gap between the tips of the pairs over the
-    wider one inside them; ``width``, palms across the knuckles.
-
-    Parameters
-    ----------
-    points
-        The hand's 21 points ``x + iy`` in pixels.
-
+    ``straight`` (4) shares; ``length`` (4) and ``stretch`` (4) palms; ``index_pair``, ``spread``
+    and ``little_pair`` degrees from a finger to the next, away from the thumb; ``gap_ratio`` the
+    gap between the tips of the pairs over the wider one inside them; ``width`` palms across the
+    knuckles.
     """
-    # Plain numbers: numpy takes several times as long for so few.
-    wrist = points[0]
-    axis = points[_MIDDLE_KNUCKLE] - wrist
-    across = points[_INDEX_KNUCKLE] - points[_LITTLE_KNUCKLE]
-    palm = max(abs(axis), KNUCKLES_PER_PALM * abs(across), 1e-9)
-    upright = axis.conjugate() / palm
-    # Angles count away from the thumb, on a left hand as on a right one.
-    sense = 1 if (across * upright).imag > 0 else -1
-    straight, length, stretch, angle, tips = [], [], [], [], []
-    for joints_of in _JOINTS_OF_FINGERS:
-        knuckle, middle, last, tip = joints_of(points)
-        finger = tip - knuckle
-        bones = abs(middle - knuckle) + abs(last - middle) + abs(tip - last)
-        straight.append(abs(finger) / max(bones, 1e-9))
-        length.append(abs(finger) / palm)
-        stretch.append((abs(tip - wrist) - abs(middle - wrist)) / palm)
-        angle.append(sense * math.degrees(cmath.phase(finger * upright)))
-        tips.append(tip)
-    index_pair, spread, little_pair = (one - other for one, other in pairwise(angle))
-    index_gap, gap, little_gap = (abs(there - here) for here, there in pairwise(tips))
-    gap_ratio = gap / max(index_gap, little_gap, 1e-6 * palm)
-    width = abs(across) / palm
-    straight_salute = min(
-        STRAIGHT.excess(min(straight)),
-        LONG.excess(min(length[:3])),
-        LONG_LITTLE_FINGER.excess(length[3]),
-        STRETCHED_OUT.excess(min(stretch)),
-        SPREAD.excess(spread),
-        SPREAD_EXCESS.excess(spread - PAIR_MARGIN * max(abs(index_pair), abs(little_pair))),
-        TIP_GAP_RATIO.excess(gap_ratio),
-        PALM_WIDTH.excess(width),
+
+    straight: list[float]
+    length: list[float]
+    stretch: list[float]
+    index_pair: float
+    spread: float
+    little_pair: float
+    gap_ratio: float
+    width: float
+
+    @classmethod
+    def of(cls, points: list[complex]) -> _HandShape:
+        """Measure a hand of 21 points ``x + iy`` in pixels."""
+        # Plain numbers: numpy takes several times as long for so few.
+        wrist = points[0]
+        axis = points[_MIDDLE_KNUCKLE] - wrist
+        across = points[_INDEX_KNUCKLE] - points[_LITTLE_KNUCKLE]
+        palm = max(abs(axis), KNUCKLES_PER_PALM * abs(across), 1e-9)
+        upright = axis.conjugate() / palm
+        # Angles count away from the thumb, on a left hand as on a right one.
+        sense = 1 if (across * upright).imag > 0 else -1
+        straight, length, stretch, angle, tips = [], [], [], [], []
+        for joints_of in _JOINTS_OF_FINGERS:
+            knuckle, middle, last, tip = joints_of(points)
+            finger = tip - knuckle
+            bones = abs(middle - knuckle) + abs(last - middle) + abs(tip - last)
+            straight.append(abs(finger) / max(bones, 1e-9))
+            length.append(abs(finger) / palm)
+            stretch.append((abs(tip - wrist) - abs(middle - wrist)) / palm)
+            angle.append(sense * math.degrees(cmath.phase(finger * upright)))
+            tips.append(tip)
+        index_gap, gap, little_gap = (abs(there - here) for here, there in pairwise(tips))
+        return cls(
+            straight=straight,
+            length=length,
+            stretch=stretch,
+            index_pair=angle[0] - angle[1],
+            spread=angle[1] - angle[2],
+            little_pair=angle[2] - angle[3],
+            gap_ratio=gap / max(index_gap, little_gap, 1e-6 * palm),
+            width=abs(across) / palm,
+        )
+
+
+def _clear_salute(shape: _HandShape) -> float:
+    """Return the least excess of the conditions of a salute with straight fingers."""
+    wider_pair = max(abs(shape.index_pair), abs(shape.little_pair))
+    return min(
+        STRAIGHT.excess(min(shape.straight)),
+        LONG.excess(min(shape.length[:3])),
+        LONG_LITTLE_FINGER.excess(shape.length[3]),
+        STRETCHED_OUT.excess(min(shape.stretch)),
+        SPREAD.excess(shape.spread),
+        SPREAD_EXCESS.excess(shape.spread - PAIR_MARGIN * wider_pair),
+        TIP_GAP_RATIO.excess(shape.gap_ratio),
+        PALM_WIDTH.excess(shape.width),
     )
-    # With bent fingertips.
-    wide_salute = min(
-        NEARLY_STRAIGHT.excess(min(straight[:2])),
-        LONG.excess(min(length[:2])),
-        NOT_CURLED.excess(min(stretch[:2])),
-        VISIBLE_RING.excess(length[2]),
-        VISIBLE_LITTLE.excess(length[3]),
-        NOT_FOLDED.excess(min(stretch[2:])),
-        WIDE_SPREAD.excess(spread),
-        SMALL_ENOUGH.excess(WIDEST_SPREAD - spread),
-        SMALL_ENOUGH.excess(CLOSE_INDEX_PAIR - abs(index_pair)),
-        SMALL_ENOUGH.excess(CLOSE_LITTLE_PAIR - abs(little_pair)),
-        WIDE_TIP_GAP_RATIO.excess(gap_ratio),
-        PALM_WIDTH.excess(width),
+
+
+def _wide_salute(shape: _HandShape) -> float:
+    """Return the least excess of the conditions of a wide salute with bent fingertips."""
+    return min(
+        NEARLY_STRAIGHT.excess(min(shape.straight[:2])),
+        LONG.excess(min(shape.length[:2])),
+        NOT_CURLED.excess(min(shape.stretch[:2])),
+        VISIBLE_RING.excess(shape.length[2]),
+        VISIBLE_LITTLE.excess(shape.length[3]),
+        NOT_FOLDED.excess(min(shape.stretch[2:])),
+        WIDE_SPREAD.excess(shape.spread),
+        SMALL_ENOUGH.excess(WIDEST_SPREAD - shape.spread),
+        SMALL_ENOUGH.excess(CLOSE_INDEX_PAIR - abs(shape.index_pair)),
+        SMALL_ENOUGH.excess(CLOSE_LITTLE_PAIR - abs(shape.little_pair)),
+        WIDE_TIP_GAP_RATIO.excess(shape.gap_ratio),
+        PALM_WIDTH.excess(shape.width),
     )
-    return max(straight_salute, wide_salute)
 
 
 def best_salute(hands: Iterable[Hand]) -> float:
