@@ -83,7 +83,7 @@ def explain_rejection(language: ActiveLanguage, recognition: Recognition) -> str
         return f"it lies between {join_words(recognition.between)}"
     return (
         f"no gesture of {language.name!r}: the nearest, {recognition.nearest!r}, is "
-        f"{recognition.nearest_novelty:.1f} times as far away as it may be"
+        f"{recognition.nearest_novelty:.2f} times as far away as it may be"
     )
 
 

@@ -172,7 +172,7 @@ class Explanation(BaseModel):
                 f"{self.other!r} at {self.other_score:.2f}."
             )
         if not self.right and math.isfinite(self.novelty):
-            far = f"{self.novelty:.1f} times as far as the limit allows"
+            far = f"{self.novelty:.2f} times as far as the limit allows"
             yield f"The take is {far if self.novelty > 1 else 'within the limit'}."
         if self.causes and self.causes[0].share < 1:
             share = f"{self.causes[0].share:.0%}"

@@ -149,7 +149,7 @@ def test_who_was_rejected_is_told_by_how_much() -> None:
     explanation = explain(examined, nearest, with_counterfactuals=False)
     assert (explanation.label, explanation.other != nearest) == (None, True)
     assert explanation.novelty > 1.0
-    allowed = f"The take is {explanation.novelty:.1f} times as far as the limit allows."
+    allowed = f"The take is {explanation.novelty:.2f} times as far as the limit allows."
     assert allowed in explanation.details
     assert sum(voter.share for voter in explanation.breakdown) == pytest.approx(1.0)
 
