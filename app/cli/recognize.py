@@ -22,7 +22,7 @@ from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.recording.chapters import tell_chapters
-from app.recognition.recording.salute import explain_missing_salutes
+from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
 from app.recognition.triggers.trigger import SALUTE

@@ -8,21 +8,21 @@ from dataclasses import replace
 from typing import Any
 
 from app import store
-from app.api.http.problems import ProblemError
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import find_sources, list_sources
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
+from app.api.services.known_takes import load_known
 from app.api.services.running_studio import Studio
-from app.recognition import Language, OsgError, PoseSequence, Recognition, Recognizer
-from app.recognition.explanation.context import KnownTake, RecognitionContext
+from app.recognition import Language, PoseSequence, Recognition, Recognizer
+from app.recognition.explanation.context import RecognitionContext
 from app.recognition.explanation.counterfactuals import Counterfactual, Intervention
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
-from app.recognition.recording.clip_range import find_demonstration, find_surroundings
+from app.recognition.recording.clip_range import find_surroundings
 
 
 def recognize_range(
@@ -80,11 +80,6 @@ def require_landmarks_of(clip: store.Clip, poses: PoseSequence, language: Langua
         require_seen_landmarks(language, poses, clip.name)
 
 
-MOST_KNOWN = 60
-"""Most known takes by which remedies are judged, the newest first; each is recognised again with
-every remedy."""
-
-
 def load_context(record: store.RecognitionRecord, studio: Studio) -> RecognitionContext:
     """Return the context in which a recognition was made, by the language as it was then."""
     state = studio.languages.get(record.language_id, record.revision)
@@ -100,51 +95,6 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
         faults=faults_of_language(studio, language, find_sources(studio, language)),
         recorded=load_recognition(record),
     )
-
-
-def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | store.PracticeTake]:
-    """Return the takes of the test set and of practice, the oldest first, each range once."""
-    tested = [each.take for each in studio.labelled.of(language_id)]
-    takes: list[store.LabelledTake | store.PracticeTake] = [
-        *tested,
-        *studio.practice.of(language_id),
-    ]
-    return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
-
-
-def load_known(
-    studio: Studio, language_id: str, recognizer: Recognizer, *, but: str | None = None
-) -> Iterator[KnownTake]:
-    """Yield the known takes of a language but its demonstrations, the newest first.
-
-    Parameters
-    ----------
-    studio
-        Running studio with the takes.
-    language_id
-        The language's.
-    recognizer
-        Of a revision of it.
-    but
-        A clip whose takes are left out.
-
-    """
-    language = recognizer.language
-    shown = {source.clip_id for source in list_sources(studio, language)}
-    count = 0
-    for take in reversed(list_known(studio, language_id)):
-        if take.clip_id in {*shown, but} or take.expected not in language.labels:
-            continue
-        if count == MOST_KNOWN:
-            return
-        end = take.end if isinstance(take, store.LabelledTake) else None
-        try:
-            recording = studio.recording(take.clip_id)
-            found = find_demonstration(recording, take.start, end, trigger=language.trigger)
-            yield KnownTake(take.expected, recognizer.query(found.poses))
-        except (OsgError, ProblemError, store.NotFound):
-            continue
-        count += 1
 
 
 def locate_cuts(

@@ -232,7 +232,7 @@ def try_answers(options: RobotOptions) -> None:
 
     """
     assert options.vehicle is not None
-    from app.robot.mavlink.answers import NOT_SHOWN
+    from app.robot.mavlink.patterns import NOT_SHOWN
     from app.robot.mavlink.table import read_vehicle_table
 
     if read_vehicle_table(options.vehicle).answers is None:

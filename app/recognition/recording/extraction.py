@@ -20,10 +20,10 @@ from app.recognition.poses.landmarks import POSE_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import PoseSequence, join_sequences
 from app.recognition.poses.skeletons import find_missing_landmarks
 from app.recognition.recording.hand_sides import place_hands
+from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.recording.people import People, keep_person, see_people
 from app.recognition.recording.picture_turn import HEAD_POINTS, find_turn
 from app.recognition.recording.recording import Recording
-from app.recognition.recording.salute import explain_missing_salutes
 from app.recognition.recording.video import (
     FrameSource,
     Turn,

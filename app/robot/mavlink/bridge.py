@@ -26,10 +26,10 @@ from app.robot.commands.dialogue import (
     RecognizedPhrase,
 )
 from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
-from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.peer import Sender, VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
 

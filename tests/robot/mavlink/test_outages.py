@@ -18,14 +18,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot import SourceEnded
 from app.robot.commands.answers import Answer
-from app.robot.mavlink import answers
+from app.robot.mavlink import patterns
 from app.robot.mavlink.actions import CommandStep, LightsServo
-from app.robot.mavlink.answers import AnswerDesk
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
+from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
-from tests.robot.mavlink.test_answers import LIGHTS, answering
 from tests.robot.mavlink.test_bridge import TABLE, crew, diving, wait_until
+from tests.robot.mavlink.test_patterns import LIGHTS, answering
 from tests.robot.mavlink.vehicle import sailing
 
 OUTAGES = (5.0, 12.0, 36.0, 600.0)
@@ -233,7 +233,7 @@ def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start
 def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
     monkeypatch: pytest.MonkeyPatch, function: int | None, reason: str
 ) -> None:
-    monkeypatch.setattr(answers, "LATEST_SECONDS", 1.5)
+    monkeypatch.setattr(patterns, "LATEST_SECONDS", 1.5)
     changes = {
         **LIGHTS,
         "vehicle": {**TABLE["vehicle"], "lights_servo": 1, "give_up_seconds": 1},
@@ -290,7 +290,7 @@ def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_pat
 
 def test_every_limit_says_which_seconds_it_counts() -> None:
     limits = {}
-    for file in Path(answers.__file__).parent.glob("*.py"):
+    for file in Path(patterns.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text())):
             if not isinstance(node, ast.Module | ast.ClassDef):
                 continue

@@ -18,8 +18,8 @@ from app.recognition.errors import VehicleError
 from app.robot.mavlink import rest_link
 from app.robot.mavlink.actions import DepthStep, ModeStep, build_steps
 from app.robot.mavlink.bridge import build_heartbeat
+from app.robot.mavlink.lights_and_tilt import LightsOutput, TiltOutput
 from app.robot.mavlink.links import open_link
-from app.robot.mavlink.outputs import LightsOutput, TiltOutput
 from app.robot.mavlink.rest_link import from_json, to_json
 from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving

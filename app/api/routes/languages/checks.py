@@ -18,8 +18,8 @@ from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.awaited_jobs import await_job
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
+from app.api.services.known_takes import list_known, load_known
 from app.api.services.running_studio import Studio
-from app.api.services.stored_recognitions import list_known, load_known
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
 from app.recognition import Recognizer

@@ -18,9 +18,9 @@ from app.api.routes.asked_revisions import CurrentRevision
 from app.api.routes.language_edits import CurrentEdit
 from app.api.services.demonstration_sources import keep_source
 from app.api.services.gesture_edits import demonstration_at, gesture_in, gestures_from
+from app.api.services.known_takes import load_known
 from app.api.services.running_studio import CurrentStudio, Studio, computed, edited
 from app.api.services.sample_library import STROKES
-from app.api.services.stored_recognitions import load_known
 from app.recognition import Gesture, Language
 from app.recognition.explanation.context import KnownTake
 from app.recognition.health.choice import (

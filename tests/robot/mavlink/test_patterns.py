@@ -18,7 +18,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.recognition.recording.segmentation import TakeState
 from app.robot import RecognitionReady, SourceEnded, StateChanged
 from app.robot.commands.answers import PULSES, Answer
-from app.robot.mavlink import answers
+from app.robot.mavlink import patterns
 from app.robot.mavlink.table import VehicleTable
 from tests.robot.mavlink.test_bridge import TABLE, Diver, diving, wait_until
 
@@ -108,12 +108,12 @@ def test_the_pilot_keeps_the_lights_that_he_changes_during_a_pattern() -> None:
 def test_nothing_is_shown_after_the_pilot_has_changed_the_lights(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(answers, "LATEST_SECONDS", 0.3)
+    monkeypatch.setattr(patterns, "LATEST_SECONDS", 0.3)
     with answering() as diver:
         diver.vehicle.turn_lights(1300)
         time.sleep(0.1)
         diver.show("stop")
-        said = diver.wait_for(answers.NOT_SHOWN)
+        said = diver.wait_for(patterns.NOT_SHOWN)
         assert said == "not shown to the diver, pilot has changed lights: repeat"
     assert len(diver.vehicle.shown) == 1
 
@@ -155,7 +155,7 @@ def test_the_lights_are_as_before_when_the_robot_ends(stopped: bool) -> None:
 
 
 def test_the_lights_are_as_before_after_a_lost_link(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(answers, "FRESH_SECONDS", 0.2)
+    monkeypatch.setattr(patterns, "FRESH_SECONDS", 0.2)
     with answering() as diver:
         diver.show(None)
         wait_until(lambda: len(diver.vehicle.shown) == 3)

@@ -1,4 +1,4 @@
-"""Answers by lights and camera tilt: plays a number of pulses, and restores what was before.
+"""Patterns: the pulses by which lights and tilt show an answer, and what was before them.
 
 A pattern begins only when the vehicle reports the present value, and the pilot did not change it a
 moment ago. A value that is neither ours nor the one before is the pilot's: the pattern ends, and
@@ -20,9 +20,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import Answer
 from app.robot.mavlink.actions import CommandStep, LightsServo, Message, Step
+from app.robot.mavlink.lights_and_tilt import LightsOutput, Output, TiltOutput, build_command
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
-from app.robot.mavlink.outputs import LightsOutput, Output, TiltOutput, build_command
 from app.robot.mavlink.table import Answers, Vehicle
 
 REPORT_SECONDS: Final = 0.1

@@ -1,4 +1,4 @@
-"""Outputs that show pulses to the diver: the lights and the camera tilt.
+"""Lights and camera tilt: the outputs that show pulses to the diver.
 
 Lights are set as the table's lights action sets them (``DO_SET_SERVO``), the tilt as a gimbal
 manager's (``DO_GIMBAL_MANAGER_PITCHYAW``), never by ``MANUAL_CONTROL``, which would take the sticks

@@ -1,0 +1,62 @@
+"""Known takes of a language: those of its test set and of practice, whose labels are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from app import store
+from app.api.http.problems import ProblemError
+from app.api.services.demonstration_sources import list_sources
+from app.api.services.running_studio import Studio
+from app.recognition import OsgError, Recognizer
+from app.recognition.explanation.context import KnownTake
+from app.recognition.recording.clip_range import find_demonstration
+
+MOST_KNOWN = 60
+"""Most known takes by which remedies are judged, the newest first; each is recognised again with
+every remedy."""
+
+
+def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | store.PracticeTake]:
+    """Return the takes of the test set and of practice, the oldest first, each range once."""
+    tested = [each.take for each in studio.labelled.of(language_id)]
+    takes: list[store.LabelledTake | store.PracticeTake] = [
+        *tested,
+        *studio.practice.of(language_id),
+    ]
+    return list({(each.clip_id, round(each.start, 2)): each for each in takes}.values())
+
+
+def load_known(
+    studio: Studio, language_id: str, recognizer: Recognizer, *, but: str | None = None
+) -> Iterator[KnownTake]:
+    """Yield the known takes of a language but its demonstrations, the newest first.
+
+    Parameters
+    ----------
+    studio
+        Running studio with the takes.
+    language_id
+        The language's.
+    recognizer
+        Of a revision of it.
+    but
+        A clip whose takes are left out.
+
+    """
+    language = recognizer.language
+    shown = {source.clip_id for source in list_sources(studio, language)}
+    count = 0
+    for take in reversed(list_known(studio, language_id)):
+        if take.clip_id in {*shown, but} or take.expected not in language.labels:
+            continue
+        if count == MOST_KNOWN:
+            return
+        end = take.end if isinstance(take, store.LabelledTake) else None
+        try:
+            recording = studio.recording(take.clip_id)
+            found = find_demonstration(recording, take.start, end, trigger=language.trigger)
+            yield KnownTake(take.expected, recognizer.query(found.poses))
+        except (OsgError, ProblemError, store.NotFound):
+            continue
+        count += 1
