@@ -220,8 +220,8 @@ def _convert_store_error(error: store.StoreError) -> ProblemError:
 
 
 def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
-    return ProblemError(
-        413 if error.alone else 507,  # Alone: no deletion helps.
+    problem = ProblemError(
+        507,
         "quota_exceeded",
         str(error),
         # The rest of a body stays unread, so the connection cannot be used again.
@@ -229,6 +229,9 @@ def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
         used={"clips": error.usage.clips, "bytes": error.usage.bytes},
         limit=error.limit,
     )
+    if error.alone:  # No deletion helps.
+        problem.status_code = 413
+    return problem
 
 
 def _convert_recognition_error(error: OsgError) -> ProblemError:

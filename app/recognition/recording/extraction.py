@@ -89,12 +89,10 @@ def record(
         (`WaterSight`), always, or never.
     turn
         By how much the pictures are turned before anything is found in them.
-    progress
-        Called after every frame.
-    observer
-        Called with the landmarks of every frame, before `progress` counts it.
-    keep_so_far
-        Called now and then with what is recorded until then.
+    **following
+        The keywords of `Following`: `progress` is called after every frame, `observer` with the
+        landmarks of every frame, before `progress` counts it, and `keep_so_far` now and then with
+        what is recorded until then.
 
     Raises
     ------
