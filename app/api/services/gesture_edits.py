@@ -12,7 +12,7 @@ from app.api.http.schemas.gestures import (
     GestureDraft,
     NewDemonstration,
 )
-from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_takes import demonstration_in
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
 from app.recognition.gestures.switches import Switches

@@ -9,8 +9,8 @@ from typing import Any
 
 from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
-from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
+from app.api.services.clip_takes import demonstration_in
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at

@@ -10,9 +10,8 @@ from app import __version__, store
 from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas import test_sets as schemas
 from app.api.jobs.job import Job, Report, events_about, run_task
-from app.api.services.clip_ranges import demonstration_in
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import find_takes
+from app.api.services.clip_takes import demonstration_in, find_takes
 from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair

@@ -165,12 +165,19 @@ router.include_router(versioned)
 
 async def _append(request: Request, upload_id: str, studio: Studio, upload_offset: int) -> Response:
     """Add a part, which begins at `upload_offset`, and make a clip of a file that is complete."""
-    # A clip shares the bytes of its upload, so none are written once there is one.
-    if answer := await _answer_again(request, studio, upload_id, upload_offset):
+    try:
+        upload = await run_in_threadpool(studio.uploads.get, upload_id)
+    except NotFound:
+        if (answer := await _answer_again(request, studio, upload_id, upload_offset)) is None:
+            raise
         return answer
-    upload = await run_in_threadpool(studio.uploads.get, upload_id)
     _require_owner(request, upload_id, upload.owner)
     came = upload.offset
+    # A clip shares the bytes of its upload, so none are written once there is one.
+    if came == upload.size and (
+        answer := await _answer_again(request, studio, upload_id, upload_offset)
+    ):
+        return answer
     if upload_offset not in (_ends(upload.size) if came == upload.size else (came,)):
         detail = f"{came} bytes have come; go on there instead of at {upload_offset}"
         raise ProblemError(409, "upload_offset", detail)

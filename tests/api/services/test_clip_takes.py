@@ -1,10 +1,10 @@
-"""Clip ranges: the part of a clip that a request refers to."""
+"""Clip takes: the part of a clip that a request refers to."""
 
 import numpy as np
 import pytest
 
 from app.api.http.problems import ProblemError
-from app.api.services.clip_ranges import demonstration_in
+from app.api.services.clip_takes import demonstration_in
 from app.recognition.recording.segmentation import takes_in
 from tests.api.recordings import recording_of
 
