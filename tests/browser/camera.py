@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 import av
-from playwright.sync_api import Page
+from playwright.sync_api import Page, WebSocket
 
 from tests.api.running import until
+
+LONGEST_GAP = 0.4
+"""Seconds between two looks of the server, of which a salute of the clips contains at least two."""
 
 VIDEO = "document.querySelector('.view:not([hidden]) .camera-picture video')"
 
@@ -50,3 +56,32 @@ def see_seconds(page: Page, seconds: float) -> None:
     shown = f"{VIDEO}.currentTime"
     begun = float(page.evaluate(shown))
     until(lambda: page.evaluate(shown) > begun + seconds)
+
+
+def watch_looks(page: Page) -> list[list[float]]:
+    """Collect from now on at which of the camera's seconds the server looked, by live view."""
+    views = list[list[float]]()
+
+    def watch(socket: WebSocket) -> None:
+        if not socket.url.endswith("/live"):
+            return
+        times = list[float]()
+        views.append(times)
+
+        def keep(message: str | bytes) -> None:
+            answer = json.loads(message)
+            if answer["kind"] == "seen":
+                times.append(answer["time"])
+
+        socket.on("framereceived", keep)
+
+    page.on("websocket", watch)
+    return views
+
+
+def looked_often(times: Sequence[float]) -> bool:
+    """Whether no salute can have been missed: a loaded machine looks too seldom.
+
+    The first two looks wait for the models, and do not count.
+    """
+    return all(after - before < LONGEST_GAP for before, after in pairwise(times[2:]))

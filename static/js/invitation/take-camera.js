@@ -63,9 +63,13 @@ function watchTake(video, trigger) {
     },
     { path: "/invited/live", protocols: ["osg-studio.take", token()] },
   );
+  const send = frameSender(video, link);
+  // The server's first look takes longest: it is over when the recording begins. No more pictures
+  // before: a salute in the countdown is no part of the recording.
+  void link.opened.then(() => send(video.currentTime, performance.now() / 1000));
   let stopFrames = () => {};
   look.begin = () => {
-    stopFrames = watchFrames(video, frameSender(video, link));
+    stopFrames = watchFrames(video, send);
   };
   look.stop = () => {
     stopFrames();

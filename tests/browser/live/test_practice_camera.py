@@ -15,7 +15,14 @@ from app.recognition import Language
 from app.settings import Settings
 from tests.api.running import Running
 from tests.browser.accessibility import faults
-from tests.browser.camera import OTHER_VIEWS, camera_showing, see_seconds, write_feed
+from tests.browser.camera import (
+    OTHER_VIEWS,
+    camera_showing,
+    looked_often,
+    see_seconds,
+    watch_looks,
+    write_feed,
+)
 from tests.browser.conftest import OpenPage, started
 
 FEED_RATE = 12
@@ -71,6 +78,7 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     expect(start).to_be_disabled()
     page.get_by_label("Diver").fill("Ana")
     page.get_by_label("Gesture to show").select_option("line")
+    looks = watch_looks(page)
     start.click()
     stop = page.get_by_role("button", name="Stop the camera")
     expect(stop).to_be_visible()
@@ -98,8 +106,9 @@ def test_a_gesture_shown_to_the_camera_is_judged_and_counted(
     expect(page.get_by_text("The camera is off")).to_be_visible()
     names = [each.clip.name for each in server.studio.clips.all()]
     assert any(re.match(r"Ana line \d{4}-\d\d-\d\d", name) for name in names), names
-    # The clip of a take begins shortly before it, and not when the diver begins to wait.
+    # The clip of a take begins shortly before it, and not when the diver begins to wait, unless a
+    # loaded machine looks too seldom to see its salutes.
     (shown,) = httpx.get(f"{server.address}/api/v1/languages/{language}/practice").json()
     right = [each["clip_id"] for each in shown["shown"] if each["right"]]
     durations = [server.studio.clips.get(each).clip.duration for each in right]
-    assert min(filter(None, durations)) < STILL, durations
+    assert min(filter(None, durations)) < STILL or not looked_often(looks[-1]), durations
