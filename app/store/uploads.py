@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
 
@@ -133,26 +134,32 @@ class UploadStore:
 
     def remove(self, upload_id: str) -> None:
         """Remove an upload and its bytes; do nothing if there is none."""
-        for path in (self._folder / upload_id, self._about(upload_id)):
-            if path.is_dir():  # Left over from a crash during a probe.
-                shutil.rmtree(path, ignore_errors=True)
-            else:
-                path.unlink(missing_ok=True)
+        _remove(self._folder / upload_id)
+        _remove(self._about(upload_id))
 
     def purge(self, before: datetime) -> int:
-        """Remove uploads that got no bytes since `before`; return the number removed."""
-        newest: dict[str, datetime] = {}
+        """Remove uploads that got no bytes since `before`; return the number removed.
+
+        What a crash left of a description goes too: with its upload, or by its own age.
+        """
+        found: dict[str, list[Path]] = {}
         for path in self._folder.iterdir():
-            newest[path.stem] = max(
-                _modification_time(path), newest.get(path.stem, _modification_time(path))
-            )
-        stale = [upload_id for upload_id, changed in newest.items() if changed < before]
-        for upload_id in stale:
-            self.remove(upload_id)
+            # ``<id>``, ``<id>.json``, or ``.<id>.json.*.part``, which is still being written.
+            found.setdefault(path.name.removeprefix(".").partition(".")[0], []).append(path)
+        stale = [paths for paths in found.values() if max(map(_modification_time, paths)) < before]
+        for path in chain.from_iterable(stale):
+            _remove(path)
         return len(stale)
 
     def _about(self, upload_id: str) -> Path:
         return self._folder / f"{upload_id}.json"
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():  # Left over from a crash during a probe.
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _modification_time(path: Path) -> datetime:

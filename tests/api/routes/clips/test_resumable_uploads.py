@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import base64
-import os
 import shutil
 import socket
 import sqlite3
 import threading
 from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
-from datetime import timedelta
 from pathlib import Path
 
 import httpx
 import pytest
 
 from app.settings import Limits, Settings
-from app.store import Role, TokenFile, UploadStore
-from app.store.models import now
+from app.store import Role, TokenFile
 from tests.api.ingest.test_bag_clips import two_divers
 from tests.api.routes.clips.test_clips import CLIPS, assert_nothing_kept
 from tests.api.running import Running, assert_problem, client_of, running, until
@@ -349,13 +346,3 @@ def test_another_version_or_type_is_refused_and_ours_is_told(client: httpx.Clien
 @pytest.mark.parametrize("name", ["none", "..%2Fstudio.db", "0" * 32])
 def test_an_upload_that_is_not_there_is_404(client: httpx.Client, name: str) -> None:
     assert client.head(f"{UPLOADS}/{name}", headers=TUS).status_code == 404
-
-
-def test_what_nobody_goes_on_with_is_removed_after_a_while(tmp_path: Path) -> None:
-    store = UploadStore(tmp_path)
-    old, fresh = store.create("old.mp4", 3), store.create("fresh.mp4", 3)
-    long_ago = (now() - timedelta(days=3)).timestamp()
-    for path in tmp_path.glob(f"{old.id}*"):
-        os.utime(path, (long_ago, long_ago))
-    assert store.purge(now() - timedelta(days=1)) == 1
-    assert {path.stem for path in tmp_path.iterdir()} == {fresh.id}
