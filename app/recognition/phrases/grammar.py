@@ -12,11 +12,18 @@ from dataclasses import dataclass, replace
 
 from app.recognition.errors import LanguageError
 from app.recognition.phrases.phrase import Group, OneOf, Part, Phrase, Slot, SlotType
-from app.recognition.phrases.validation import check_grammar
+from app.recognition.phrases.validation import check_phrases
 from app.recognition.text.strict_json import build_pointer
 
 DEFAULT_TIMEOUT = 10.0
 """Seconds: how long attention stays with a dialogue without answer (Nielsen 1993)."""
+
+MAX_TIMEOUT = 600.0
+"""Seconds: ten minutes, far longer than any pause within a message."""
+
+MAX_PHRASES_IN_MESSAGE = 8
+"""Most phrases of a message. CADDIAN's missions have up to eleven commands; longer ones are planned
+on the surface."""
 
 FRAME = ("start", "end", "cancel")
 """Roles of the gestures around a message."""
@@ -81,7 +88,36 @@ class Grammar:
 
     def __post_init__(self) -> None:
         """Validate the grammar."""
-        check_grammar(self)
+        self._check_frame()
+        check_phrases(self.phrases, self.slot_types)
+        self._check_cancel()
+
+    def _check_frame(self) -> None:
+        if not 0 < self.timeout <= MAX_TIMEOUT:  # NaN is not either
+            raise LanguageError(
+                f"must be above 0 and at most {MAX_TIMEOUT:g} seconds, got {self.timeout}",
+                "/grammar/timeout",
+            )
+        if not 1 <= self.most_phrases <= MAX_PHRASES_IN_MESSAGE:
+            raise LanguageError(
+                f"must be 1 to {MAX_PHRASES_IN_MESSAGE}, got {self.most_phrases}",
+                "/grammar/most_phrases",
+            )
+        if self.most_phrases > 1 and self.end is None:
+            raise LanguageError(
+                "a message of several phrases needs an end gesture: without one the robot cannot "
+                "detect its end",
+                "/grammar/most_phrases",
+            )
+
+    def _check_cancel(self) -> None:
+        for use in self.uses():
+            if use.label == self.cancel and use.role != "cancel":
+                raise LanguageError(
+                    f"{use.label!r} is the cancel gesture, so {use.where} cannot use it: choose "
+                    "another gesture",
+                    use.pointer,
+                )
 
     def slot_type(self, name: str) -> SlotType:
         """Return the slot type of that name, which must exist."""

@@ -1,11 +1,11 @@
-"""Grammar validation: rules beyond the schema, with the JSON pointer of each error."""
+"""Validation of phrases: rules beyond the schema, with the JSON pointer of each error."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from app.recognition.errors import LanguageError, point_to
 from app.recognition.gestures.gesture import MAX_LABEL_LENGTH, MAX_TEXT_LENGTH, check_command
@@ -23,15 +23,8 @@ from app.recognition.phrases.templates import find_placeholders, find_template_f
 from app.recognition.text.joiners import is_printable, without_joiners
 from app.recognition.text.strict_json import build_pointer
 
-if TYPE_CHECKING:  # it validates itself by this module
-    from app.recognition.phrases.grammar import Grammar
-
 MAX_PHRASES = 100
 """Five times the longest list that divers were taught (CADDIAN: 40 commands and few variants)."""
-
-MAX_PHRASES_IN_MESSAGE = 8
-"""Most phrases of a message. CADDIAN's missions have up to eleven commands; longer ones are planned
-on the surface."""
 
 MAX_GESTURES_IN_PHRASE = 40
 """Most gestures of a phrase, with every repetition counted: bounds the work of the check, and a
@@ -40,15 +33,12 @@ phrase of forty gestures takes minutes to show."""
 MAX_GESTURES_IN_GRAMMAR = 1000
 """Most gestures of all phrases together, for the same reason: the check compares each with each."""
 
-MAX_TIMEOUT = 600.0
-"""Seconds: ten minutes, far longer than any pause within a message."""
-
 SLOT_NAME = re.compile(r"[a-z][a-z0-9_]{0,39}")
 """Name of a placeholder, which is also a valid parameter name on any robot."""
 
 
-def check_grammar(grammar: Grammar) -> None:
-    """Check that a grammar is consistent.
+def check_phrases(phrases: Sequence[Phrase], slot_types: Sequence[SlotType]) -> None:
+    """Check that the phrases of a grammar, and the types of their slots, are consistent.
 
     Raises
     ------
@@ -56,48 +46,21 @@ def check_grammar(grammar: Grammar) -> None:
         Its pointer is that of the language file.
 
     """
-    _check_frame(grammar)
-    _check_names((each.name for each in grammar.slot_types), "slot_types")
-    _check_names((each.name for each in grammar.phrases), "phrases")
-    for index, slot_type in enumerate(grammar.slot_types):
+    if len(phrases) > MAX_PHRASES:
+        raise LanguageError(
+            f"{len(phrases)} phrases, the limit is {MAX_PHRASES}", "/grammar/phrases"
+        )
+    _check_names((each.name for each in slot_types), "slot_types")
+    _check_names((each.name for each in phrases), "phrases")
+    for index, slot_type in enumerate(slot_types):
         _check_slot_type(slot_type, build_pointer("grammar", "slot_types", index))
-    for index, phrase in enumerate(grammar.phrases):
-        _check_phrase(grammar, phrase, build_pointer("grammar", "phrases", index))
-    total = sum(_longest(part) for phrase in grammar.phrases for part in phrase.parts)
+    for index, phrase in enumerate(phrases):
+        _check_phrase(phrase, slot_types, build_pointer("grammar", "phrases", index))
+    total = sum(_longest(part) for phrase in phrases for part in phrase.parts)
     if total > MAX_GESTURES_IN_GRAMMAR:
         raise LanguageError(
             f"the phrases take {total} gestures in all, the limit is {MAX_GESTURES_IN_GRAMMAR}",
             "/grammar/phrases",
-        )
-    for use in grammar.uses():
-        if use.label == grammar.cancel and use.role != "cancel":
-            raise LanguageError(
-                f"{use.label!r} is the cancel gesture, so {use.where} cannot use it: choose "
-                "another gesture",
-                use.pointer,
-            )
-
-
-def _check_frame(grammar: Grammar) -> None:
-    if not 0 < grammar.timeout <= MAX_TIMEOUT:  # NaN is not either
-        raise LanguageError(
-            f"must be above 0 and at most {MAX_TIMEOUT:g} seconds, got {grammar.timeout}",
-            "/grammar/timeout",
-        )
-    if not 1 <= grammar.most_phrases <= MAX_PHRASES_IN_MESSAGE:
-        raise LanguageError(
-            f"must be 1 to {MAX_PHRASES_IN_MESSAGE}, got {grammar.most_phrases}",
-            "/grammar/most_phrases",
-        )
-    if grammar.most_phrases > 1 and grammar.end is None:
-        raise LanguageError(
-            "a message of several phrases needs an end gesture: without one the robot cannot "
-            "detect its end",
-            "/grammar/most_phrases",
-        )
-    if len(grammar.phrases) > MAX_PHRASES:
-        raise LanguageError(
-            f"{len(grammar.phrases)} phrases, the limit is {MAX_PHRASES}", "/grammar/phrases"
         )
 
 
@@ -137,14 +100,14 @@ def _fits(value: Value | None, reads_as: str, *, together: bool = False) -> bool
     return isinstance(value, int) and value >= 0 and (together or value <= 9)
 
 
-def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
+def _check_phrase(phrase: Phrase, slot_types: Sequence[SlotType], pointer: str) -> None:
     if not phrase.parts or all(part.least == 0 for part in phrase.parts):
         raise LanguageError(
             f"{phrase.name!r} can be shown without any gesture: make one part required",
             pointer + "/parts",
         )
     for index, part in enumerate(phrase.parts):
-        _check_part(grammar, part, pointer + build_pointer("parts", index))
+        _check_part(part, slot_types, pointer + build_pointer("parts", index))
     if (longest := sum(_longest(part) for part in phrase.parts)) > MAX_GESTURES_IN_PHRASE:
         raise LanguageError(
             f"{phrase.name!r} may take {longest} gestures, the limit is {MAX_GESTURES_IN_PHRASE}",
@@ -154,7 +117,7 @@ def _check_phrase(grammar: Grammar, phrase: Phrase, pointer: str) -> None:
     _check_words(phrase, pointer)
 
 
-def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
+def _check_part(part: Part, slot_types: Sequence[SlotType], pointer: str) -> None:
     if not 0 <= part.least <= part.most or not 1 <= part.most <= MAX_REPEAT:
         raise LanguageError(
             f"least {part.least} and most {part.most}: must be 0 <= least <= most and 1 <= most <= "
@@ -165,22 +128,22 @@ def _check_part(grammar: Grammar, part: Part, pointer: str) -> None:
         if not part.gestures or len(set(part.gestures)) < len(part.gestures):
             raise LanguageError("must name one gesture or more, each once", pointer + "/gestures")
     elif isinstance(part, Slot):
-        _check_slot(grammar, part, pointer)
+        _check_slot(part, slot_types, pointer)
     else:
         if not part.parts or all(each.least == 0 for each in part.parts):
             raise LanguageError("a group needs a part that is not optional", pointer + "/parts")
         for index, member in enumerate(part.parts):
-            _check_part(grammar, member, pointer + build_pointer("parts", index))
+            _check_part(member, slot_types, pointer + build_pointer("parts", index))
 
 
-def _check_slot(grammar: Grammar, slot: Slot, pointer: str) -> None:
+def _check_slot(slot: Slot, slot_types: Sequence[SlotType], pointer: str) -> None:
     if not SLOT_NAME.fullmatch(slot.name):
         raise LanguageError(
             f"{slot.name!r} is no name of a slot: a small letter, then at most 39 small letters, "
             "digits and underscores",
             pointer + "/slot",
         )
-    known = {each.name: each for each in grammar.slot_types}
+    known = {each.name: each for each in slot_types}
     if slot.slot_type not in known:
         raise LanguageError(
             f"no slot type {slot.slot_type!r}; there is {', '.join(known) or 'none'}",
