@@ -1,4 +1,7 @@
-"""Trigger listener: segments landmarks into takes between two triggers and recognises each take."""
+"""Trigger listener: recognises each take between two triggers, and a confident gesture in a gap.
+
+A gap is what is shown between two takes: where a salute was missed, it is a take as well.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,9 @@ from app.robot.listeners.stream_order import StreamOrder
 from app.robot.take_result import judge_take, reject_take
 
 GAP_CONFIDENCE: Final = 0.9
-"""Least confidence of a gesture in a gap: fewer than one salute in ten is missed, so that a gap is
-seldom a take. The 31 gaps of `arm_pose.MOST_HANGING` had 0.31 to 0.66."""
+"""Confidence asked for in a gap between two takes, from which it is recognised as a gesture. Fewer
+than one salute in ten is missed, so that a gap is seldom a take. The 31 gaps of
+`arm_pose.MOST_HANGING` had 0.31 to 0.66."""
 
 
 def explain_unclosed(trigger: Trigger) -> str:
