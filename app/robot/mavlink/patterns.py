@@ -48,8 +48,16 @@ LONGEST_RESTORE: Final = 30.0
 asked."""
 
 PAUSE_SECONDS: Final = 1.0
-"""Seconds between two patterns, twice the time between two pulses, so that they are counted
-apart."""
+"""Seconds between two patterns, twice the time between two pulses, so that they are counted apart;
+also after an order that sets the output."""
+
+ANSWER_SECONDS: Final = 1.0
+"""Seconds after its message within which the vehicle's answer is a pattern's; a later one is an
+order's."""
+
+OUTDATED_SECONDS: Final = 1.0
+"""Seconds after an order within which a reported value may be that from before it, and no pilot's.
+"""
 
 LATEST_SECONDS: Final = 6.0
 """Seconds after which an answer that could not begin is dropped: the diver has gone on."""
@@ -167,7 +175,7 @@ class PatternPlayer:
 
     def _hear_answer(self, result: int, now: float) -> bool:
         # A lost answer must not make a later one, to an order, count as a pattern's.
-        if not self._unanswered or now - self._sent > PAUSE_SECONDS:
+        if not self._unanswered or now - self._sent > ANSWER_SECONDS:
             self._unanswered = 0
             return False
         self._unanswered -= 1
@@ -191,7 +199,7 @@ class PatternPlayer:
             math.isnan(last)
             or self._equals(value, last)
             # Reports from before the order are on their way.
-            or now - self._handed < PAUSE_SECONDS
+            or now - self._handed < OUTDATED_SECONDS
         ):
             self._changed = now
         self._was_silent = False
