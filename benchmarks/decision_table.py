@@ -35,7 +35,7 @@ BEFORE_RATIO: Final = 1.16
 OUTCOMES: Final = ("right", "wrong", "asked", "refused")
 
 CONSTANTS: Final = (
-    (second_opinion, "EXPONENT", (0.0, 0.1, 0.2, 0.3)),
+    (second_opinion, "OPINION_EXPONENT", (0.0, 0.1, 0.2, 0.3)),
     (second_opinion, "AGREED", (1.0, 1.1, 1.15)),
     (outcome, "ASK_RATIO", (1.12, 1.14, 1.165, 1.18)),
     (outcome, "FARTHER_EXPONENT", (0.0, 0.3)),

@@ -12,7 +12,7 @@ from app.recognition import OsgError, Recognizer
 from app.recognition.explanation.context import KnownTake
 from app.recognition.recording.clip_range import find_demonstration
 
-MOST_KNOWN = 60
+MOST_KNOWN_TAKES = 60
 """Most known takes by which remedies are judged, the newest first; each is recognised again with
 every remedy."""
 
@@ -50,7 +50,7 @@ def load_known(
     for take in reversed(list_known(studio, language_id)):
         if take.clip_id in {*shown, but} or take.expected not in language.labels:
             continue
-        if count == MOST_KNOWN:
+        if count == MOST_KNOWN_TAKES:
             return
         end = take.end if isinstance(take, store.LabelledTake) else None
         try:

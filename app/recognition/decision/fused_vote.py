@@ -37,7 +37,7 @@ from app.recognition.decision.references import (
 )
 from app.recognition.decision.result import Recognition
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.second_opinion import EXPONENT, hear
+from app.recognition.decision.second_opinion import OPINION_EXPONENT, hear
 from app.recognition.decision.virtual_views import list_views
 from app.recognition.features.motion import SHARES, SIZE
 from app.recognition.features.trajectory_image import is_drawable
@@ -188,7 +188,7 @@ class FusedVote:
     def weights(self) -> Mapping[str, float]:
         """Each voter's weight in the decision, summing to 1."""
         weights = self._weights.copy()
-        weights[_SECOND] += EXPONENT * self._heard * weights.sum()
+        weights[_SECOND] += OPINION_EXPONENT * self._heard * weights.sum()
         if self._tempo.any():
             weights[_TEMPO] += Tempo.weight_where_needed
         names = VOTER_NAMES

@@ -16,7 +16,7 @@ from app.recognition.decision.outcome import SCORE_FLOOR, find_answer
 from app.recognition.decision.score_table import ScoreTable
 from app.recognition.voters.motion_voters import SecondOpinion
 
-EXPONENT: Final = 0.2
+OPINION_EXPONENT: Final = 0.2
 """Exponent of the second opinion's ratios, where the score's own ratios have 1; also its weight
 beside that of all other voters (`benchmarks/studies/rejection.md`)."""
 
@@ -33,8 +33,8 @@ def hear(table: ScoreTable, factor: float) -> ScoreTable:
     """Let the second opinion add its part to the scores, and release a clear take that it names.
 
     A score is multiplied by the ratio of the second opinion's distance to its smallest one, to the
-    power of `EXPONENT`. It chooses among the gestures within `ORDER_RATIO`; no other becomes the
-    nearest. What it adds is its contribution.
+    power of `OPINION_EXPONENT`. It chooses among the gestures within `ORDER_RATIO`; no other
+    becomes the nearest. What it adds is its contribution.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def hear(table: ScoreTable, factor: float) -> ScoreTable:
         silent = np.arange(len(table.distances))[:, None] == row
         return replace(table, distances=np.where(silent, np.inf, table.distances))
     ratios = (opinion[known] + SCORE_FLOOR) / (opinion[known].min() + SCORE_FLOOR)
-    apart = scores[known] * ratios ** (EXPONENT * factor)
+    apart = scores[known] * ratios ** (OPINION_EXPONENT * factor)
     near = scores[known] <= ORDER_RATIO * scores[known].min()
     apart[~near] = np.maximum(apart[~near], ORDER_RATIO * apart[near].min())
     contributions, novelty = table.contributions.copy(), table.novelty_by_view.copy()

@@ -43,7 +43,7 @@ LEAST_FAILING: Final = 0.5
 FEWEST_TAKES: Final = 3
 """Least known takes of a gesture: of two nobody can tell which one is unlike the others."""
 
-MOST_TAKES: Final = 8
+MOST_COMPARED_TAKES: Final = 8
 """Most known takes of a gesture that are compared with each other."""
 
 WEIGHT_OF_FAILING: Final = 0.75
@@ -183,7 +183,7 @@ def _judge_demonstration(
 
     `own` are the indices of the gesture's takes, of which `failing` fail.
     """
-    takes = [known.takes[index] for index in own[:MOST_TAKES]]
+    takes = [known.takes[index] for index in own[:MOST_COMPARED_TAKES]]
     shown = gesture.single_demonstrations()[number]
     medoid, apart, among = _compare_takes(known.recognizer, shown, takes)
     evidence = Evidence(unlike=apart / max(among, 1e-9), failing=failing / len(own), gain=MOST_GAIN)

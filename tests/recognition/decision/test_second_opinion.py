@@ -7,7 +7,7 @@ import pytest
 
 from app.recognition import Gesture, Language, PoseSequence, Recognizer
 from app.recognition.decision.score_table import ScoreTable
-from app.recognition.decision.second_opinion import AGREED, EXPONENT, ORDER_RATIO, hear
+from app.recognition.decision.second_opinion import AGREED, OPINION_EXPONENT, ORDER_RATIO, hear
 from app.recognition.gestures.tuning import Tuning
 from tests.recognition.strategies import SHAPES, circle, recording, square, wedge
 
@@ -73,8 +73,8 @@ def test_it_abstains_where_there_is_no_other_gesture() -> None:
 def test_it_adds_its_ratio_to_the_scores_and_releases_a_clear_take_that_it_names() -> None:
     before = table([0.5, 1.0, 2.0, 3.0], [0.3, 0.98, 0.98, 0.62])
     heard = hear(before, 1.0)
-    far = (1.0 / 0.32) ** EXPONENT
-    np.testing.assert_allclose(heard.scores, [0.5, far, 2 * far, 3 * 2**EXPONENT])
+    far = (1.0 / 0.32) ** OPINION_EXPONENT
+    np.testing.assert_allclose(heard.scores, [0.5, far, 2 * far, 3 * 2**OPINION_EXPONENT])
     np.testing.assert_allclose(heard.novelty, [0.5 / AGREED, 0.5, 0.5, 0.5])
     np.testing.assert_allclose(heard.scores - before.scores, heard.contributions[5])
     outside = np.array([[(1 + AGREED) / 2] * 4, [np.nan] * 4])
@@ -114,5 +114,5 @@ def test_a_weight_factor_makes_it_louder_or_silent() -> None:
     assert np.isinf(silent.distances[silent.voters.index(ROW)]).all()
     np.testing.assert_array_equal(silent.scores, before.scores)
     assert [taught(factor).vote.weights[ROW] for factor in (0.0, 1.0)] == pytest.approx(
-        [0.0, EXPONENT / (1 + EXPONENT)]
+        [0.0, OPINION_EXPONENT / (1 + OPINION_EXPONENT)]
     )
