@@ -35,7 +35,7 @@ from app.recognition import Gesture, Language, OsgError, PoseSequence, Recognize
 from app.recognition.explanation.context import KnownTake, KnownTakes, RecognitionContext
 from app.recognition.explanation.explanation import explain
 from app.recognition.poses.trajectory import Trajectory
-from app.recognition.recording.clip_range import find_demonstration
+from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.recording.segmentation import takes_in
 from benchmarks.accuracy.misreading_pictures import draw_bodies, draw_clip, draw_paths
@@ -191,7 +191,7 @@ class Takes:
         gestures = [
             Gesture.from_demonstration(
                 clip.stem.removesuffix("_demo"),
-                find_demonstration(self._recorder.record(clip)).poses,
+                find_clip_range(self._recorder.record(clip)).poses,
             )
             for clip in sorted(self._folders[folder].glob("*_demo.mp4"))
         ]

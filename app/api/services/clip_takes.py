@@ -9,7 +9,7 @@ from app.api.http.schemas.clips import TakeView
 from app.api.services.running_studio import RecordingFile, Studio, load_recording
 from app.recognition import Language, OsgError, Recognizer
 from app.recognition.errors import AmbiguousRangeError, RangeError
-from app.recognition.recording.clip_range import Demonstration, find_demonstration
+from app.recognition.recording.clip_range import ClipRange, find_clip_range
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter
@@ -57,15 +57,15 @@ def find_takes(
     return takes if recording.whole else tuple(take for take in takes if take.closed)
 
 
-def demonstration_in(
+def clip_range_in(
     recording: Recording,
     start: float | None = None,
     end: float | None = None,
     *,
     keep_transit: bool = False,
     trigger: Trigger = SALUTE,
-) -> Demonstration:
-    """Find the demonstration meant by a range of seconds; see `find_demonstration`.
+) -> ClipRange:
+    """Find the part of a clip that is meant by a first and last second; see `find_clip_range`.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def demonstration_in(
 
     """
     try:
-        return find_demonstration(recording, start, end, keep_transit=keep_transit, trigger=trigger)
+        return find_clip_range(recording, start, end, keep_transit=keep_transit, trigger=trigger)
     except AmbiguousRangeError as error:
         raise ProblemError(422, "take_ambiguous", str(error)) from error
     except RangeError as error:

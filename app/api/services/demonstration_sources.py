@@ -9,7 +9,7 @@ from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstrati
 from app.api.services.demonstration_faults import count_triggers_in_clip, faults_of_source
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language
-from app.recognition.recording.clip_range import Demonstration
+from app.recognition.recording.clip_range import ClipRange
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
 from app.store import DemonstrationSource, LanguageState
@@ -20,7 +20,7 @@ def keep_source(
     state: LanguageState,
     label: str,
     where: NewDemonstration,
-    demonstration: Demonstration,
+    demonstration: ClipRange,
     *,
     index: int = 0,
 ) -> None:

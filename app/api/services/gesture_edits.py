@@ -12,13 +12,13 @@ from app.api.http.schemas.gestures import (
     GestureDraft,
     NewDemonstration,
 )
-from app.api.services.clip_takes import demonstration_in
+from app.api.services.clip_takes import clip_range_in
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.recording.clip_range import Demonstration
+from app.recognition.recording.clip_range import ClipRange
 from app.recognition.text.look_alikes import find_confusable
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import DemonstrationSource
@@ -32,7 +32,7 @@ WORDS = frozenset({"label", "description", "command", "diver"})
 
 def demonstration_at(
     studio: Studio, where: NewDemonstration | DemonstrationSource, trigger: Trigger = SALUTE
-) -> Demonstration:
+) -> ClipRange:
     """Find the demonstration that a request or a source names, in takes by a language's trigger.
 
     Raises
@@ -40,16 +40,16 @@ def demonstration_at(
     NotFound
         When there is no such clip.
     ProblemError
-        409 while its poses are not extracted, 422 as `demonstration_in`.
+        409 while its poses are not extracted, 422 as `clip_range_in`.
 
     """
     recording = studio.recording(where.clip_id)
-    return demonstration_in(
+    return clip_range_in(
         recording, where.start, where.end, keep_transit=where.keep_transit, trigger=trigger
     )
 
 
-def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
+def gesture_from(draft: GestureDraft, demonstration: ClipRange) -> Gesture:
     """Return the gesture that a draft describes.
 
     Raises
@@ -72,7 +72,7 @@ def gesture_from(draft: GestureDraft, demonstration: Demonstration) -> Gesture:
 
 def gestures_from(
     studio: Studio, drafts: Sequence[GestureDraft], trigger: Trigger = SALUTE
-) -> list[tuple[Gesture, Demonstration]]:
+) -> list[tuple[Gesture, ClipRange]]:
     """Return the gestures that drafts describe, with their demonstrations.
 
     Raises
@@ -122,7 +122,7 @@ def set_switches(switches: Switches, wanted: GestureDraft | GestureChange) -> Sw
 
 
 def change_gesture_of(
-    language: Language, label: str, change: GestureChange, demonstration: Demonstration | None
+    language: Language, label: str, change: GestureChange, demonstration: ClipRange | None
 ) -> Language:
     """Return a language in which one gesture is changed.
 
@@ -171,7 +171,7 @@ def change_gesture_of(
 
 
 def add_demonstration_to(
-    language: Language, draft: DemonstrationDraft, demonstration: Demonstration
+    language: Language, draft: DemonstrationDraft, demonstration: ClipRange
 ) -> Language:
     """Return a language in which a gesture has one more demonstration.
 
@@ -313,7 +313,7 @@ class EditedGesture:
     of: Language
     known: str | None
     change: GestureChange
-    demonstration: Demonstration | None
+    demonstration: ClipRange | None
 
     @property
     def label(self) -> str:

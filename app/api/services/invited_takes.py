@@ -28,7 +28,7 @@ from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language, OsgError, Recognition, Recognizer
 from app.recognition.explanation.demonstration_faults import FaultKind
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
-from app.recognition.recording.clip_range import Demonstration
+from app.recognition.recording.clip_range import ClipRange
 from app.recognition.recording.salute import FEW_HANDS
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
@@ -276,7 +276,7 @@ def add_take(
     return _settle(studio, take, "added")
 
 
-def _require_read(recognizer: Recognizer, label: str, shown: Demonstration) -> None:
+def _require_read(recognizer: Recognizer, label: str, shown: ClipRange) -> None:
     """Raise `Doubted` unless a take is surely read as its gesture."""
     read = None
     with suppress(OsgError):
@@ -287,7 +287,7 @@ def _require_read(recognizer: Recognizer, label: str, shown: Demonstration) -> N
         raise Doubted(label, read)
 
 
-def _with_take(language: Language, draft: DemonstrationDraft, shown: Demonstration) -> Language:
+def _with_take(language: Language, draft: DemonstrationDraft, shown: ClipRange) -> Language:
     """Return the language with one more demonstration, unless that person or eight have shown it.
 
     It is made from the newest revision, so that no other take comes in between.

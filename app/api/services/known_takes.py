@@ -10,7 +10,7 @@ from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.recognition import OsgError, Recognizer
 from app.recognition.explanation.context import KnownTake
-from app.recognition.recording.clip_range import find_demonstration
+from app.recognition.recording.clip_range import find_clip_range
 
 MOST_KNOWN_TAKES = 60
 """Most known takes by which remedies are judged, the newest first; each is recognised again with
@@ -55,7 +55,7 @@ def load_known(
         end = take.end if isinstance(take, store.LabelledTake) else None
         try:
             recording = studio.recording(take.clip_id)
-            found = find_demonstration(recording, take.start, end, trigger=language.trigger)
+            found = find_clip_range(recording, take.start, end, trigger=language.trigger)
             yield KnownTake(take.expected, recognizer.query(found.poses))
         except (OsgError, ProblemError, store.NotFound):
             continue

@@ -10,7 +10,7 @@ from typing import Any
 from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import demonstration_in
+from app.api.services.clip_takes import clip_range_in
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
@@ -33,7 +33,7 @@ def recognize_range(
     Raises
     ------
     NotFound, ProblemError, OsgError
-        As `Studio.recording`, `demonstration_in`, `require_landmarks_of` and `make_recognizer`.
+        As `Studio.recording`, `clip_range_in`, `require_landmarks_of` and `make_recognizer`.
     QuotaExceeded
         When the sender may not keep another recognition.
 
@@ -45,9 +45,9 @@ def recognize_range(
         recording = studio.recording(wanted.clip_id)  # refused while these frames are being read
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
-    demonstration = demonstration_in(recording, wanted.start, wanted.end, trigger=language.trigger)
+    meant = clip_range_in(recording, wanted.start, wanted.end, trigger=language.trigger)
     recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial)
-    answer = recognizer.recognize(demonstration.poses).to_dict()
+    answer = recognizer.recognize(meant.poses).to_dict()
     if wanted.tuning is not None:
         answer["tuning"] = wanted.tuning.model_dump()
     if wanted.trial is not None:
@@ -56,8 +56,8 @@ def recognize_range(
         clip_id=wanted.clip_id,
         language_id=state.record.id,
         revision=state.revision.revision,
-        start=demonstration.start,
-        end=demonstration.end,
+        start=meant.start,
+        end=meant.end,
         profile=profile,
         expected=wanted.expected,
         result=json.dumps(answer, allow_nan=False),
@@ -89,7 +89,7 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
     language = recognizer.language
     return RecognitionContext(
         recognizer=recognizer,
-        poses=demonstration_in(recording, record.start, record.end, trigger=language.trigger).poses,
+        poses=clip_range_in(recording, record.start, record.end, trigger=language.trigger).poses,
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
         known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
         faults=faults_of_language(studio, language, find_sources(studio, language)),

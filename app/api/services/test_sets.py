@@ -11,7 +11,7 @@ from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas import test_sets as schemas
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import demonstration_in, find_takes
+from app.api.services.clip_takes import clip_range_in, find_takes
 from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
@@ -185,7 +185,7 @@ def _ranges(
             yield float(recording.poses.time[0]), float(recording.poses.time[-1])
         return
     trigger = studio.language(state).trigger
-    meant = demonstration_in(recording, draft.start, draft.end, trigger=trigger)
+    meant = clip_range_in(recording, draft.start, draft.end, trigger=trigger)
     yield (
         meant.start if draft.start is None else draft.start,
         meant.end if draft.end is None else draft.end,

@@ -47,7 +47,7 @@ from app.recognition.language.osg_reference import from_reference, is_reference
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.trigger_entry import TriggerEntry, entry_to_trigger
 from app.recognition.poses.frame import Body, FrameLandmarks
-from app.recognition.recording.clip_range import find_demonstration
+from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.video import VideoFrame, read_frames
 from app.recognition.recording.video import probe as probe_video
 from app.resources import known_signs_file
@@ -433,7 +433,7 @@ def _recognize(
     recording = _load(take.recording)
     if take.keypoints_of is not None:
         require_seen_landmarks(language, recording.poses, take.keypoints_of)
-    shown = find_demonstration(recording, take.start, take.end, trigger=language.trigger)
+    shown = find_clip_range(recording, take.start, take.end, trigger=language.trigger)
     answer = recognizer().recognize(shown.poses).to_dict()
     return RecognizedTake(start=shown.start, end=shown.end, answer=answer)
 

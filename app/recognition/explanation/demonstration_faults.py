@@ -22,7 +22,7 @@ from app.recognition.preprocessing.jumps import find_other_body, find_unsteady
 from app.recognition.preprocessing.moving_hands import find_moving_hands, list_moving_sides
 from app.recognition.preprocessing.repair import repair_poses
 from app.recognition.preprocessing.salience import find_salient_landmarks
-from app.recognition.recording.clip_range import find_demonstration
+from app.recognition.recording.clip_range import find_clip_range
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import FEW_HANDS, HOLD_SECONDS, find_held
 from app.recognition.recording.segmentation import Bracket, find_brackets, takes_in
@@ -207,11 +207,11 @@ def find_demonstration_faults(
     recording
         Of the clip.
     start, end
-        Seconds, as for `find_demonstration`.
+        Seconds, as for `find_clip_range`.
     outline
         The parts of the recording, if they are known already.
     trigger, keep_transit
-        As for `find_demonstration`.
+        As for `find_clip_range`.
     salient
         The gesture's salient landmarks; by default those of the stroke.
     hand_counts
@@ -222,7 +222,7 @@ def find_demonstration_faults(
     The faults, the gravest first; empty for a good demonstration.
 
     """
-    shown = find_demonstration(recording, start, end, keep_transit=keep_transit, trigger=trigger)
+    shown = find_clip_range(recording, start, end, keep_transit=keep_transit, trigger=trigger)
     parts = outline or ClipOutline.of(recording, trigger)
     brackets = find_brackets(recording, trigger)
     first, last = shown.start, shown.end

@@ -16,15 +16,15 @@ rounded to milliseconds, and no camera takes a thousand frames a second of a div
 
 
 @dataclass(frozen=True)
-class Demonstration:
-    """One showing of a gesture.
+class ClipRange:
+    """A part of a clip: a take's stroke, a chosen range, or all of it.
 
     Attributes
     ----------
     start, end
         Seconds in the clip between which `poses` lies.
     poses
-        The stroke.
+        Those of this part.
 
     """
 
@@ -33,15 +33,15 @@ class Demonstration:
     poses: PoseSequence
 
 
-def find_demonstration(
+def find_clip_range(
     recording: Recording,
     start: float | None = None,
     end: float | None = None,
     *,
     keep_transit: bool = False,
     trigger: Trigger = SALUTE,
-) -> Demonstration:
-    """Find the demonstration meant by a range of seconds.
+) -> ClipRange:
+    """Find the part of a clip that is meant by a first and last second.
 
     A range that equals a take, from salute to salute, selects its stroke, without the transits
     unless `keep_transit`. Any other range is used unchanged. Without a range, the clip's only take
@@ -78,7 +78,7 @@ def find_demonstration(
             f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
             f"{poses.time[0]:g} s to {poses.time[-1]:g} s"
         )
-    return Demonstration(first, last, inside)
+    return ClipRange(first, last, inside)
 
 
 def find_surroundings(
@@ -93,6 +93,6 @@ def find_surroundings(
 
 def _shown_in(
     poses: PoseSequence, bracket: Bracket, trigger: Trigger, keep_transit: bool
-) -> Demonstration:
+) -> ClipRange:
     take = cut_take(poses, bracket, trim=not keep_transit, trigger=trigger)
-    return Demonstration(take.stroke_start, take.stroke_end, take.poses)
+    return ClipRange(take.stroke_start, take.stroke_end, take.poses)
