@@ -24,7 +24,7 @@ from app.recognition.errors import OsgError, VideoError
 from app.recognition.estimation import finds_hands
 from app.recognition.recording.chapters import chapters_in, join_chapters
 from app.recognition.recording.file_kinds import HEAD_BYTES, video_type
-from app.recognition.recording.video import FrameReader, Span, probe, read_frames
+from app.recognition.recording.video import ByteRange, FrameReader, probe, read_frames
 
 
 class VideoSource(ClipSource):
@@ -125,8 +125,8 @@ def _one_file(path: Path, options: ReadOptions) -> Iterator[Path]:
         yield path
         return
     ends = [*accumulate(options.chapters)] or [0]
-    spans = zip([0, *ends], ends, strict=False)
-    chapters: list[tuple[Path, Span | None]] = [(path, span) for span in spans]
+    ranges = zip([0, *ends], ends, strict=False)
+    chapters: list[tuple[Path, ByteRange | None]] = [(path, each) for each in ranges]
     if path.is_dir():
         chapters = [(each, None) for each in chapters_in(path)]
     elif ends[-1] != path.stat().st_size:

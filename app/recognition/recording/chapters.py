@@ -16,7 +16,7 @@ from av.container import OutputContainer
 
 from app.recognition.errors import VideoError
 from app.recognition.recording.file_kinds import COPIES
-from app.recognition.recording.video import Span, nominal_step, open_video, video_stream
+from app.recognition.recording.video import ByteRange, nominal_step, open_video, video_stream
 from app.recognition.recording.video_limits import VideoLimits
 
 _GOPRO: Final = re.compile(r"(G[HXLP])(\d\d)(\d{4}\.\w+)", re.IGNORECASE)
@@ -118,7 +118,7 @@ def _span(path: Path) -> tuple[float, float]:
     return math.nan, math.nan
 
 
-def join_chapters(chapters: Sequence[tuple[Path, Span | None]], target: Path) -> None:
+def join_chapters(chapters: Sequence[tuple[Path, ByteRange | None]], target: Path) -> None:
     """Write the pictures of several videos as one MP4, one after the other, without coding them.
 
     Parameters
@@ -144,12 +144,12 @@ def join_chapters(chapters: Sequence[tuple[Path, Span | None]], target: Path) ->
         raise VideoError(f"the chapters cannot be joined ({error}); convert them to MP4") from error
 
 
-def _join(chapters: Sequence[tuple[Path, Span | None]], joined: OutputContainer) -> None:
+def _join(chapters: Sequence[tuple[Path, ByteRange | None]], joined: OutputContainer) -> None:
     first = None
     # In the unit of time of the first chapter, which the others share.
     end, last = 0, -(2**62)
-    for path, span in chapters:
-        with open_video(path, VideoLimits(), span) as container:
+    for path, within in chapters:
+        with open_video(path, VideoLimits(), within) as container:
             stream = video_stream(container, path)
             coded = stream.codec_context
             form = (coded.name, coded.width, coded.height, stream.time_base, coded.extradata)

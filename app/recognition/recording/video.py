@@ -37,7 +37,7 @@ recorders and browsers write. None of them is a playlist."""
 Turn = Literal[0, 90, 180, 270]
 """Degrees, clockwise, by which pictures are turned after what their container states."""
 
-Span = tuple[int, int]
+ByteRange = tuple[int, int]
 """First byte of a video that is a part of a file, and the one after its last."""
 
 ALPHA_BACKGROUND = 128
@@ -318,8 +318,8 @@ def over_background(image: Image) -> Image:
     return np.rint(blended).astype(np.uint8)
 
 
-def open_video(path: Path, limits: VideoLimits, span: Span | None = None) -> InputContainer:
-    """Open a video without decoding it; `span` are the bytes of the file that it consists of.
+def open_video(path: Path, limits: VideoLimits, within: ByteRange | None = None) -> InputContainer:
+    """Open a video without decoding it; `within` are the bytes of the file that it consists of.
 
     Raises
     ------
@@ -331,13 +331,13 @@ def open_video(path: Path, limits: VideoLimits, span: Span | None = None) -> Inp
         raise VideoError(f"{path} is not a file; give the path of a clip")
     if path.stat().st_size == 0:
         raise VideoError(f"{path.name} is empty (0 bytes); copy or record it again")
-    part = f"subfile,,start,{span[0]},end,{span[1]},,:" if span else ""
+    part = f"subfile,,start,{within[0]},end,{within[1]},,:" if within else ""
     try:
         return av.open(
             # The scheme prevents names like "concat:a|b" or "http:x" from opening an address.
             f"{part}file:{path.resolve()}",
             container_options={
-                "protocol_whitelist": "file,subfile" if span else "file",
+                "protocol_whitelist": "file,subfile" if within else "file",
                 "format_whitelist": ",".join(CONTAINERS),
                 "max_streams": str(MOST_STREAMS + 1),
             },
