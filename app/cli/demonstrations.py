@@ -141,7 +141,7 @@ def _save(language: Language, output: Path) -> None:
 
 
 @dataclass(frozen=True)
-class Demonstration:
+class DemonstrationArgument:
     """One clip of ``LABEL=CLIP`` or ``LABEL=CLIP@START-END`` on the command line.
 
     Attributes
@@ -160,7 +160,7 @@ class Demonstration:
     span: tuple[float, float] | None = None
 
 
-def parse_demonstrations(text: str) -> list[Demonstration]:
+def parse_demonstrations(text: str) -> list[DemonstrationArgument]:
     """Parse ``LABEL=CLIP[,CLIP...]``; an existing file whose name has commas is taken as it is.
 
     Raises
@@ -177,11 +177,11 @@ def parse_demonstrations(text: str) -> list[Demonstration]:
             f"{text!r} is not LABEL=CLIP[,CLIP...]: name the gesture and its clips, as in "
             "circle=dive.mp4 or circle=ana.mp4,ben.mp4"
         )
-    return [Demonstration(label, *clip_and_span(clip)) for clip in clips]
+    return [DemonstrationArgument(label, *clip_and_span(clip)) for clip in clips]
 
 
 def define_gesture(
-    demonstrations: Sequence[Demonstration],
+    demonstrations: Sequence[DemonstrationArgument],
     reading: ClipReading,
     *,
     diver: str = "",
@@ -234,7 +234,7 @@ def _name_sides(hands: Sequence[HandShape]) -> str:
 
 
 def demonstration_take(
-    demonstration: Demonstration, reading: ClipReading
+    demonstration: DemonstrationArgument, reading: ClipReading
 ) -> tuple[Take, Recording]:
     """Return the only closed take of a clip, or the range given by hand, and the recording.
 

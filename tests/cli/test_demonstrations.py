@@ -9,7 +9,7 @@ import pytest
 
 from app.cli.clip_argument import clip_and_span
 from app.cli.demonstrations import (
-    Demonstration,
+    DemonstrationArgument,
     describe_shown,
     parse_demonstrations,
 )
@@ -151,12 +151,12 @@ def test_a_format_of_one_demonstration_keeps_the_first_and_says_so(
 
 def test_a_demonstration_is_a_label_and_a_clip() -> None:
     (parsed,) = parse_demonstrations("circle=a.mp4")
-    assert parsed == Demonstration("circle", Path("a.mp4"))
+    assert parsed == DemonstrationArgument("circle", Path("a.mp4"))
 
 
 def test_a_demonstration_may_give_its_range_in_seconds() -> None:
     (parsed,) = parse_demonstrations("circle=dive 1.mp4@1.5-3")
-    assert parsed == Demonstration("circle", Path("dive 1.mp4"), (1.5, 3.0))
+    assert parsed == DemonstrationArgument("circle", Path("dive 1.mp4"), (1.5, 3.0))
 
 
 def test_a_file_whose_name_looks_like_a_range_is_taken_as_it_is(tmp_path: Path) -> None:
@@ -167,9 +167,9 @@ def test_a_file_whose_name_looks_like_a_range_is_taken_as_it_is(tmp_path: Path) 
 
 def test_a_gesture_may_have_several_clips_each_with_its_own_range() -> None:
     assert parse_demonstrations("come here=ana.mp4@1-2.5, ben.mp4,dive.mcap@/camera") == [
-        Demonstration("come here", Path("ana.mp4"), (1.0, 2.5)),
-        Demonstration("come here", Path("ben.mp4")),
-        Demonstration("come here", Path("dive.mcap@/camera")),
+        DemonstrationArgument("come here", Path("ana.mp4"), (1.0, 2.5)),
+        DemonstrationArgument("come here", Path("ben.mp4")),
+        DemonstrationArgument("come here", Path("dive.mcap@/camera")),
     ]
 
 
