@@ -171,7 +171,8 @@ def test_three_people_finish_a_language(
     # The salute ends a recording, unless a loaded machine looks too seldom to see it.
     recordings = [each.clip for each in server.studio.clips.all() if each.clip.name[:3] == "Bo "]
     durations = [each.duration for each in recordings]
-    assert looks
+    # The server's first look takes longest: it is at a picture of the countdown.
+    assert any(second - first > 1.0 for first, second, *_ in looks)
     assert min(filter(None, durations)) < LONGEST or not any(map(looked_often, looks)), durations
 
     # Cy has no live camera: first a clip without a take, then the right ones.
