@@ -68,7 +68,21 @@ class GestureError(OsgError):
 
 
 class RangeError(OsgError):
-    """Raised when a range of a clip is empty or reversed."""
+    """Raised when a range of a clip is empty or reversed.
+
+    Parameters
+    ----------
+    message
+        What is wrong and what to do.
+    pointer
+        JSON pointer (RFC 6901) to the end of the range to mend first, in an object of ``start`` and
+        ``end``; ``""`` for none.
+
+    """
+
+    def __init__(self, message: str, pointer: str = "") -> None:
+        super().__init__(message)
+        self.pointer = pointer
 
 
 class AmbiguousRangeError(RangeError):

@@ -17,6 +17,7 @@ from starlette.requests import ClientDisconnect
 
 from app import store
 from app.recognition.errors import (
+    AmbiguousRangeError,
     BagError,
     GestureError,
     LandmarkError,
@@ -24,6 +25,7 @@ from app.recognition.errors import (
     ModelError,
     OsgError,
     PoseError,
+    RangeError,
     TopicError,
     VideoError,
 )
@@ -239,6 +241,10 @@ def _convert_recognition_error(error: OsgError) -> ProblemError:
         return ProblemError(503, "model_missing", str(error))
     if isinstance(error, LanguageError):
         return ProblemError(422, "language_invalid", str(error), pointer=error.pointer)
+    if isinstance(error, AmbiguousRangeError):
+        return ProblemError(422, "take_ambiguous", str(error))
+    if isinstance(error, RangeError):
+        return ProblemError(422, "range_empty", str(error), pointer=error.pointer)
     codes: dict[type, str] = {
         GestureError: "gesture_unusable",
         VideoError: "video_unreadable",

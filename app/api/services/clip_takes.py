@@ -1,16 +1,12 @@
-"""Clip takes: those between a language's triggers or spotted, and the one that a range means."""
+"""Clip takes: finds the takes of a clip between a language's triggers, or by spotting."""
 
 from __future__ import annotations
 
 from functools import lru_cache
 
-from app.api.http.problems import ProblemError
 from app.api.http.schemas.clips import TakeView
 from app.api.services.running_studio import RecordingFile, Studio, load_recording
 from app.recognition import Language, OsgError, Recognizer
-from app.recognition.errors import AmbiguousRangeError, RangeError
-from app.recognition.recording.clip_range import ClipRange, find_clip_range
-from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import takes_in
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -55,31 +51,6 @@ def find_takes(
     else:
         takes = _segment(recording, trigger)
     return takes if recording.whole else tuple(take for take in takes if take.closed)
-
-
-def clip_range_in(
-    recording: Recording,
-    start: float | None = None,
-    end: float | None = None,
-    *,
-    keep_transit: bool = False,
-    trigger: Trigger = SALUTE,
-) -> ClipRange:
-    """Find the part of a clip that is meant by a first and last second; see `find_clip_range`.
-
-    Raises
-    ------
-    ProblemError
-        422 when the range is empty or reversed, or no range is given and there are several takes.
-
-    """
-    try:
-        return find_clip_range(recording, start, end, keep_transit=keep_transit, trigger=trigger)
-    except AmbiguousRangeError as error:
-        raise ProblemError(422, "take_ambiguous", str(error)) from error
-    except RangeError as error:
-        pointer = "/start" if start is not None else "/end"
-        raise ProblemError(422, "range_empty", str(error), pointer=pointer) from error
 
 
 @lru_cache(CACHED_CLIPS)

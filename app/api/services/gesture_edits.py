@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from app.api.http.problems import ProblemError
+from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas.gestures import (
     DemonstrationDraft,
     GestureChange,
     GestureDraft,
     NewDemonstration,
 )
-from app.api.services.clip_takes import clip_range_in
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, GestureError, Language, PoseError, PoseSequence
+from app.recognition.errors import RangeError
 from app.recognition.gestures.switches import Switches
 from app.recognition.poses.trajectory import Trajectory
 from app.recognition.preprocessing.repair import repair_poses
-from app.recognition.recording.clip_range import ClipRange
+from app.recognition.recording.clip_range import ClipRange, find_clip_range
 from app.recognition.text.look_alikes import find_confusable
 from app.recognition.triggers.trigger import SALUTE, Trigger
 from app.store import DemonstrationSource
@@ -40,11 +40,13 @@ def demonstration_at(
     NotFound
         When there is no such clip.
     ProblemError
-        409 while its poses are not extracted, 422 as `clip_range_in`.
+        409 while its poses are not extracted.
+    RangeError
+        As `find_clip_range`.
 
     """
     recording = studio.recording(where.clip_id)
-    return clip_range_in(
+    return find_clip_range(
         recording, where.start, where.end, keep_transit=where.keep_transit, trigger=trigger
     )
 
@@ -88,15 +90,15 @@ def gestures_from(
         try:
             demonstration = demonstration_at(studio, draft, trigger)
             made.append((gesture_from(draft, demonstration), demonstration))
-        except ProblemError as error:
-            raise _refusal(error.status_code, error.code, index, draft, error.detail) from error
-        except GestureError as error:
-            raise _refusal(422, "gesture_unusable", index, draft, str(error)) from error
+        except (ProblemError, GestureError, RangeError) as error:
+            problem = problem_of(error)
+            raise ProblemError(
+                problem.status_code,
+                problem.code,
+                f"{draft.label}: {problem.detail}",
+                pointer=f"/gestures/{index}",
+            ) from error
     return made
-
-
-def _refusal(status: int, code: str, index: int, draft: GestureDraft, reason: str) -> ProblemError:
-    return ProblemError(status, code, f"{draft.label}: {reason}", pointer=f"/gestures/{index}")
 
 
 def add_gestures_to(language: Language, gestures: Sequence[Gesture]) -> Language:

@@ -10,7 +10,6 @@ from typing import Any
 from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import clip_range_in
 from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
@@ -22,7 +21,7 @@ from app.recognition.explanation.counterfactuals import Counterfactual, Interven
 from app.recognition.language.file_schema import TuningEntry
 from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
-from app.recognition.recording.clip_range import find_surroundings
+from app.recognition.recording.clip_range import find_clip_range, find_surroundings
 
 
 def recognize_range(
@@ -33,7 +32,7 @@ def recognize_range(
     Raises
     ------
     NotFound, ProblemError, OsgError
-        As `Studio.recording`, `clip_range_in`, `require_landmarks_of` and `make_recognizer`.
+        As `Studio.recording`, `find_clip_range`, `require_landmarks_of` and `make_recognizer`.
     QuotaExceeded
         When the sender may not keep another recognition.
 
@@ -45,7 +44,7 @@ def recognize_range(
         recording = studio.recording(wanted.clip_id)  # refused while these frames are being read
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
-    meant = clip_range_in(recording, wanted.start, wanted.end, trigger=language.trigger)
+    meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
     recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial)
     answer = recognizer.recognize(meant.poses).to_dict()
     if wanted.tuning is not None:
@@ -89,7 +88,7 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
     language = recognizer.language
     return RecognitionContext(
         recognizer=recognizer,
-        poses=clip_range_in(recording, record.start, record.end, trigger=language.trigger).poses,
+        poses=find_clip_range(recording, record.start, record.end, trigger=language.trigger).poses,
         whole=find_surroundings(recording, record.start, record.end, language.trigger),
         known=tuple(load_known(studio, record.language_id, recognizer, but=record.clip_id)),
         faults=faults_of_language(studio, language, find_sources(studio, language)),

@@ -11,13 +11,14 @@ from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas import test_sets as schemas
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
-from app.api.services.clip_takes import clip_range_in, find_takes
+from app.api.services.clip_takes import find_takes
 from app.api.services.demonstration_sources import list_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
+from app.recognition.recording.clip_range import find_clip_range
 
 SAME_TAKE = 0.5
 """Share of a take that a demonstration must cover to count as the same."""
@@ -185,7 +186,7 @@ def _ranges(
             yield float(recording.poses.time[0]), float(recording.poses.time[-1])
         return
     trigger = studio.language(state).trigger
-    meant = clip_range_in(recording, draft.start, draft.end, trigger=trigger)
+    meant = find_clip_range(recording, draft.start, draft.end, trigger=trigger)
     yield (
         meant.start if draft.start is None else draft.start,
         meant.end if draft.end is None else draft.end,

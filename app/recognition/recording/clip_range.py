@@ -76,7 +76,8 @@ def find_clip_range(
     if last <= first or not len(inside):
         raise RangeError(
             f"no frames lie between {first:g} s and {last:g} s; the clip goes from "
-            f"{poses.time[0]:g} s to {poses.time[-1]:g} s"
+            f"{poses.time[0]:g} s to {poses.time[-1]:g} s",
+            "/end" if start is None else "/start",
         )
     return ClipRange(first, last, inside)
 

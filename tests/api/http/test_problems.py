@@ -10,11 +10,13 @@ from fastapi.routing import APIRoute
 
 from app.api.http.problems import problem_of
 from app.recognition.errors import (
+    AmbiguousRangeError,
     GestureError,
     LanguageError,
     ModelError,
     OsgError,
     PoseError,
+    RangeError,
     VideoError,
 )
 from app.server import create_app
@@ -42,6 +44,8 @@ def operations(app: FastAPI) -> list[tuple[str, str]]:
         (PoseError("x"), 422, "poses_unusable"),
         (VideoError("x"), 422, "video_unreadable"),
         (LanguageError("x", "/name"), 422, "language_invalid"),
+        (AmbiguousRangeError("x"), 422, "take_ambiguous"),
+        (RangeError("x", "/start"), 422, "range_empty"),
         (OsgError("x"), 422, "recognition"),
         (ModelError("x"), 503, "model_missing"),
         (OSError(errno.ENOSPC, "No space left on device", "/secret"), 507, "disk_full"),
