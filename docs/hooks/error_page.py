@@ -88,11 +88,12 @@ def problem_codes() -> str:
         raise PluginError(f"problem codes without meaning, or no longer used: {sorted(unmatched)}")
     return table(
         ["code", "status", "meaning"],
-        [(f"`{code}`", str(raised[code]), cell(MEANINGS[code])) for code in sorted(raised)],
+        [(f"`{code}`", raised[code], cell(MEANINGS[code])) for code in sorted(raised)],
     )
 
 
-def _raised() -> Iterator[tuple[str, int]]:
+def _raised() -> Iterator[tuple[str, str]]:
+    """Yield each code with its status, or with both where a condition chooses one."""
     for path in sorted(Path(app.api.__path__[0]).rglob("*.py")):
         for call in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             match call:
@@ -100,7 +101,18 @@ def _raised() -> Iterator[tuple[str, int]]:
                     func=ast.Name(id="ProblemError"),
                     args=[ast.Constant(value=int(status)), ast.Constant(value=str(code)), *_],
                 ):
-                    yield code, status
+                    yield code, str(status)
+                case ast.Call(
+                    func=ast.Name(id="ProblemError"),
+                    args=[
+                        ast.IfExp(
+                            body=ast.Constant(value=int(one)), orelse=ast.Constant(value=int(other))
+                        ),
+                        ast.Constant(value=str(code)),
+                        *_,
+                    ],
+                ):
+                    yield code, f"{one} or {other}"
 
 
 def _tree(kind: type[Exception], depth: int) -> Iterator[tuple[str, str]]:

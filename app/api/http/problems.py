@@ -222,8 +222,8 @@ def _convert_store_error(error: store.StoreError) -> ProblemError:
 
 
 def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
-    problem = ProblemError(
-        507,
+    return ProblemError(
+        413 if error.alone else 507,  # Alone: no deletion helps.
         "quota_exceeded",
         str(error),
         # The rest of a body stays unread, so the connection cannot be used again.
@@ -231,9 +231,6 @@ def _convert_quota(error: store.QuotaExceeded) -> ProblemError:
         used={"clips": error.usage.clips, "bytes": error.usage.bytes},
         limit=error.limit,
     )
-    if error.alone:  # No deletion helps.
-        problem.status_code = 413
-    return problem
 
 
 def _convert_recognition_error(error: OsgError) -> ProblemError:
