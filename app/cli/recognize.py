@@ -24,6 +24,7 @@ from app.recognition.gestures.profile import PROFILES
 from app.recognition.recording.chapters import tell_chapters
 from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.spotting import Spotter
+from app.recognition.text.wording import ask_twins
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
 from app.recognition.triggers.trigger import SALUTE
 
@@ -74,6 +75,8 @@ def recognize(
     if expected is not None:
         loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
     recognizer = Recognizer(loaded, profile)
+    for twins in recognizer.undecided_twins:
+        tell(ask_twins(twins))
     spots = without_salutes or loaded.trigger.spots
     spotter = Spotter(recognizer, triggered=not without_salutes) if spots else None
     reading = replace(reading, topic=topic)

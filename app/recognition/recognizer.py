@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Protocol
 
@@ -55,6 +55,10 @@ class Vote(Protocol):
     @property
     def shape_twins(self) -> frozenset[tuple[int, int]]:
         """Pairs of gestures, the first index the smaller, that the hand shape alone tells apart."""
+
+    @property
+    def undecided_twins(self) -> frozenset[tuple[int, int]]:
+        """Pairs that it would tell apart, if the author said that their hands are meant."""
 
     def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a condensed query with every gesture, voter by voter."""
@@ -234,7 +238,7 @@ class Recognizer:
         if np.isfinite(table.distances[rows, at]).all():
             return None
         unseen = "no hand is seen for long enough that keeps a shape"
-        if twins := self._list_twins(at):
+        if twins := self._list_others(self.vote.shape_twins, at):
             names = " and ".join(map(repr, (nearest, *twins)))
             words = (
                 f"{names} are the same movement, told apart by the hand shape, and {unseen}: show "
@@ -244,11 +248,34 @@ class Recognizer:
             words = f"the hand shape of {nearest!r} counts, and {unseen}: show the hand"
         return QualityFault("unseen_hand", words)
 
-    def _list_twins(self, gesture: int) -> list[str]:
-        """Return the labels of the gestures that differ from the given one in hand shape only."""
-        pairs = sorted(pair for pair in self.vote.shape_twins if gesture in pair)
-        others = [other for pair in pairs for other in pair if other != gesture]
-        return [self.language.labels[other] for other in others]
+    def _list_others(self, pairs: Set[tuple[int, int]], gesture: int) -> list[str]:
+        """Return the labels of the gestures that are in a pair with the given one."""
+        others = {other for pair in pairs if gesture in pair for other in pair} - {gesture}
+        return [self.language.labels[other] for other in sorted(others)]
+
+    @property
+    def undecided_twins(self) -> tuple[tuple[str, str], ...]:
+        """Gestures of nearly the same movement, shown with different hands.
+
+        Nobody has said whether that is on purpose: their switch `hand_shape` is automatic. Until
+        then the hands do not count, and a robot asks back for both (`ask_undecided`).
+        """
+        labels, pairs = self.language.labels, sorted(self.vote.undecided_twins)
+        return tuple((labels[one], labels[other]) for one, other in pairs)
+
+    def ask_undecided(self, result: Recognition) -> Recognition:
+        """Return a pair in place of a label that is one of `undecided_twins`.
+
+        Of several others the nearest is named.
+        """
+        if result.label is None:
+            return result
+        labels = self.language.labels
+        others = self._list_others(self.vote.undecided_twins, labels.index(result.label))
+        if not others:
+            return result
+        other = min(others, key=lambda label: float(result.scores[labels.index(label)]))
+        return result.model_copy(update={"label": None, "pair": (result.label, other)})
 
     def query(self, poses: PoseSequence) -> Trajectory:
         """Return the trajectory that voters compare: repaired if the profile does, and normalised.

@@ -217,6 +217,8 @@ class LanguageChanged(Event):
     """The voters that recognise it."""
     tuning: str
     """What differs from that, in words: "recognised ..."."""
+    undecided_twins: tuple[tuple[str, str], ...] = ()
+    """Gestures of nearly the same movement with different hands; the robot asks back for both."""
     code: str = field(init=False, default="")
     """Short code of `sha256`, which the studio shows too."""
 

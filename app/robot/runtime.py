@@ -327,4 +327,5 @@ def build_language_changed(time: float, language: ActiveLanguage) -> events.Lang
         gestures=recognizer.language.labels,
         profile=recognizer.profile,
         tuning=recognizer.tuning.words,
+        undecided_twins=recognizer.undecided_twins,
     )

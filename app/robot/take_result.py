@@ -40,6 +40,7 @@ def judge_recognition(
     language: ActiveLanguage, recognition: Recognition, time: float, start: float, end: float
 ) -> TakeEvent:
     """Build the event of a recognition from `start` to `end`: recognised, a pair, or rejected."""
+    recognition = language.recognizer.ask_undecided(recognition)
     about: dict[str, Any] = {"time": time, "start": start, "end": end, "recognition": recognition}
     if recognition.label is None:
         reason = explain_rejection(language, recognition)

@@ -13,6 +13,7 @@ from typing import Final, Literal, Protocol, TextIO
 
 from app.recognition.errors import OsgError
 from app.recognition.estimation import FrameLandmarks
+from app.recognition.text.wording import ask_twins
 from app.robot import ActiveLanguage, Frame, events
 from app.robot.commands.answers import Answer
 from app.robot.event_messages import format_line
@@ -218,6 +219,7 @@ def _describe_state(event: events.Event) -> str:
             return (
                 f"listening for {event.name!r}, revision {event.revision}, code {event.code}: "
                 f"{', '.join(event.gestures)} (profile {event.profile}, {event.tuning})"
+                + "".join(f". {ask_twins(twins)}" for twins in event.undecided_twins)
             )
         case events.SourceOpened(source=source, frame_size=(width, height)):
             return f"watching {source}, {width} x {height} pixels"

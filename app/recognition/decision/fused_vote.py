@@ -175,6 +175,11 @@ class FusedVote:
         return self._moving.twins
 
     @property
+    def undecided_twins(self) -> frozenset[tuple[int, int]]:
+        """Pairs that it would tell apart, if the author said that their hands are meant."""
+        return self._moving.undecided
+
+    @property
     def landmarks(self) -> tuple[str, ...]:
         """The salient landmarks of all gestures, in alphabetical order."""
         return self.references.landmarks

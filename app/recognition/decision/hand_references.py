@@ -192,6 +192,8 @@ class MovingReferences:
     twins
         Pairs of gestures, the first index the smaller, that are the same movement with two shapes
         that both count.
+    undecided
+        Pairs that would be twins: their hands differ clearly, and nobody has said on purpose.
 
     """
 
@@ -199,6 +201,7 @@ class MovingReferences:
     owners: npt.NDArray[np.intp]
     counting: npt.NDArray[np.bool_]
     twins: frozenset[tuple[int, int]] = frozenset()
+    undecided: frozenset[tuple[int, int]] = frozenset()
 
     @classmethod
     def of(
@@ -206,9 +209,11 @@ class MovingReferences:
     ) -> MovingReferences:
         """Return the shapes of S demonstrations, and find which of them count.
 
-        Those count whose switch is on, and automatically those that distinguish twins: two gestures
-        of the same movement whose hand shapes differ clearly, also in the demonstrations that are
-        nearest to each other.
+        Divers draw with any hand, and one demonstration does not tell whether its hand is meant
+        (`benchmarks/studies/voters.md`). So those shapes count whose switch is on, and
+        automatically those of two gestures of the same movement that several demonstrations of
+        both show alike, and clearly otherwise than the other gesture. With single demonstrations
+        such a pair is undecided.
 
         Parameters
         ----------
@@ -227,16 +232,22 @@ class MovingReferences:
         if known.sum() < 2:
             return cls(shapes, owners, counting)
         apart = np.array([[measure_shapes(one, other) for other in shapes] for one in shapes])
-        twins = set()
-        for one, other in combinations(range(int(owners.max()) + 1), 2):
-            pair = np.ix_(owners == one, owners == other)
+        rows = [owners == owner for owner in range(int(owners.max()) + 1)]
+        found = set()
+        for one, other in combinations(range(len(rows)), 2):
+            pair = np.ix_(rows[one], rows[other])
             alike = min(movements[pair].min(), movements.T[pair].min()) < SAME_MOVEMENT
             if alike and OTHER_SHAPE < apart[pair].min() < np.inf:
-                twins.add((one, other))
-        with_twin = np.isin(owners, [owner for pair in twins for owner in pair])
-        counting |= known & with_twin & (switches == "auto")
-        both = {pair for pair in twins if set(pair) <= set(owners[counting].tolist())}
-        return cls(shapes, owners, counting, frozenset(both))
+                found.add((one, other))
+        agreeing = [_agree(apart, known & each & (switches != "off")) for each in rows]
+        for one, other in found:
+            if agreeing[one] and agreeing[other]:
+                counting |= known & (rows[one] | rows[other])
+        counts = [bool(counting[each].any()) for each in rows]
+        open_to_all = [bool((switches[each] == "off").any()) for each in rows]
+        twins = {(one, other) for one, other in found if counts[one] and counts[other]}
+        undecided = {pair for pair in found - twins if not any(open_to_all[each] for each in pair)}
+        return cls(shapes, owners, counting, frozenset(twins), frozenset(undecided))
 
     @cached_property
     def any_counts(self) -> bool:
@@ -348,6 +359,12 @@ def _measure_turned(seen: HandShape, shown: HandShape) -> FloatArray:
             for voter in HAND_VOTERS
         ]
     )
+
+
+def _agree(apart: FloatArray, members: npt.NDArray[np.bool_]) -> bool:
+    """Return whether several demonstrations show one shape; `apart` is ``(S, S)``."""
+    shown = np.flatnonzero(members)
+    return len(shown) > 1 and bool(apart[np.ix_(shown, shown)].max() <= OTHER_SHAPE)
 
 
 def _find_shapes(gesture: Gesture) -> MovingShapes:

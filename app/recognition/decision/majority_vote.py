@@ -73,6 +73,8 @@ class MajorityVote:
         """No pairs, because hands are not compared."""
         return frozenset()
 
+    undecided_twins = shape_twins
+
     def sensitivity(self, gesture: int) -> Sensitivity | None:
         """Return None: only drawings are compared, whatever the switches are."""
         return None

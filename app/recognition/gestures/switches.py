@@ -28,7 +28,8 @@ class Switches:
         ``auto`` accepts unless they mean another gesture of the language.
     hand_shape
         Whether the shape of the moving hand counts. ``auto``: if another gesture of the language
-        is the same movement with a clearly different hand shape. A held hand shape always counts.
+        is the same movement, and several demonstrations of each show one clearly different hand
+        shape. A held hand shape always counts.
 
     Raises
     ------
@@ -145,7 +146,7 @@ def _describe_hand_shape(switches: Switches, counting: Sensitivity) -> str:
     if counting.hand_shape:
         if switches.hand_shape == "on":
             return "the hand must be seen and have this shape while it moves"
-        return "the hand shape counts: another gesture is the same movement with another hand shape"
+        return "the hand shape counts: several takes show it, and another one for the same movement"
     if switches.hand_shape == "on":
         return "no hand is seen in the demonstration that keeps a shape: it cannot count"
     return "the hand may have any shape"

@@ -8,6 +8,7 @@ from itertools import count
 
 import numpy as np
 
+from app.recognition.features.hand_image import draw_hands
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.health.ambiguity import find_ambiguities
@@ -33,6 +34,7 @@ from app.recognition.poses.sequence import FloatArray
 from app.recognition.preprocessing.salience import measure_displacements
 from app.recognition.recognizer import Recognizer
 from app.recognition.text.look_alikes import are_confusable, list_look_alikes
+from app.recognition.text.wording import ask_twins
 
 MOST_MISSED = 0.5
 """Share of other people's demonstrations that are not read right from which it is an error."""
@@ -86,7 +88,7 @@ def check_health(
     gestures = tuple(_describe_gestures(recognizer, distances))
     findings = [
         *find_forecast_findings(language, forecast),
-        *_duplicate_findings(language, distances),
+        *_duplicate_findings(recognizer, distances),
         *_demonstration_findings(language),
         *_twin_findings(recognizer),
         *find_blind_angles(recognizer, _count_steps(progress, "turned divers", 0)),
@@ -187,10 +189,16 @@ def find_forecast_findings(language: Language, forecast: Forecast) -> Iterator[F
         )
 
 
-def _duplicate_findings(language: Language, distances: FloatArray) -> Iterator[Finding]:
-    """Yield a finding for every two gestures whose demonstrations are the same, nearest first."""
+def _duplicate_findings(recognizer: Recognizer, distances: FloatArray) -> Iterator[Finding]:
+    """Yield a finding for every two gestures whose demonstrations are the same, nearest first.
+
+    None for undecided twins, whose author is asked first.
+    """
+    language = recognizer.language
     shapes = [len(gesture.held_shapes) for gesture in language.gestures]
     apart = (distances + distances.T) / 2
+    for pair in recognizer.vote.undecided_twins:
+        apart[pair] = np.inf
     pairs = np.argwhere(np.triu(apart < DUPLICATE, 1))
     pairs = pairs[np.argsort(apart[tuple(pairs.T)], kind="stable")]
     for first, second in pairs[:MOST_DUPLICATES].tolist():
@@ -213,7 +221,16 @@ def _demonstration_findings(language: Language) -> Iterator[Finding]:
 
 
 def _twin_findings(recognizer: Recognizer) -> Iterator[Finding]:
-    """Yield a note for every two gestures that the hand shape alone tells apart."""
+    """Yield the pairs that the hand shape alone tells apart, or would if that were on purpose."""
+    for twins in recognizer.undecided_twins:
+        shown = [recognizer.language.gesture(label).trajectory for label in twins]
+        yield Finding(
+            "hand_shape_undecided",
+            twins,
+            ask_twins(twins),
+            error=True,
+            drawings=tuple(draw_hands(each.moving_hands) for each in shown if each is not None),
+        )
     labels = recognizer.language.labels
     for pair in sorted(recognizer.vote.shape_twins):
         first, second = (labels[index] for index in pair)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
+from app.recognition.features.contour import BinaryImage
+from app.recognition.features.png import encode_png
 from app.recognition.gestures.demonstration import MAX_MOMENTS
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
@@ -42,6 +45,7 @@ FindingKind = Literal[
     "duplicate",
     "empty",
     "hand_shape_only",
+    "hand_shape_undecided",
     "hand_unseen",
     "known_sign",
     "look_alike",
@@ -82,6 +86,8 @@ class Finding:
         What is wrong and why that matters, in one sentence or two.
     error
         Whether it is an error and not a note.
+    drawings
+        One of each gesture where the message does not tell enough; otherwise none.
 
     """
 
@@ -89,10 +95,16 @@ class Finding:
     gestures: tuple[str, ...]
     message: str
     error: bool = False
+    drawings: tuple[BinaryImage, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types; with `below_bar`, as version 0.2 called `error`."""
-        return vars(self) | {"gestures": list(self.gestures), "below_bar": self.error}
+        """Return plain JSON types, drawings as data URIs; `below_bar`: `error` in version 0.2."""
+        pngs = [b64encode(encode_png(each)).decode("ascii") for each in self.drawings]
+        return vars(self) | {
+            "gestures": list(self.gestures),
+            "below_bar": self.error,
+            "drawings": [f"data:image/png;base64,{png}" for png in pngs],
+        }
 
 
 def check_demonstration(gesture: Gesture, *, salutes: bool = True) -> Iterator[Finding]:

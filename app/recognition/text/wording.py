@@ -23,6 +23,14 @@ def list_some(items: Sequence[str], most: int) -> str:
     return ", ".join(items[:most]) + more
 
 
+def ask_twins(labels: Sequence[str]) -> str:
+    """Return the question whether the hands of two gestures are meant, and what it costs."""
+    return (
+        f"{join_words(labels)} are nearly the same movement, shown with different hands. "
+        "On purpose? Until the switch hand shape of both is on or off, the robot asks back for both"
+    )
+
+
 def ask_which(labels: Sequence[str]) -> str:
     """Return the question which gesture was meant: "circle or square?"."""
     return f"{join_words(labels, last='or')}?"

@@ -2,13 +2,14 @@
 
 Takes are composed (`benchmarks.sets.moving_signs`) of recorded movements of several people and of
 recorded hands of one. A language holds five movements; one of them is two gestures, with two hand
-shapes, each demonstrated once. Queries show the movement of the two with one of the shapes, by the
-person of the demonstrations or by another one, with the hand in the demonstrated view (another take
-of its run) or in another one; with a third shape (*foreign*); and without hands. *Switch off* is
-the same language with the hand shape of the two switched off: what the movement alone tells.
+shapes, each demonstrated once and with the switch `hand_shape` on. Queries show the movement of the
+two with one of the shapes, by the person of the demonstrations or by another one, with the hand in
+the demonstrated view (another take of its run) or in another one; with a third shape (*foreign*);
+and without hands. *Switch off* is the same language with the hand shape of the two switched off:
+what the movement alone tells.
 
-The language without the second of the two has no twins: there every answer, with every distance,
-must be that of the same take without hands. The interval is Wilson's.
+With the switches as they are by themselves every answer, with every distance, must be that of the
+same take without hands, and the author is asked about the two. The interval is Wilson's.
 """
 
 from __future__ import annotations
@@ -45,8 +46,8 @@ class Answer:
         Whose movement and which view of the hand, ``foreign``, ``no hand`` or ``switch off``.
     signs
         Signs of the two gestures.
-    found
-        Whether the switch ``auto`` made the hand shape count.
+    asked
+        Whether the author is asked about the two where the switch is ``auto``.
     right
         Whether the expected gesture is nearest; for a foreign shape or no hands, whether one of the
         two is.
@@ -57,7 +58,7 @@ class Answer:
 
     relation: str
     signs: tuple[str, str]
-    found: bool
+    asked: bool
     right: bool
     accepted: bool
 
@@ -140,11 +141,12 @@ def answer(composer: Composer, drawn: Draw, queries: int) -> Iterator[Answer]:
     """Recognise takes of the two gestures."""
     recorded, signs, random = composer.recorded, composer.signs, composer.random
     gestures = drawn.gestures()
-    recognizer = Recognizer(Language("twins", gestures))
+    by_hand = [replace(each, switches=Switches(hand_shape="on")) for each in gestures[:2]]
+    recognizer = Recognizer(Language("twins", [*by_hand, *gestures[2:]]))
     without = [replace(each, switches=Switches(hand_shape="off")) for each in gestures]
     off = Recognizer(Language("off", without))
     pair = (drawn.labels[0], drawn.labels[1])
-    found = _counts(recognizer, pair[0])
+    asked = pair in Recognizer(Language("asked", gestures)).undecided_twins
     moved = recorded.labels == recorded.labels[drawn.movements[0]]
     moved[list(drawn.movements)] = False
     own = recorded.people == drawn.person
@@ -162,18 +164,18 @@ def answer(composer: Composer, drawn: Draw, queries: int) -> Iterator[Answer]:
                 )
                 label, nearest = _recognize(recognizer, poses)
                 yield Answer(
-                    f"{who}, {view}", pair, found, nearest == pair[meant], label is not None
+                    f"{who}, {view}", pair, asked, nearest == pair[meant], label is not None
                 )
                 label, nearest = _recognize(off, poses)
-                yield Answer("switch off", pair, found, nearest == pair[meant], label is not None)
+                yield Answer("switch off", pair, asked, nearest == pair[meant], label is not None)
             blind = replace(poses, hands=None)
             label, nearest = _recognize(recognizer, blind)
-            yield Answer("no hand", pair, found, nearest in pair, label is not None)
+            yield Answer("no hand", pair, asked, nearest in pair, label is not None)
             foreign = composer.compose(
                 composer.choose(moved & people), composer.choose(_find_foreign(signs, pair))
             )
             label, nearest = _recognize(recognizer, foreign)
-            yield Answer("foreign", pair, found, nearest in pair, label is not None)
+            yield Answer("foreign", pair, asked, nearest in pair, label is not None)
 
 
 def _find_foreign(signs: HeldSigns, pair: tuple[str, str]) -> npt.NDArray[np.bool_]:
@@ -187,18 +189,13 @@ def _recognize(recognizer: Recognizer, poses: PoseSequence) -> tuple[str | None,
     return None if result.outcome == "rejected" else result.nearest, result.nearest
 
 
-def count_same(composer: Composer, drawn: Draw, queries: int) -> Share | None:
-    """Count the answers of the language without twins that are the same with and without hands.
-
-    None where a hand shape counts, because two of the movements are alike.
-    """
+def count_same(composer: Composer, drawn: Draw, queries: int) -> Share:
+    """Count the answers that are the same with and without hands, with automatic switches."""
     recorded, random = composer.recorded, composer.random
     recognizer, other = (
-        Recognizer(Language("without twins", gestures[:1] + gestures[2:]))
+        Recognizer(Language("by movement", gestures))
         for gestures in (drawn.gestures(), drawn.gestures(with_hands=False))
     )
-    if any(_counts(recognizer, label) for label in recognizer.language.labels):
-        return None
     same = Share(0, 0)
     for _ in range(queries):
         poses = composer.compose(
@@ -208,12 +205,6 @@ def count_same(composer: Composer, drawn: Draw, queries: int) -> Share | None:
         one = recognizer.recognize(poses).to_dict()
         same += Share(int(one == other.recognize(replace(poses, hands=None)).to_dict()), 1)
     return same
-
-
-def _counts(recognizer: Recognizer, label: str) -> bool:
-    """Return whether the hand shape of a gesture counts in its language."""
-    counting = recognizer.sensitivity(label)
-    return counting is not None and counting.hand_shape
 
 
 def report(answers: Sequence[Answer], languages: dict[str, Share]) -> Iterator[str]:
@@ -251,7 +242,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     signs = read_held_signs(given.folder / "trajectories")
     random = np.random.default_rng(given.seed)
     answers: list[Answer] = []
-    counted, same, alike = Share(0, 0), Share(0, 0), Share(0, 0)
+    asked, same = Share(0, 0), Share(0, 0)
     for recorded in recorded_sets(given.folder / "trajectories", given.sets):
         composer = Composer(recorded, signs, random)
         for _ in range(given.draws):
@@ -259,15 +250,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
             while drawn is None:
                 drawn = draw(composer)
             own = [*answer(composer, drawn, given.queries)]
-            counted += Share(int(own[0].found), 1)
+            asked += Share(int(own[0].asked), 1)
             answers += own
-            unchanged = count_same(composer, drawn, given.queries)
-            alike += Share(int(unchanged is None), 1)
-            same += unchanged or Share(0, 0)
+            same += count_same(composer, drawn, given.queries)
     languages = {
-        "languages in which the two shapes count without being switched on": counted,
-        "languages without twins in which a shape counts": alike,
-        "answers of the others that are the same, to the last digit, without hands": same,
+        "languages whose author is asked about the two": asked,
+        "answers that are the same, to the last digit, without hands": same,
     }
     for line in report(answers, languages):
         print(line)

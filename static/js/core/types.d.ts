@@ -151,6 +151,8 @@ export interface Finding {
   gestures: string[];
   message: string;
   error: boolean;
+  /** Data URIs, one of each gesture, or none. */
+  drawings: string[];
 }
 
 /** What takes are read as; all null where nothing can be foretold. */

@@ -51,7 +51,7 @@ const SWITCHES = [
     name: "hand_shape",
     title: "Hand shape",
     words: {
-      auto: "Used where the language needs it",
+      auto: "Used where several demonstrations agree on it",
       on: "Only with the demonstrated hand shape",
       off: "With any hand shape",
     },

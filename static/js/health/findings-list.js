@@ -1,6 +1,9 @@
 // The findings, the worst first, each with links to where it can be mended.
 
+import * as api from "../core/api.js";
 import { state, update } from "../core/state.js";
+import { attempt } from "../core/toasts.js";
+import { edit } from "../languages/revision-edit.js";
 import { html, nothing } from "../templates.js";
 import { go } from "../core/views.js";
 import { compare, editLink } from "./finding-links.js";
@@ -11,13 +14,55 @@ import { changeButton } from "./replacements.js";
 const AT_FIRST = 5; // Findings shown before the table and the map; the worst come first.
 
 /**
+ * Set the switch of the hand shape for both gestures, as one edit.
+ *
+ * @param {string[]} labels
+ * @param {"on" | "off"} position
+ */
+const decideHands = (labels, position) =>
+  attempt("Changing the switch", () =>
+    edit("Changing the switch", `Hand shape of ${labels.join(" and ")} ${position}`, (base) =>
+      labels.reduce(
+        (before, label) =>
+          before.then((language) =>
+            api.languages.changeGesture(language, label, { hand_shape: position }),
+          ),
+        Promise.resolve(base),
+      ),
+    ),
+  );
+
+/**
+ * The answers to the question whether the hands of two gestures are meant.
+ *
+ * @param {string[]} labels
+ */
+const handAnswers = (labels) =>
+  html`<button
+      type="button"
+      data-writes
+      title="The hand shape tells them apart"
+      @click=${() => decideHands(labels, "on")}
+    >
+      Yes</button
+    ><button
+      type="button"
+      data-writes
+      title="Any hand may show them"
+      @click=${() => decideHands(labels, "off")}
+    >
+      No
+    </button>`;
+
+/**
  * @param {Finding} finding
  * @param {boolean} compared whether its gestures stand side by side already
  */
-function finding({ kind, gestures, message, error }, compared) {
+function finding({ kind, gestures, message, error, drawings }, compared) {
   const [one, other] = gestures;
   const two = gestures.length === 2 && !compared;
   const links = [
+    kind === "hand_shape_undecided" ? handAnswers(gestures) : nothing,
     kind.startsWith("phrases_")
       ? html`<button type="button" @click=${() => go("phrases")}>To the phrases</button>`
       : nothing,
@@ -31,6 +76,21 @@ function finding({ kind, gestures, message, error }, compared) {
     <span class="mark" aria-hidden="true">${error ? "!" : "i"}</span>
     <div class="finding-text">
       <p><b>${error ? "Error: " : "Note: "}</b>${message}</p>
+      ${
+        drawings.length
+          ? html`<div class="finding-drawings">
+              ${drawings.map(
+                (drawing, index) =>
+                  html`<img
+                    src=${drawing}
+                    alt="Hand of ${gestures[index]}"
+                    width="96"
+                    height="96"
+                  />`,
+              )}
+            </div>`
+          : nothing
+      }
       <div class="finding-links">${links}</div>
     </div>
   </li>`;

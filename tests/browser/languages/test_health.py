@@ -11,12 +11,15 @@ import httpx
 import pytest
 from playwright.sync_api import Locator, Page, Request, Route, expect
 
+from app.recognition import Gesture, Language
 from tests.api.running import Running, client_of, until
 from tests.browser.accessibility import faults
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
 from tests.browser.library import Library, add_clip, library_of
 from tests.recognition.demonstrations import shown_by, with_wrong_take
+from tests.recognition.held_takes import FIST, FLAT
+from tests.recognition.moving_takes import circle, draw
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +98,29 @@ def test_what_to_expect_is_measured_among_people_and_the_test_set_stands_first(
         expect(first).to_contain_text("Of the test set")
         expect(first).to_contain_text("of 1 takes are read right")
         expect(known_of(page).get_by_role("columnheader", name="Test set")).to_be_visible()
+
+
+def test_the_author_answers_whether_the_hands_of_two_gestures_are_meant(
+    open_page: OpenPage, server: Running, picture: Callable[[Page, str], Path]
+) -> None:
+    shown = (("fist", draw(FIST, circle())), ("flat", draw(FLAT, circle(0.42), seed=1)))
+    content = Language(
+        "hands", [Gesture.from_demonstration(label, poses) for label, poses in shown]
+    ).to_json()
+    with client_of(server.address) as client:
+        language = client.post("/api/v1/languages/import?name=hands", content=content).json()["id"]
+        exported = f"/api/v1/languages/{language}/export?format=osg-studio"
+        page = open_page({"view": "health", "language": language}, scene=False)
+        question = page.get_by_role("listitem").filter(has_text="On purpose?")
+        expect(question.get_by_role("img", name="Hand of")).to_have_count(2)
+        assert faults(page) == []
+        picture(page, "hands-undecided")
+        for answer, position in (("Yes", "on"), ("No", "off")):
+            question.get_by_role("button", name=answer, exact=True).click()
+            expect(question).to_have_count(0)
+            assert client.get(exported).text.count(f'"hand_shape":"{position}"') == 2
+            page.keyboard.press("Control+z")
+            expect(question).to_be_visible()
 
 
 def test_of_one_persons_language_nothing_is_foretold(open_page: OpenPage, library: Library) -> None:

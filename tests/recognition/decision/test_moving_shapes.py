@@ -20,7 +20,7 @@ def gesture(label: str, poses: PoseSequence, hand_shape: Switch = "auto") -> Ges
     return replace(made, switches=Switches(hand_shape=hand_shape))
 
 
-def twins(first: Switch = "auto", second: Switch = "auto") -> Language:
+def twins(first: Switch = "on", second: Switch = "on") -> Language:
     return Language(
         "twins",
         [
@@ -54,9 +54,17 @@ def test_a_shape_that_neither_twin_has_is_refused() -> None:
     assert result.novelty_by_view["movement"][result.gestures.index(result.nearest)] < 1
 
 
-def test_the_shape_counts_automatically_for_twins_alone() -> None:
-    language = twins()
-    assert [counts(language, label) for label in language.labels] == [True, True, False]
+@pytest.mark.parametrize(
+    ("switches", "decided"),
+    [(("auto", "auto"), False), (("on", "auto"), False), (("off", "auto"), True)],
+)
+def test_the_shape_of_one_demonstration_counts_only_if_it_is_meant(
+    switches: tuple[Switch, Switch], decided: bool
+) -> None:
+    language = twins(*switches)
+    counting = [counts(language, label) for label in language.labels]
+    assert counting == [*(switch == "on" for switch in switches), False]
+    assert Recognizer(language).undecided_twins == (() if decided else (("fist", "flat"),))
 
 
 def test_without_a_twin_hands_change_nothing() -> None:
@@ -160,7 +168,9 @@ def test_a_second_shape_of_one_gesture_is_as_good_as_the_first() -> None:
 
 def test_the_mirror_image_is_made_with_the_other_hand() -> None:
     language = twins()
-    mirrored = [replace(each, switches=Switches(mirror="on")) for each in language.gestures]
+    mirrored = [
+        replace(each, switches=replace(each.switches, mirror="on")) for each in language.gestures
+    ]
     recognizer = Recognizer(replace(language, gestures=mirrored))
     for shape, label in ((FIST, "fist"), (FLAT, "flat")):
         query = hold(shape, frames=60, moving=circle(0.41), left=True, seed=5)
@@ -193,7 +203,7 @@ def test_profile_paper_compares_no_shape() -> None:
 
 
 def test_a_saved_language_answers_the_same() -> None:
-    language = twins()
+    language = twins("auto", "auto")
     text = language.to_json()
     restored = Language.from_json(text)
     assert restored.to_json() == text

@@ -36,11 +36,70 @@ def take(name: str) -> PoseSequence:
     return only.poses
 
 
+MEANT, ANY = Switches(hand_shape="on"), Switches(hand_shape="off")
+
+
 @pytest.fixture(scope="module")
-def recognizer() -> Recognizer:
+def shown() -> list[Gesture]:
     gestures = [Gesture.from_demonstration(label, take(f"{label}-1")) for label in ("fist", "flat")]
-    gestures.append(Gesture.from_demonstration("corner", draw(FLAT, corner())))
-    return Recognizer(Language("twins", gestures))
+    return [*gestures, Gesture.from_demonstration("corner", draw(FLAT, corner()))]
+
+
+@pytest.fixture(scope="module")
+def recognizer(shown: list[Gesture]) -> Recognizer:
+    fist, flat, other = shown
+    meant = [replace(each, switches=MEANT) for each in (fist, flat)]
+    return Recognizer(Language("twins", [*meant, other]))
+
+
+def test_the_hand_of_one_demonstration_decides_nothing(shown: list[Gesture]) -> None:
+    recognizer = Recognizer(Language("pool", shown))
+    blind = Recognizer(
+        Language("blind", [replace(each, switches=ANY) for each in recognizer.language.gestures])
+    )
+    for name in ("fist-2", "flat-2", "flat-3", "two-2"):
+        seen = recognizer.recognize(take(name))
+        assert seen.to_dict() == blind.recognize(take(name)).to_dict()
+
+
+def test_the_author_is_asked_once_whether_the_hands_are_meant(shown: list[Gesture]) -> None:
+    fist, flat, other = shown
+    asked = Recognizer(Language("pool", shown))
+    assert asked.undecided_twins == (("fist", "flat"),)
+    (finding,) = [
+        each
+        for each in check_health(asked.language).findings
+        if {"fist", "flat"} <= set(each.gestures) and each.kind != "misread"
+    ]
+    assert finding.kind == "hand_shape_undecided"
+    assert finding.error
+    assert "On purpose?" in finding.message
+    assert [each.shape for each in finding.drawings] == [(224, 224)] * 2
+    for answer in (MEANT, ANY):
+        decided = [replace(each, switches=answer) for each in (fist, flat)]
+        assert Recognizer(Language("pool", [*decided, other])).undecided_twins == ()
+
+
+def test_what_may_be_either_of_undecided_twins_is_asked_back(shown: list[Gesture]) -> None:
+    recognizer = Recognizer(Language("pool", shown))
+    result = recognizer.recognize(draw(FLAT, corner(), seed=3))
+    assert recognizer.ask_undecided(result) is result
+    label = result.model_copy(update={"label": "fist", "pair": None})
+    assert recognizer.ask_undecided(label).pair == ("fist", "flat")
+    assert recognizer.ask_undecided(label).label is None
+
+
+def test_the_hands_of_several_demonstrations_that_agree_count(shown: list[Gesture]) -> None:
+    fist, flat, other = shown
+    twice = [fist.with_demonstration(take("fist-2")), flat.with_demonstration(take("flat-2"))]
+    agreed = Recognizer(Language("pool", [*twice, other]))
+    assert agreed.undecided_twins == ()
+    assert agreed.recognize(take("fist-3")).label == "fist"
+    mixed = [fist.with_demonstration(take("fist-2")), flat.with_demonstration(take("two-2"))]
+    once = [twice[0], flat]
+    for gestures in (mixed, once):
+        recognizer = Recognizer(Language("pool", [*gestures, other]))
+        assert recognizer.undecided_twins == (("fist", "flat"),)
 
 
 @pytest.mark.parametrize("diver", [2, 3])

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.recognition import PoseSequence, Recording, takes_in
+from app.cli.robots.channels import describe_event
+from app.recognition import Gesture, Language, PoseSequence, Recording, takes_in
 from app.recognition.recording.live_segmentation import LONGEST_TRIGGER
 from app.recognition.recording.segmentation import LONGEST_TAKE, TakeState
 from app.robot import (
@@ -21,7 +22,11 @@ from app.robot import (
     TriggerListener,
 )
 from app.robot.listeners.stream_order import MOST_LATE
+from app.robot.runtime import build_language_changed
+from app.robot.take_result import judge_recognition
 from tests.api.recordings import RATE, recording_of
+from tests.recognition.held_takes import FIST, FLAT
+from tests.recognition.moving_takes import circle, corner, draw
 from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
 
 SHAPES = ("circle", "line", "circle backwards")
@@ -304,3 +309,22 @@ def test_a_take_is_recognised_by_the_language_at_its_end() -> None:
         emitted += listener.feed(*frame)
     (recognition,) = [event for event in emitted if isinstance(event, TakeRecognized)]
     assert (recognition.label, recognition.revision) == ("line", 2)
+
+
+def test_undecided_twins_are_told_at_the_start_and_asked_back() -> None:
+    circles = [draw(FIST, circle()), draw(FLAT, circle(0.42), seed=1)]
+    shown = [
+        Gesture.from_demonstration(label, poses)
+        for label, poses in zip(("fist", "flat"), circles, strict=True)
+    ]
+    shown.append(Gesture.from_demonstration("corner", draw(FLAT, corner(), seed=2)))
+    language = ActiveLanguage.from_json(Language("pool", shown).to_json())
+    told = build_language_changed(0.0, language)
+    assert told.undecided_twins == (("fist", "flat"),)
+    assert "On purpose?" in describe_event(told)
+    for label, asked in (("fist", ("fist", "flat")), ("flat", ("flat", "fist")), ("corner", None)):
+        found = language.recognizer.recognize(circles[0])
+        read = found.model_copy(update={"label": label, "nearest": label, "pair": None})
+        verdict = judge_recognition(language, read, 9.0, 1.0, 2.0)
+        pair = verdict.pair if isinstance(verdict, TakeRejected) else None
+        assert pair == asked

@@ -5,6 +5,7 @@ from __future__ import annotations
 from std_msgs.msg import Header
 
 from app.recognition.estimation import FrameLandmarks
+from app.recognition.text.wording import ask_twins
 from app.robot import (
     ActiveLanguage,
     Event,
@@ -78,8 +79,10 @@ class GestureTopics:
                 self.recognitions.publish_phrase(event, clock, frame_id)
             case StateChanged() if clock:
                 self.recognitions.publish_state(event, clock, frame_id)
-            case LanguageChanged():
+            case LanguageChanged(undecided_twins=undecided):
                 self.recognitions.publish_language(language)
+                for twins in undecided:
+                    self._node.report_problem(ask_twins(twins))
             case LanguageRefused() | SourceLost() | SourceWarned() | OutputFailed():
                 self._node.report_problem(event.reason)
             case FrameRateChanged(sufficient=False):
