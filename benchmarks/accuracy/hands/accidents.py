@@ -6,7 +6,7 @@ is the share of gestures for which the property counts. *By accident* is the sam
 meant: the two gestures of a language are the same gesture, shown by two people. For `wrist_bend` it
 is the voter's weight, for salient keypoints whether the two people's differ.
 
-    python -m benchmarks.accuracy.accidents ../shared/data
+    python -m benchmarks.accuracy.hands.accidents ../shared/data
 """
 
 from __future__ import annotations
