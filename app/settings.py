@@ -231,15 +231,14 @@ class Settings(BaseSettings):
 
     @model_validator(mode="before")
     @classmethod
-    def _take_single_limits(cls, values: object) -> object:
-        """Read limits as version 0.2 had them, one variable each, for one more version."""
-        if not isinstance(values, dict):
-            return values
-        names = {name: f"OSG_{name.upper()}" for name in Limits.model_fields}
-        single = {name: os.environ[of] for name, of in names.items() if of in os.environ}
-        given = values.get("limits", {})
-        given = given.model_dump() if isinstance(given, Limits) else given
-        return {**values, "limits": {**single, **given}} if isinstance(given, dict) else values
+    def _refuse_single_limits(cls, values: object) -> object:
+        """Refuse limits as version 0.2 had them: an ignored limit would be none."""
+        for name in Limits.model_fields:
+            if (variable := f"OSG_{name.upper()}") in os.environ:
+                raise ValueError(
+                    f"{variable} is read no more: set OSG_LIMITS='{{\"{name}\": ...}}'"
+                )
+        return values
 
     @field_validator("executor")
     @classmethod

@@ -10,6 +10,7 @@ import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
+from app import __version__
 from tests.conftest import ROOT
 from tests.test_packaging import WEB_APP
 
@@ -175,3 +176,13 @@ def test_a_robot_gets_what_the_studio_is_tested_with_and_nothing_of_the_web_app(
     assert not robot.keys() & WEB_APP
     if python != "3.10":
         assert robot.items() <= chosen("requirements.txt", python, machine).items()
+
+
+def test_an_old_name_says_in_which_version_it_goes_and_is_gone_by_then() -> None:
+    """The words are "until version 1.2"; "for one more version" would be forgotten."""
+    now = tuple(map(int, re.findall(r"\d+", __version__)[:2]))
+    for path in sorted((ROOT / "app").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        assert "one more version" not in text, path
+        for major, minor in re.findall(r"until version (\d+)\.(\d+)", text):
+            assert now < (int(major), int(minor)), path

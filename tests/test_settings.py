@@ -112,15 +112,15 @@ def test_an_object_store_needs_its_extra_and_a_bucket(
     assert (shared.objects, shared.clips) == (None, tmp_path)
 
 
-def test_limits_are_one_object_and_single_ones_are_still_read(
+def test_limits_are_one_object_and_single_ones_are_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setenv("OSG_LIMITS", '{"max_connections": 500}')
     assert Settings().limits.max_connections == 500
     assert Settings().limits.idle_seconds == Limits().idle_seconds
     monkeypatch.setenv("OSG_MAX_CONNECTIONS", "7")
-    monkeypatch.setenv("OSG_IDLE_SECONDS", "3")
-    assert Settings().limits == Limits(max_connections=500, idle_seconds=3)
+    with pytest.raises(ValidationError, match="OSG_LIMITS"):
+        Settings()
 
 
 def test_an_unknown_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

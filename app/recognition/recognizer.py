@@ -189,11 +189,7 @@ class Recognizer:
             As `recognize`.
 
         """
-        repair = repair_poses(poses) if self.repairs else None
-        seen = repair.poses if repair else poses
-        trajectory = repair.trajectory if repair else Trajectory.from_poses(poses)
-        holds = self._find_holds(seen, trajectory)
-        query = self._condense(seen, trajectory, holds)
+        repair, holds, query = self._prepare(poses)
         table = self.compare(query)
         many = f"the take shows {describe_excess(holds)}" if len(holds) > MOST_HOLDS else None
         if holds and not np.isfinite(table.scores).any():
@@ -286,24 +282,24 @@ class Recognizer:
             When no landmark is seen.
 
         """
-        seen = repair_poses(poses).poses if self.repairs else poses
-        trajectory = Trajectory.from_poses(seen)
-        return self._condense(seen, trajectory, self._find_holds(seen, trajectory))
+        return self._prepare(poses)[-1]
+
+    def _prepare(self, poses: PoseSequence) -> tuple[Repair | None, tuple[Hold, ...], Trajectory]:
+        """Return the repair if the profile repairs, the held hands, and the condensed query."""
+        repair = repair_poses(poses) if self.repairs else None
+        seen = repair.poses if repair else poses
+        trajectory = repair.trajectory if repair else Trajectory.from_poses(poses)
+        holds = self._find_holds(seen, trajectory)
+        trajectory = keep_holds(trajectory, holds)
+        if self._reads_moving_hands:
+            trajectory = replace(trajectory, moving_hands=find_moving_hands(seen))
+        return repair, holds, condense(trajectory)
 
     def _find_holds(self, poses: PoseSequence, trajectory: Trajectory) -> tuple[Hold, ...]:
         """Return the held hand shapes of a query, as many in sequence as the language needs."""
         if self._reads_sequences:
             return find_holds(poses, trajectory)
         return find_single_hold(poses, trajectory) if self._reads_hands else ()
-
-    def _condense(
-        self, poses: PoseSequence, trajectory: Trajectory, holds: Sequence[Hold]
-    ) -> Trajectory:
-        """Condense a query, and add the held and moving hands that the language needs."""
-        trajectory = keep_holds(trajectory, holds)
-        if self._reads_moving_hands:
-            trajectory = replace(trajectory, moving_hands=find_moving_hands(poses))
-        return condense(trajectory)
 
     def recognize_trajectory(self, trajectory: Trajectory) -> Recognition:
         """Recognise the gesture in a `query`.

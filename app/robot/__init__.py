@@ -35,9 +35,6 @@ from app.robot.runtime import Runtime
 from app.robot.sources.registry import open_source
 from app.robot.sources.source import Frame, NoFrame, Notice, Source
 
-Listener = TriggerListener
-"""The name in version 0.2, kept for one version."""
-
 __all__ = [
     "ActiveLanguage",
     "AnswerGiven",
@@ -49,7 +46,6 @@ __all__ = [
     "LandmarkListener",
     "LanguageChanged",
     "LanguageRefused",
-    "Listener",
     "NoFrame",
     "Notice",
     "OutputFailed",

@@ -130,12 +130,6 @@ class Explanation(BaseModel):
         """The two gestures between which the take lies; None where there are not two."""
         return (self.between[0], self.between[1]) if len(self.between) == 2 else None
 
-    @computed_field  # type: ignore[prop-decorator]
-    @property
-    def verdicts(self) -> tuple[VoterBreakdown, ...]:
-        """`breakdown`, as version 0.2 called it."""
-        return self.breakdown
-
     @property
     def cause(self) -> Cause | None:
         """The first cause; None where the recognition is right and without evidence."""

@@ -98,11 +98,10 @@ class Finding:
     drawings: tuple[BinaryImage, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
-        """Return plain JSON types, drawings as data URIs; `below_bar`: `error` in version 0.2."""
+        """Return plain JSON types, the drawings as data URIs."""
         pngs = [b64encode(encode_png(each)).decode("ascii") for each in self.drawings]
         return vars(self) | {
             "gestures": list(self.gestures),
-            "below_bar": self.error,
             "drawings": [f"data:image/png;base64,{png}" for png in pngs],
         }
 

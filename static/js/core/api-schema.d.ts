@@ -691,11 +691,6 @@ export interface components {
                 string
             ] | null;
             /**
-             * Verdicts
-             * @description `breakdown`, as version 0.2 called it.
-             */
-            readonly verdicts: components["schemas"]["VoterBreakdown"][];
-            /**
              * Sentence
              * @description The cause and what the diver can do; without a cause what was shown and expected.
              */
