@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -84,7 +84,9 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
     state = studio.languages.get(record.language_id, record.revision)
     recording = studio.recording(record.clip_id, so_far=True)
     view = view_recognition(record)
-    recognizer = make_recognizer(studio, state, record.profile, view.tuning, view.trial)
+    recognizer = make_recognizer(
+        studio, state, record.profile, view.tuning, view.trial, view.without
+    )
     language = recognizer.language
     return RecognitionContext(
         recognizer=recognizer,
@@ -130,10 +132,12 @@ def make_recognizer(
     profile: str,
     tuning: TuningEntry | None,
     trial: GestureTrial | None,
+    without: Collection[tuple[str, int]] = (),
 ) -> Recognizer:
     """Return a recogniser of a revision, with a tuning and a changed gesture if given.
 
-    The revision is not edited: a changed gesture is in a copy of the language.
+    The revision is not edited: a changed gesture is in a copy of the language, which also lacks
+    the demonstrations `without`.
 
     Raises
     ------
@@ -142,11 +146,11 @@ def make_recognizer(
         possible.
 
     """
-    if tuning is None and trial is None:
+    if tuning is None and trial is None and not without:
         return studio.recognizer(state, profile)
     language = studio.language(state) if trial is None else try_gesture(studio, state, trial)
     tuned = None if tuning is None else entry_to_tuning(tuning)
-    return Recognizer(language, profile, tuning=tuned)
+    return Recognizer(language.without_demonstrations(without), profile, tuning=tuned)
 
 
 def try_gesture(studio: Studio, state: store.LanguageState, trial: GestureTrial) -> Language:

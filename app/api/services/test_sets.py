@@ -12,7 +12,7 @@ from app.api.http.schemas import test_sets as schemas
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_sources import list_sources
+from app.api.services.demonstration_sources import find_sources
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
@@ -22,6 +22,12 @@ from app.recognition.recording.clip_range import find_clip_range
 
 SAME_TAKE = 0.5
 """Share of a take that a demonstration must cover to count as the same."""
+
+WITHOUT = "without"
+"""Key of a stored result: the demonstrations that did not read the take."""
+
+LeftOut = tuple[tuple[str, int], ...]
+"""Label and number of demonstrations that the language is read without."""
 
 
 def add_labelled(
@@ -71,21 +77,21 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
 
     """
     takes, wanted = [], []
-    for take in list_waiting(studio, state):
+    for take, without in list_waiting(studio, state):
         try:
-            wanted.append(_request_for(studio, take))
+            wanted.append(_request_for(studio, take, without))
             takes.append(take)
         except (ProblemError, store.NotFound) as error:
             fault = problem_of(error).detail
             answer = RecognizedTake(start=take.start, end=take.end, fault=fault)
-            _keep(studio, state, take, answer)
+            _keep(studio, state, take, without, answer)
     if not takes:
         return None
     language_id, revision = state.record.id, state.revision.revision
 
     def keep(index: int, found: RecognizedTake) -> None:
         if index < len(takes):  # A process that a file has taken over may say anything.
-            _keep(studio, state, takes[index], found)
+            _keep(studio, state, takes[index], wanted[index].without, found)
 
     async def run(report: Report) -> Finished | Failed:
         # It may have to wait for its turn.
@@ -97,28 +103,33 @@ def test_run_of(studio: Studio, state: store.LanguageState) -> Job[Finished | Fa
     return Job("test_run", test_run_key(language_id, revision), event, run, detached=True)
 
 
-def list_waiting(studio: Studio, state: store.LanguageState) -> list[store.LabelledTake]:
-    """Return the takes that the revision has not recognised yet."""
-    revision = state.revision.revision
+def list_waiting(
+    studio: Studio, state: store.LanguageState
+) -> list[tuple[store.LabelledTake, LeftOut]]:
+    """Return the testable takes that the revision has not recognised yet, and what reads them not.
+
+    A take that is a demonstration is read by the language without that demonstration.
+    """
+    revision, own = state.revision.revision, _OwnDemonstrations(studio, state)
     return [
-        tested.take
+        (tested.take, own.find(tested.take))
         for tested in studio.labelled.of(state.record.id)
-        if all(result.revision != revision for result in tested.results)
+        if own.is_testable(tested.take)
+        and all(result.revision != revision for result in own.list_valid(tested))
     ]
 
 
 def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
     """Return the test set of a language, as of its newest revision."""
-    shown = list_sources(studio, studio.language(state))
-    takes = [_view(tested, shown) for tested in studio.labelled.of(state.record.id)]
-    counted = [
-        (take, take.result) for take in takes if take.result is not None and not take.demonstration
-    ]
-    labels = dict.fromkeys(take.expected for take, _ in counted)
+    own = _OwnDemonstrations(studio, state)
+    takes = [_view(tested, own) for tested in studio.labelled.of(state.record.id)]
+    counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
+    labels = dict.fromkeys(
+        take.expected for take in takes if take.result is not None or not take.testable
+    )
     gestures = [
         schemas.GestureRateView(
-            label=label,
-            **_rate([each for each in counted if each[0].expected == label]),
+            label=label, **_rate([each for each in takes if each.expected == label])
         )
         for label in labels
     ]
@@ -128,29 +139,36 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         language_id=state.record.id,
         revision=state.revision.revision,
         takes=takes,
-        overall=schemas.RateView(**_rate(counted)),
+        overall=schemas.RateView(**_rate(takes)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
         better=[each for each, gain in gains.items() if gain > 0],
         worse=[each for each, gain in gains.items() if gain < 0],
         upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
         waiting=sum(
-            take.result is None or take.result.revision != state.revision.revision for take in takes
+            take.testable
+            and (take.result is None or take.result.revision != state.revision.revision)
+            for take in takes
         ),
     )
 
 
-def _request_for(studio: Studio, take: store.LabelledTake) -> TakeToRecognize:
+def _request_for(studio: Studio, take: store.LabelledTake, without: LeftOut) -> TakeToRecognize:
     recording, clip = studio.recording_file(take.clip_id).path, studio.clips.get(take.clip_id).clip
     return TakeToRecognize(
         recording=recording,
         start=take.start,
         end=take.end,
         keypoints_of=None if shows_pictures(clip) else clip.name,
+        without=without,
     )
 
 
 def _keep(
-    studio: Studio, state: store.LanguageState, take: store.LabelledTake, found: RecognizedTake
+    studio: Studio,
+    state: store.LanguageState,
+    take: store.LabelledTake,
+    without: LeftOut,
+    found: RecognizedTake,
 ) -> None:
     """Store the result of a take, also if it cannot be recognised."""
     result = store.LabelledResult(
@@ -165,7 +183,7 @@ def _keep(
             end=found.end,
             profile=studio.language(state).profile,
             expected=take.expected,
-            result=json.dumps(answer | {"version": __version__}, allow_nan=False),
+            result=json.dumps(answer | {"version": __version__, WITHOUT: without}, allow_nan=False),
         )
         result.recognition_id = studio.recognitions.add(record).id
         result.label, result.nearest = answer["label"], answer["nearest"]
@@ -216,9 +234,8 @@ def _were_upgraded(
     return len(versions) > 1  # Versions up to 0.2.0 stored none.
 
 
-def _rate(
-    counted: Sequence[tuple[schemas.LabelledTakeView, schemas.LabelledResultView]],
-) -> dict[str, Any]:
+def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
+    counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     share = Share(sum(result.right for _, result in counted), len(counted))
     low, high = share.interval() or (None, None)
     return {
@@ -226,25 +243,63 @@ def _rate(
         "asked": share.asked,
         "pairs": sum(result.pair is not None for _, result in counted),
         "pairs_right": sum(_worth(take, result) == 1 for take, result in counted),
+        "untestable": sum(not take.testable for take in takes),
         "rate": share.value,
         "low": low,
         "high": high,
     }
 
 
-def _is_demonstration(take: store.LabelledTake, shown: Sequence[store.DemonstrationSource]) -> bool:
-    """Return whether a demonstration covers most of a take."""
-    least = SAME_TAKE * (take.end - take.start)
-    return any(
-        each.clip_id == take.clip_id
-        and min(take.end, each.end) - max(take.start, each.start) > least
-        for each in shown
-    )
+class _OwnDemonstrations:
+    """The demonstrations of a language that are takes of its test set as well."""
+
+    def __init__(self, studio: Studio, state: store.LanguageState) -> None:
+        self._studio = studio
+        self._language = studio.language(state)
+        self._sources = [
+            (label, number, source)
+            for label, row in find_sources(studio, self._language).items()
+            for number, source in enumerate(row)
+            if source is not None
+        ]
+
+    def find(self, take: store.LabelledTake) -> LeftOut:
+        """Return label and number of each demonstration that covers most of a take."""
+        least = SAME_TAKE * (take.end - take.start)
+        return tuple(
+            (label, number)
+            for label, number, source in self._sources
+            if source.clip_id == take.clip_id
+            and min(take.end, source.end) - max(take.start, source.start) > least
+        )
+
+    def is_testable(self, take: store.LabelledTake) -> bool:
+        """Return whether the take's gesture is known by another demonstration than the take."""
+        own = [number for label, number in self.find(take) if label == take.expected]
+        if not own:
+            return True
+        return self._language.gesture(take.expected).without_demonstrations(own) is not None
+
+    def list_valid(self, tested: store.TestedTake) -> list[store.LabelledResult]:
+        """Return the results of a testable take that its own demonstration has not read.
+
+        Versions before 0.4 read a demonstration by itself.
+        """
+        if not self.is_testable(tested.take):
+            return []
+        if not self.find(tested.take):
+            return [*tested.results]
+        return [each for each in tested.results if self._is_apart(each.recognition_id)]
+
+    def _is_apart(self, recognition: str | None) -> bool:
+        try:
+            record = None if recognition is None else self._studio.recognitions.get(recognition)
+        except store.NotFound:
+            return False
+        return record is None or WITHOUT in json.loads(record.result)
 
 
-def _view(
-    tested: store.TestedTake, shown: Sequence[store.DemonstrationSource]
-) -> schemas.LabelledTakeView:
+def _view(tested: store.TestedTake, own: _OwnDemonstrations) -> schemas.LabelledTakeView:
     take = tested.take
     results = [
         schemas.LabelledResultView(
@@ -252,12 +307,13 @@ def _view(
             pair=read_pair(result.pair),
             right=result.label == take.expected,
         )
-        for result in tested.results
+        for result in own.list_valid(tested)
     ]
     return schemas.LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created"}),
         clip=tested.clip,
-        demonstration=_is_demonstration(take, shown),
+        demonstration=bool(own.find(take)),
+        testable=own.is_testable(take),
         result=results[0] if results else None,
         before=results[1] if len(results) > 1 else None,
     )

@@ -330,6 +330,9 @@ class TakeToRecognize(BaseModel):
         Seconds in the clip.
     keypoints_of
         Name of a clip of received keypoints, which may lack some; None if models found them.
+    without
+        Label and number of the demonstrations that the take is itself: the language reads it
+        without them.
 
     """
 
@@ -337,6 +340,7 @@ class TakeToRecognize(BaseModel):
     start: float
     end: float
     keypoints_of: str | None = None
+    without: tuple[tuple[str, int], ...] = ()
 
 
 class TestRun(Task):
@@ -364,7 +368,7 @@ class TestRun(Task):
         """Report the answer about each take in order."""
         language = Language.from_json(self.document)
         # Made with the first take: that it cannot be made is the fault of every take.
-        recognizer = cache(lambda: Recognizer(language))
+        recognizer = cache(lambda without: Recognizer(language.without_demonstrations(without)))
         for index, take in enumerate(self.takes):
             try:
                 found = _recognize(take, language, recognizer)
@@ -428,13 +432,15 @@ def _save(recorded: Recording, target: Path, report: Report) -> None:
 
 
 def _recognize(
-    take: TakeToRecognize, language: Language, recognizer: Callable[[], Recognizer]
+    take: TakeToRecognize,
+    language: Language,
+    recognizer: Callable[[tuple[tuple[str, int], ...]], Recognizer],
 ) -> RecognizedTake:
     recording = _load(take.recording)
     if take.keypoints_of is not None:
         require_seen_landmarks(language, recording.poses, take.keypoints_of)
     shown = find_clip_range(recording, take.start, take.end, trigger=language.trigger)
-    answer = recognizer().recognize(shown.poses).to_dict()
+    answer = recognizer(take.without).recognize(shown.poses).to_dict()
     return RecognizedTake(start=shown.start, end=shown.end, answer=answer)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -270,6 +270,13 @@ class Gesture:
         if index == 0:
             return self._with_shown(self.further)
         return replace(self, further=self.further[: index - 1] + self.further[index:])
+
+    def without_demonstrations(self, indices: Collection[int]) -> Gesture | None:
+        """Return the gesture without some of its demonstrations; None where none is left."""
+        kept: Gesture | None = self
+        for index in sorted(indices, reverse=True):
+            kept = kept.without_demonstration(index) if kept and kept.further else None
+        return kept
 
     def with_cut(self, index: int, start: float, end: float) -> Gesture:
         """Return the gesture with one of its demonstrations, counted from 0, cut at both ends.

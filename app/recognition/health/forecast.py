@@ -301,13 +301,8 @@ def _compare_diver(
 
 def _keep(gesture: Gesture, divers: Set[str]) -> Gesture | None:
     """Return a gesture with the demonstrations by some divers alone; None where there are none."""
-    shown = gesture.single_demonstrations()
-    if all(each.diver not in divers for each in shown):
-        return None
-    for number in reversed(range(len(shown))):
-        if shown[number].diver not in divers:
-            gesture = gesture.without_demonstration(number)
-    return gesture
+    shown = enumerate(gesture.single_demonstrations())
+    return gesture.without_demonstrations([at for at, each in shown if each.diver not in divers])
 
 
 def judge(result: Recognition | None, label: str) -> tuple[Outcome, tuple[str, ...]]:

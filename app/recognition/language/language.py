@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
@@ -210,6 +210,25 @@ class Language:
             )
         kept = tuple(gesture for gesture in self.gestures if gesture is not unwanted)
         return replace(self, gestures=kept, revision=self.revision + 1)
+
+    def without_demonstrations(self, left_out: Collection[tuple[str, int]]) -> Language:
+        """Return the language without some demonstrations, to read these with.
+
+        A gesture of which none is left is missing; so are phrases.
+
+        Parameters
+        ----------
+        left_out
+            Label and number of each, counted from 0.
+
+        """
+        if not left_out:
+            return self
+        kept = (
+            gesture.without_demonstrations({at for label, at in left_out if label == gesture.label})
+            for gesture in self.gestures
+        )
+        return replace(self, gestures=[each for each in kept if each is not None], grammar=None)
 
     def renamed(self, label: str, new: str) -> Language:
         """Return the same revision with another label for a gesture, also in its phrases.

@@ -905,6 +905,11 @@ export interface components {
              * @description Of these, those with the right gesture in the pair.
              */
             pairs_right: number;
+            /**
+             * Untestable
+             * @description Takes beside these that are the only demonstration of their gesture.
+             */
+            untestable: number;
             /** Rate */
             rate: number | null;
             /** Low */
@@ -1465,9 +1470,14 @@ export interface components {
             added_by: string;
             /**
              * Demonstration
-             * @description It is a demonstration of the language, which does not count.
+             * @description It is a demonstration of the language, which reads it without that demonstration.
              */
             demonstration: boolean;
+            /**
+             * Testable
+             * @description Whether its gesture has another demonstration; null results otherwise.
+             */
+            testable: boolean;
             /** @description The newest; null: none yet. */
             result: components["schemas"]["LabelledResultView"] | null;
             /** @description By an older revision than `result`. */
@@ -2283,6 +2293,11 @@ export interface components {
              * @description Of these, those with the right gesture in the pair.
              */
             pairs_right: number;
+            /**
+             * Untestable
+             * @description Takes beside these that are the only demonstration of their gesture.
+             */
+            untestable: number;
             /** Rate */
             rate: number | null;
             /** Low */
@@ -2508,6 +2523,15 @@ export interface components {
             tuning: components["schemas"]["TuningEntry"] | null;
             /** @description The change it was recognised with; null: none. */
             trial: components["schemas"]["GestureTrial"] | null;
+            /**
+             * Without
+             * @description Label and number of the demonstrations that the take is itself, which did not read it.
+             * @default []
+             */
+            without: [
+                string,
+                number
+            ][];
             /** Expected */
             expected: string | null;
             /**
@@ -3015,7 +3039,7 @@ export interface components {
             upgraded: boolean;
             /**
              * Waiting
-             * @description Takes without a result of the newest revision.
+             * @description Testable takes without a result of the newest revision.
              */
             waiting: number;
         };

@@ -18,13 +18,18 @@ const ENOUGH_PEOPLE = 3; // From which on a forecast is promised.
  */
 export function testWords(testSet) {
   if (!testSet?.overall.asked) return "";
-  const { right, asked, rate, low, high } = testSet.overall;
+  const { right, asked, untestable, rate, low, high } = testSet.overall;
+  // A rate of a part of the takes would rise by what leaves the test.
   const share =
-    rate === null || low === null || high === null ? "" : `, ${rateText({ rate, low, high })}`;
+    rate === null || low === null || high === null || untestable
+      ? ""
+      : `, ${rateText({ rate, low, high })}`;
+  const apart = untestable ? `, ${untestable} cannot be tested` : "";
   const older = testSet.waiting
     ? ` Not by revision ${testSet.revision}: ${plural(testSet.waiting, "take")}.`
     : "";
-  return `Of the test set ${right} of ${asked} takes are read right${share}.${older}`;
+  const all = asked + untestable;
+  return `Of the test set ${right} of ${all} takes are read right${share}${apart}.${older}`;
 }
 
 /**

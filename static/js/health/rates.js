@@ -69,8 +69,6 @@ export function effectText({ before, after, alike }) {
  * @param {TestSet | null} testSet
  */
 export function failingWords(testSet) {
-  const failing = (testSet?.gestures ?? []).filter(
-    ({ right, asked }) => asked > 1 && 2 * right < asked,
-  );
+  const failing = (testSet?.gestures ?? []).filter(({ right, asked }) => 2 * right < asked);
   return failing.map(({ label, right, asked }) => `${label} ${right} of ${asked}`).join(", ");
 }

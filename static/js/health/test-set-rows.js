@@ -150,7 +150,7 @@ export function placeOf(take, takes) {
 function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
   return [
     fault,
-    demonstration ? "a demonstration" : null,
+    demonstration ? "read without itself, a demonstration" : null,
     pair ? `the right one is ${pair.includes(expected) ? "" : "not "}in it` : null,
     label === null && !pair && nearest ? `nearest ${nearest}` : null,
   ].filter(Boolean);
@@ -162,6 +162,8 @@ function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
  * @param {TestedTake} take
  */
 function outcomeOf(take) {
+  if (!take.testable)
+    return html`<span class="dim">cannot be tested: the only demonstration</span>`;
   if (!take.known) return html`<span class="dim">not recognised yet</span>`;
   const { pair, change } = take;
   const extra = notesOf(take).join(", ");
@@ -184,8 +186,7 @@ export function takeRow(take, takes) {
   const several = takes.filter((each) => each.clip_id === take.clip_id);
   const name = several.length > 1 ? `${take.clip}, take ${several.indexOf(take) + 1}` : take.clip;
   const place = placeOf(take, takes);
-  const kind =
-    take.demonstration || !take.known ? "demonstration" : ["wrong", "asked", ""][rankOf(take)];
+  const kind = take.known ? ["wrong", "asked", ""][rankOf(take)] : "demonstration";
   return html`<tr class=${kind}>
     <td>
       <a

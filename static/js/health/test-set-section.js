@@ -132,17 +132,6 @@ const rates = ({ gestures }) =>
     )}
   </ul>`;
 
-/**
- * The note on takes that are not counted.
- *
- * @param {number} count
- */
-const leftOutNote = (count) =>
-  html`<p class="dim">
-    ${plural(count, "take")} of the list ${count > 1 ? "are demonstrations" : "is a demonstration"}
-    of the language and ${count > 1 ? "do" : "does"} not count.
-  </p>`;
-
 const olderClips = olderClipsButton();
 
 /** The choice among the clips of the library that can be tested. */
@@ -276,13 +265,11 @@ function content(testSet) {
   // The event about a take may arrive before the answer to the request that added its clip.
   const waiting = new Set(waitingClips().map(({ clip }) => clip.id));
   const takes = testedOf(testSet).filter(({ clip_id: clip }) => !waiting.has(clip));
-  const demonstrations = takes.filter(({ demonstration }) => demonstration).length;
-  const counted = takes.filter(({ demonstration, known }) => known && !demonstration);
+  const counted = takes.filter(({ known }) => known);
   if (!state.gestures || !(takes.length || waiting.size || uploadsHere().length)) return nothing;
   const counts = onChange(() => matrix(counted));
   return html`${testSet && takes.length ? summary(testSet, takes) : ""}
-  ${testSet && counted.length ? [counts, rates(testSet)] : ""}
-  ${demonstrations ? leftOutNote(demonstrations) : ""} ${list(takes)}`;
+  ${testSet && counted.length ? [counts, rates(testSet)] : ""} ${list(takes)}`;
 }
 
 /**

@@ -244,7 +244,7 @@ def test_labelled_clips_are_tested_corrected_and_opened(
     expect(page.locator("#outcome")).to_contain_text("as expected")
 
 
-def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
+def test_clips_of_the_library_are_tested_and_the_only_demonstration_cannot_be(
     open_page: OpenPage, server: Running
 ) -> None:
     with client_of(server.address) as client:
@@ -256,7 +256,7 @@ def test_clips_of_the_library_are_tested_and_demonstrations_do_not_count(
         page = open_page(health_of(library), scene=False)
         page.get_by_role("button", name="Test with clips").click()
         expect(page.get_by_role("heading", name="Test with clips")).to_be_in_viewport()
-        expect(page.get_by_text("1 take of the list is a demonstration")).to_be_visible()
+        expect(page.get_by_text("cannot be tested: the only demonstration")).to_be_visible()
         page.get_by_text("Choose from the").click()
         chosen = page.locator(".library-boxes input:checked")
         while chosen.count():

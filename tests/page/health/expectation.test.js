@@ -6,7 +6,15 @@ import { testedShare } from "../../../static/js/health/gesture-table.js";
 import { failingWords } from "../../../static/js/health/rates.js";
 
 const rate = (value) => ({ rate: value, low: value / 2, high: (1 + value) / 2, n: 12 });
-const share = { label: "circle", right: 3, asked: 4, rate: 0.75, low: 0.3, high: 0.95 };
+const share = {
+  label: "circle",
+  right: 3,
+  asked: 4,
+  untestable: 0,
+  rate: 0.75,
+  low: 0.3,
+  high: 0.95,
+};
 
 const measured = {
   people: 3,
@@ -51,6 +59,13 @@ test("a test set is told with its interval, and not before it has a recognised t
   );
 });
 
+test("a take that cannot be tested stays in the figure, which has no rate then", () => {
+  assert.equal(
+    testWords({ overall: { ...share, untestable: 2 } }),
+    "Of the test set 3 of 6 takes are read right, 2 cannot be tested.",
+  );
+});
+
 test("a gesture has the share of its own takes in the test set", () => {
   const testSet = { gestures: [share] };
   assert.deepEqual(testedShare(testSet, "circle"), { rate: 0.75, low: 0.3, high: 0.95, n: 4 });
@@ -71,6 +86,6 @@ test("a gesture that the test set shows to fail is a finding", () => {
     { label: "circle", right: 3, asked: 5 },
     { label: "line", right: 0, asked: 1 },
   ];
-  assert.equal(failingWords({ gestures }), "square 1 of 5");
+  assert.equal(failingWords({ gestures }), "square 1 of 5, line 0 of 1");
   assert.equal(failingWords(null), "");
 });

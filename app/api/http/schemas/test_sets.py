@@ -62,7 +62,9 @@ class LabelledTakeView(View):
     added_by: str
     """Name of who added it; empty: not known."""
     demonstration: bool
-    """It is a demonstration of the language, which does not count."""
+    """It is a demonstration of the language, which reads it without that demonstration."""
+    testable: bool
+    """Whether its gesture has another demonstration; null results otherwise."""
     result: LabelledResultView | None
     """The newest; null: none yet."""
     before: LabelledResultView | None
@@ -79,6 +81,8 @@ class RateView(View):
     """Takes that lie between two gestures: neither right nor a wrong label."""
     pairs_right: int
     """Of these, those with the right gesture in the pair."""
+    untestable: int
+    """Takes beside these that are the only demonstration of their gesture."""
     rate: float | None
     low: float | None
     high: float | None
@@ -111,4 +115,4 @@ class TestSetView(View):
     """Whether the results before are of another version of the program, which may answer otherwise
     too."""
     waiting: int
-    """Takes without a result of the newest revision."""
+    """Testable takes without a result of the newest revision."""

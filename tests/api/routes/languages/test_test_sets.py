@@ -6,13 +6,16 @@ import os
 import signal
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 
 from app.api.services.running_studio import Studio
 from app.api.services.test_sets import test_run_key as key_of_run
+from app.recognition import Recording
 from app.store import JobStatus
 from tests.api.languages import LANGUAGES, add_ambiguous_language, add_gesture
 from tests.api.recordings import add_recorded_clip, recording_of
@@ -40,7 +43,7 @@ def run(client: httpx.Client, place: str) -> Any:
     return answer.json()
 
 
-def test_takes_are_recognised_and_demonstrations_do_not_count(
+def test_takes_are_recognised_and_the_only_demonstration_of_a_gesture_cannot_be_tested(
     client: httpx.Client, studio: Studio, place: str, circle_clip: str
 ) -> None:
     other = add_recorded_clip(studio, recording_of("circle", "line"), "two.mp4")
@@ -51,21 +54,51 @@ def test_takes_are_recognised_and_demonstrations_do_not_count(
         {"clip_id": circle_clip, "expected": "circle"},
     )
     assert added.status_code == 201
-    assert added.json()["waiting"] == 3
+    assert added.json()["waiting"] == 2
     assert added.json()["overall"]["rate"] is None
     found = run(client, place)
     assert found["waiting"] == 0
     kinds = [
-        (take["clip"], take["demonstration"], take["result"]["right"]) for take in found["takes"]
+        (take["clip"], take["testable"], take["result"] and take["result"]["right"])
+        for take in found["takes"]
     ]
-    assert kinds == [("dive.mp4", True, True), ("two.mp4", False, True), ("two.mp4", False, False)]
-    assert (found["overall"]["right"], found["overall"]["asked"]) == (1, 2)
+    assert kinds == [("dive.mp4", False, None), ("two.mp4", True, True), ("two.mp4", True, False)]
+    counts = {"right": 1, "asked": 2, "untestable": 1}
+    assert counts.items() <= found["overall"].items()
     assert 0 < found["overall"]["low"] < 0.5 < found["overall"]["high"] < 1
     (rate,) = found["gestures"]
     assert (rate["label"], rate["right"], rate["asked"]) == ("circle", 1, 2)
     recognition = found["takes"][2]["result"]["recognition_id"]
     kept = client.get(f"/api/v1/recognitions/{recognition}").json()
     assert (kept["label"], kept["expected"]) == ("line", "circle")
+
+
+def test_a_take_that_becomes_a_demonstration_stays_and_is_read_without_it(
+    client: httpx.Client, studio: Studio, language_id: str, place: str
+) -> None:
+    line = recording_of("line")
+    shaken = line.poses.xy + np.random.default_rng(1).normal(0, 0.5, line.poses.xy.shape)
+    other = Recording(replace(line.poses, xy=shaken), line.hands, line.salute)
+    wrong = add_recorded_clip(studio, other, "wrong.mp4")
+    right = add_recorded_clip(studio, recording_of("circle"), "right.mp4")
+    takes = [{"clip_id": clip, "expected": "circle"} for clip in (wrong, right)]
+    labelled(client, place, *takes)
+    before = run(client, place)
+    assert {"right": 1, "asked": 2, "untestable": 0}.items() <= before["overall"].items()
+    added = client.post(
+        f"{LANGUAGES}/{language_id}/demonstrations", json={"label": "circle", "clip_id": wrong}
+    )
+    assert added.status_code == 201, added.text
+    after = run(client, place)
+    assert {"right": 1, "asked": 2, "untestable": 0}.items() <= after["overall"].items()
+    swallowed = next(take for take in after["takes"] if take["clip_id"] == wrong)
+    assert swallowed["demonstration"]
+    assert not swallowed["result"]["right"]
+    kept = f"/api/v1/recognitions/{swallowed['result']['recognition_id']}"
+    assert client.get(kept).json()["without"] == [["circle", 1]]
+    # The explanation is of the same language: the take is not its own evidence.
+    assert client.get(f"{kept}/explanation").json()["nearest"] == "line"
+    assert (after["better"], after["worse"]) == ([], [])
 
 
 def test_a_change_of_the_language_says_what_got_better_and_worse(
@@ -202,8 +235,8 @@ def test_a_run_goes_on_when_the_client_leaves(
         suppress(httpx.ReadTimeout),
     ):
         leaving.post(f"{place}/run")
-    until(lambda: studio.runner.progress(key) is None)
-    assert client.get(place).json()["waiting"] == 0
+    until(lambda: client.get(place).json()["waiting"] == 0)
+    assert studio.runner.progress(key) is None
 
 
 @linux
