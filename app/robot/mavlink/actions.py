@@ -1,16 +1,16 @@
 """Vehicle actions as MAVLink: the messages that request an action, and the proof that it is done.
 
-A mode counts as set when it is acknowledged and the heartbeat shows it: an acknowledgement alone
-could belong to an earlier command, a heartbeat alone could date from before a restart. ArduSub does
-not acknowledge a depth, which counts as set when the reported target is that depth. Lights and
-camera are only acknowledged.
+A mode counts as set when it is acknowledged, also as in progress, and the heartbeat shows it: an
+acknowledgement alone could belong to an earlier command, a heartbeat alone could date from before a
+restart. ArduSub does not acknowledge a depth, which counts as set when the reported target is that
+depth. Lights and camera are only acknowledged.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -63,8 +63,9 @@ class Reported:
 
     Attributes
     ----------
-    accepted
-        Number of the command that the vehicle accepted.
+    acknowledged
+        Whether the vehicle accepted a command, or has only begun it, by the component that
+        acknowledged it and the command's number. A refusal takes it back.
     mode
         Number of the vehicle's mode.
     altitude
@@ -74,7 +75,7 @@ class Reported:
 
     """
 
-    accepted: int | None = None
+    acknowledged: dict[tuple[int, int], bool] = field(default_factory=dict)
     mode: int | None = None
     altitude: float | None = None
     altitude_error: float | None = None
@@ -82,14 +83,24 @@ class Reported:
     def hear(self, message: Message) -> None:
         """Update the state from a message of the vehicle."""
         match message.get_type():
-            case "COMMAND_ACK" if message.result == mavlink.MAV_RESULT_ACCEPTED:
-                self.accepted = message.command
+            case "COMMAND_ACK":
+                self._hear_acknowledgement(message)
             case "HEARTBEAT":
                 self.mode = message.custom_mode
             case "VFR_HUD":
                 self.altitude = message.alt
             case "NAV_CONTROLLER_OUTPUT":
                 self.altitude_error = message.alt_error
+
+    def _hear_acknowledgement(self, message: Message) -> None:
+        command = (message.get_srcComponent(), message.command)
+        match message.result:
+            case mavlink.MAV_RESULT_ACCEPTED:
+                self.acknowledged[command] = True
+            case mavlink.MAV_RESULT_IN_PROGRESS:
+                self.acknowledged.setdefault(command, False)
+            case result if result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
+                self.acknowledged.pop(command, None)
 
 
 class LightsServo:
@@ -162,12 +173,12 @@ class CommandStep:
 
     def is_done(self, reported: Reported) -> bool:
         """Return whether the vehicle accepted it."""
-        return reported.accepted == self.command
+        return reported.acknowledged.get((self.component, self.command), False)
 
 
 @dataclass(frozen=True)
 class ModeStep:
-    """A change of the mode, repeated until the vehicle accepts and shows it."""
+    """A change of the mode, repeated until the vehicle acknowledges and shows it."""
 
     mode: int
     system: int
@@ -182,8 +193,9 @@ class ModeStep:
         return CommandStep(self.command, chosen, self.system, self.component).build(repetition)
 
     def is_done(self, reported: Reported) -> bool:
-        """Return whether the vehicle accepted it and is in the mode."""
-        return (reported.accepted, reported.mode) == (self.command, self.mode)
+        """Return whether the vehicle acknowledged it and is in the mode."""
+        is_acknowledged = (self.component, self.command) in reported.acknowledged
+        return is_acknowledged and reported.mode == self.mode
 
 
 @dataclass(frozen=True)

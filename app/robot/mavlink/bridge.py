@@ -28,7 +28,7 @@ from app.robot.commands.dialogue import (
 from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
-from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.orders import Order, OrderDesk, Outcome, is_from_vehicle
 from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.peer import Sender, VehiclePeer
 from app.robot.mavlink.table import Action, VehicleTable
@@ -353,7 +353,8 @@ class MavlinkBridge:
             if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 continue
             self._servo.hear(message)
-            self._is_answered |= message.get_type() == "COMMAND_ACK"
+            is_answer = message.get_type() == "COMMAND_ACK"
+            self._is_answered |= is_answer and is_from_vehicle(message, self._table.vehicle)
             if not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now, proves=not self._peer.contest))
         self._report(self._desk.check_deadline(now))

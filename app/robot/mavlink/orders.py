@@ -214,8 +214,9 @@ class OrderDesk:
         if self._late is None or self._armed is False:
             return None
         steps, shown = self._late.steps, self._reported
-        modes = [step.mode == shown.mode for step in steps if step.mode is not None]
-        if not all(modes + [step.is_done(shown) for step in steps if step.mode is None]):
+        modes = [step.mode for step in steps if step.mode is not None]
+        left = [step for step in steps[self._position :] if step.mode is None]
+        if modes[-1:] not in ([], [shown.mode]) or not all(step.is_done(shown) for step in left):
             return None
         order, self._late = self._late, None
         return Outcome(order, "late")
@@ -229,9 +230,12 @@ class OrderDesk:
         # back is broken.
         heard = self._clock.last
         is_urgent = self.order.emergency and now - max(heard, self._given) <= SILENT_SECONDS
-        if self._sent > 0 and heard < self._next and not is_urgent:
-            return ()
         step = self.order.steps[self._position]
+        if self._sent > 0:
+            if step.is_done(self._reported) or (heard < self._next and not is_urgent):
+                return ()
+        else:
+            self._reported = Reported()
         if step.mode is not None:
             self._requested[step.mode] = self._clock.seconds
         due = [step.build(self._version if isinstance(step, DepthStep) else self._sent)]
@@ -292,11 +296,15 @@ class OrderDesk:
         step = self.order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(now)
-        answered = message.get_type() == "COMMAND_ACK" and message.command == step.command
-        if answered and message.result == mavlink.MAV_RESULT_ACCEPTED:
-            self._watch.accept(self._clock.seconds)
-        if not answered or message.result in GO_ON:
+        if message.get_type() != "COMMAND_ACK" or (
+            (message.get_srcComponent(), message.command) != (step.component, step.command)
+        ):
             return None
+        if message.result == mavlink.MAV_RESULT_ACCEPTED:
+            self._watch.accept(self._clock.seconds)
+        if message.result in GO_ON:
+            return None
+        self._watch.refuse()
         answer = name_entry("MAV_RESULT", message.result) or str(message.result)
         return self._go_on("refused", "refused", answer)
 
@@ -404,6 +412,10 @@ class ModeWatch:
         """Note that the vehicle has accepted the mode."""
         if self._wanted is not None and self._accepted is None:
             self._accepted = now
+
+    def refuse(self) -> None:
+        """Note that the vehicle has refused the mode: what it accepted before counts no more."""
+        self._accepted = None
 
     @property
     def keeps_back(self) -> bool:

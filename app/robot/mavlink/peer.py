@@ -69,7 +69,7 @@ class VehiclePeer:
         self._refused = self._ignored = self._contradicted = -math.inf
         self._faulty: Sender | None = None
         self._clock: tuple[int, float] | None = None
-        self._set_back = False
+        self._set_back = self._addresses = False
         self._notices: list[str] = []
 
     def expect(self, sender: Sender | None) -> None:
@@ -141,7 +141,7 @@ class VehiclePeer:
             if sender != self.sender:
                 if self._rivals.pop(sender, None) is not None:
                     self._rivals[self.sender] = self._heard_clock.seconds
-                self.sender, self._clock = sender, None
+                self.sender, self._clock, self._addresses = sender, None, False
             self._heard = now
             self._heard_clock.hear(now)
             least = self._heard_clock.seconds - RIVAL_SECONDS
@@ -149,8 +149,19 @@ class VehiclePeer:
         if is_its and message.get_type() == "SYSTEM_TIME" and sender == self.sender:
             self._watch_clock(message.time_boot_ms, now)
         admitted = sender == self.sender and self.is_proven(now)
+        admitted = admitted and not (is_its and self._is_for_another(message))
         self.dropped += not admitted
         return admitted
+
+    def _is_for_another(self, message: Message) -> bool:
+        """Return whether a vehicle that addresses its acknowledgements gives this one no address.
+
+        Older vehicles address none.
+        """
+        if message.get_type() != "COMMAND_ACK":
+            return False
+        self._addresses |= message.target_system != 0
+        return self._addresses and message.target_system == 0
 
     def _is_named(self, sender: Sender) -> bool:
         """Return whether neither the link nor the table names another address."""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
@@ -68,6 +71,8 @@ def test_what_was_said_before_or_by_others_proves_nothing() -> None:
     assert kinds(desk, answer(), heartbeat(HOLD)) == []
     desk.give(order(Hold()), 0.0)
     assert kinds(desk, answer(), heartbeat(HOLD)) == []  # it was not sent yet
+    desk.list_due(1.0)
+    assert kinds(desk, heartbeat(HOLD)) == []
     desk = begun(Hold())
     ground_station = (255, 190)
     denied = mavlink.MAV_RESULT_DENIED
@@ -78,6 +83,87 @@ def test_what_was_said_before_or_by_others_proves_nothing() -> None:
 
 def test_an_answer_of_an_older_vehicle_has_no_address() -> None:
     assert kinds(begun(Hold()), answer(to=(0, 0)), heartbeat(HOLD)) == ["done"]
+
+
+NOISE = (
+    lambda: answer(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL),
+    lambda: answer(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_RESULT_DENIED),
+    lambda: answer(result=mavlink.MAV_RESULT_DENIED, to=(255, 190)),
+    lambda: answer(result=mavlink.MAV_RESULT_TEMPORARILY_REJECTED),
+    lambda: from_vehicle(mavlink.MAVLink_param_value_message(b"SERVO13_FUNCTION", 0, 2, 900, 7)),
+)
+ORDERS: list[tuple[tuple[Action, ...], bool]] = [
+    ((Hold(),), False),
+    ((Surface(),), True),
+    ((Depth(do="depth", metres=5.0),), False),
+    ((Hold(), Surface()), False),
+]
+
+
+@given(
+    asked=st.sampled_from(ORDERS),
+    to_vehicle=st.integers(0, 8),
+    to_us=st.integers(0, 15),
+    result=st.sampled_from([mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS]),
+    copies=st.integers(1, 3),
+    phase=st.integers(0, 9),
+    noise=st.lists(st.sampled_from(NOISE), min_size=1, max_size=7),
+)
+def test_what_the_vehicle_obeys_is_done_within_two_heartbeats(
+    asked: tuple[tuple[Action, ...], bool],
+    to_vehicle: int,
+    to_us: int,
+    result: int,
+    copies: int,
+    phase: int,
+    noise: list[Callable[[], Any]],
+) -> None:
+    """Tenths of seconds; answers are late, doubled, for others, or IN_PROGRESS for ever."""
+    desk = OrderDesk(VEHICLE)
+    mode, target, changed = mavlink.SUB_MODE_MANUAL, -1.0, 0
+    requests: list[tuple[int, Any]] = []
+    answers: list[tuple[int, Any]] = []
+    told: list[tuple[int, str]] = []
+    desk.hear(heartbeat(mode), 0.0)
+    desk.give(order(*asked[0], emergency=asked[1]), 0.0)
+    for tick in range(1, 150):
+        for arrives, request in requests:
+            if arrives != tick or request.get_type() == "AUTOPILOT_VERSION_REQUEST":
+                continue
+            before = (mode, target)
+            if request.get_type() == "COMMAND_LONG":
+                mode = int(request.param2)
+                answers += [(tick + to_us, answer(result=result))] * copies
+            elif mode == HOLD:
+                target = request.alt
+            changed = changed if (mode, target) == before else tick
+        heard = [each for arrives, each in answers if arrives == tick]
+        heard += [noise[tick % len(noise)]()]
+        if tick % 10 == phase:
+            heard += [heartbeat(mode), noise[tick % len(noise)]()]
+            heard += [
+                from_vehicle(mavlink.MAVLink_vfr_hud_message(0, 0, 0, 0, -1.0, 0)),
+                from_vehicle(
+                    mavlink.MAVLink_nav_controller_output_message(0, 0, 0, 0, 0, target + 1, 0, 0)
+                ),
+            ]
+        outcomes = [desk.hear(each, tick / 10) for each in heard]
+        outcomes.append(desk.check_deadline(tick / 10))
+        told += [(tick, outcome.kind) for outcome in outcomes if outcome is not None]
+        due = desk.list_due(tick / 10)
+        assert not (due and told)
+        requests += [(tick + 1 + to_vehicle, request) for request in due]
+    assert [kind for _, kind in told] == ["done"]
+    assert told[0][0] - changed <= to_us + 20
+
+
+def test_a_refusal_takes_back_what_was_acknowledged() -> None:
+    desk = begun(Surface(), emergency=True)
+    refusal = answer(result=mavlink.MAV_RESULT_FAILED)
+    assert kinds(desk, answer(), refusal, heartbeat(SURFACE)) == ["refused"]
+    # It is asked again, though its first answer was an acceptance.
+    assert [message.param2 for message in desk.list_due(1.0)] == [SURFACE]
+    assert kinds(desk, answer()) == ["done"]
 
 
 def test_a_camera_is_proven_by_its_own_answer_alone() -> None:

@@ -60,6 +60,21 @@ def acknowledgement(command: int = mavlink.MAV_CMD_DO_SET_MODE) -> Any:
     return mavlink.MAVLink_command_ack_message(command, 0, 0, 0, 1, OUR_COMPONENT)
 
 
+def test_of_a_vehicle_that_addresses_its_answers_one_without_address_is_anothers() -> None:
+    known = VehiclePeer(Vehicle(), 0.0)
+    nobodys = mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, 0, 0, 0, 0, 0)
+    heard = [beat(), nobodys, acknowledgement(), nobodys, acknowledgement()]
+    for message in heard:
+        message.pack(mavlink.MAVLink(None, 1, 1))
+    assert [known.admit(each, (), 0.0, busy=True) for each in heard] == [
+        True,  # the heartbeat
+        True,  # an older vehicle addresses none
+        True,
+        False,
+        True,
+    ]
+
+
 class Socket:
     """A sender of datagrams that may be anybody, and counts the commands that it gets."""
 
