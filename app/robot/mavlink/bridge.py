@@ -113,7 +113,8 @@ class MavlinkBridge:
         self._now = now
         self._tell_answer = tell_answer
         self._servo = LightsServo(table.vehicle)
-        self._answers = AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
+        kept = Memory(None if table.answers is None else memory, tell)
+        self._answers = AnswerDesk(table.answers, table.vehicle, kept, self._servo)
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0

@@ -281,10 +281,12 @@ def test_a_damaged_memory_sets_nothing(tmp_path: Path, content: bytes) -> None:
         assert diver.vehicle.shown == []
 
 
-def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_path: Path) -> None:
+def test_a_memory_that_cannot_be_written_is_told_at_the_start_and_the_answer_is_shown(
+    tmp_path: Path,
+) -> None:
     with answering(memory=tmp_path / "no folder" / "before") as diver:
-        diver.show(None)
         assert "cannot be written" in diver.wait_for(str(tmp_path))
+        diver.show(None)
         wait_until(lambda: len(diver.vehicle.shown) == 2)
 
 
