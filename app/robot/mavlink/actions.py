@@ -33,6 +33,13 @@ Message = Any
 OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 """MAVLink component id of this computer, which is a part of the vehicle's system."""
 
+GO_ON: Final = (
+    mavlink.MAV_RESULT_ACCEPTED,
+    mavlink.MAV_RESULT_IN_PROGRESS,
+    mavlink.MAV_RESULT_TEMPORARILY_REJECTED,
+)
+"""Results after which a command is repeated until it is done; all others refuse it."""
+
 LEAST_PWM, MOST_PWM = 1100, 1900
 """Pulse lengths in microseconds at which the lights are off, and brightest."""
 
@@ -50,8 +57,11 @@ IGNORE_ALL_BUT_DEPTH: Final = 0b1101_1111_1011
 IGNORE_ALL_BUT_POSITION: Final = 0b1101_1111_1000
 """The same without ``X_IGNORE`` and ``Y_IGNORE``, which ArduSub before 4.5 takes for no depth."""
 
-VERSION_4_5: Final = 4 << 24 | 5 << 16
-"""Version 4.5.0 as ``AUTOPILOT_VERSION`` gives it."""
+VERSION_4_5, VERSION_4_7 = 4 << 24 | 5 << 16, 4 << 24 | 7 << 16
+"""Versions 4.5.0 and 4.7.0 as ``AUTOPILOT_VERSION`` gives them."""
+
+NEEDS_POSITION: Final = ("AUTO", "GUIDED", "CIRCLE", "POSHOLD")
+"""Modes that ArduSub takes only with a position; from 4.5 to 4.6 ``SURFACE`` too."""
 
 NOWHERE: Final = 2**31 - 1
 """A latitude and longitude that there is not: beside ``ALT_HOLD`` ArduSub drops such a target."""
@@ -84,7 +94,14 @@ class Reported:
         """Update the state from a message of the vehicle."""
         match message.get_type():
             case "COMMAND_ACK":
-                self._hear_acknowledgement(message)
+                command = (message.get_srcComponent(), message.command)
+                if message.result not in GO_ON:
+                    self.acknowledged.pop(command, None)
+                elif message.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
+                    is_accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+                    self.acknowledged[command] = is_accepted or self.acknowledged.get(
+                        command, False
+                    )
             case "HEARTBEAT":
                 self.mode = message.custom_mode
             case "VFR_HUD":
@@ -92,24 +109,17 @@ class Reported:
             case "NAV_CONTROLLER_OUTPUT":
                 self.altitude_error = message.alt_error
 
-    def _hear_acknowledgement(self, message: Message) -> None:
-        command = (message.get_srcComponent(), message.command)
-        match message.result:
-            case mavlink.MAV_RESULT_ACCEPTED:
-                self.acknowledged[command] = True
-            case mavlink.MAV_RESULT_IN_PROGRESS:
-                self.acknowledged.setdefault(command, False)
-            case result if result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
-                self.acknowledged.pop(command, None)
 
-
-class LightsServo:
-    """What the vehicle's output for the lights does: that of a motor must never be set.
+class VehicleFacts:
+    """What the vehicle is asked about itself, until it answers.
 
     Attributes
     ----------
     function
-        Number of its ``SERVOn_FUNCTION``; None: not known.
+        Number of the function of its output for the lights, ``SERVOn_FUNCTION``: that of a motor
+        must never be set. None: not known.
+    version
+        Of its ArduSub, as ``AUTOPILOT_VERSION`` gives it; 0: not known.
 
     """
 
@@ -117,6 +127,7 @@ class LightsServo:
         self._vehicle = vehicle
         self._name = f"SERVO{vehicle.lights_servo}_FUNCTION"
         self.function: int | None = None
+        self.version = 0
         self._asked = -math.inf
 
     @property
@@ -128,17 +139,24 @@ class LightsServo:
         return f"output {self._vehicle.lights_servo} drives a motor" if is_motor else ""
 
     def hear(self, message: Message) -> None:
-        """Note the vehicle's answer to the question."""
-        is_answer = message.get_type() == "PARAM_VALUE" and message.param_id == self._name
-        if is_answer and math.isfinite(message.param_value):
-            self.function = round(message.param_value)
+        """Note the vehicle's answer to a question."""
+        match message.get_type():
+            case "AUTOPILOT_VERSION":
+                self.version = message.flight_sw_version
+            case "PARAM_VALUE" if message.param_id == self._name:
+                if math.isfinite(message.param_value):
+                    self.function = round(message.param_value)
 
     def list_due(self, now: float) -> Iterator[Message]:
-        """Yield the question what the output does, again until it is answered."""
-        if self.function is None and now - self._asked >= self._vehicle.repeat_seconds:
-            self._asked = now
-            address = (self._vehicle.system, self._vehicle.component)
+        """Yield the questions that are not answered, each again in the time of a repetition."""
+        if now - self._asked < self._vehicle.repeat_seconds:
+            return
+        self._asked = now
+        address = (self._vehicle.system, self._vehicle.component)
+        if self.function is None:
             yield mavlink.MAVLink_param_request_read_message(*address, self._name.encode(), -1)
+        if not self.version:
+            yield mavlink.MAVLink_autopilot_version_request_message(*address)
 
 
 @dataclass(frozen=True)
@@ -244,6 +262,15 @@ def name_entry(enum: str, number: int) -> str:
     return str(known[number].name.removeprefix(f"{enum}_")) if number in known else ""
 
 
+def describe_refusal(mode: str, version: int) -> str:
+    """Describe when a version of ArduSub refuses a mode; empty if it takes it always."""
+    named = f"ArduSub {version >> 24}.{version >> 16 & 255}"
+    if mode == "SURFTRAK" and version < VERSION_4_5:
+        return f"{named} has no {mode}"
+    needs = mode in NEEDS_POSITION or (mode == "SURFACE" and VERSION_4_5 <= version < VERSION_4_7)
+    return f"{named} takes {mode} only with a position" if needs else ""
+
+
 def describe_sent(action: Action, vehicle: Vehicle) -> str:
     """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
     if isinstance(action, Depth) and isinstance(action.metres, SlotName):
@@ -263,12 +290,6 @@ def describe_step(step: Step) -> str:
         case CommandStep(command=command, parameters=parameters):
             shown = ", ".join(f"{each:g}" for each in parameters)
             return f"{name_entry('MAV_CMD', command)} {shown}"
-
-
-def build_question(vehicle: Vehicle) -> Message:
-    """Build the question which version the autopilot has."""
-    address = (vehicle.system, vehicle.component)
-    return mavlink.MAVLink_autopilot_version_request_message(*address)
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:

@@ -19,7 +19,7 @@ from typing import Final
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import Answer
-from app.robot.mavlink.actions import CommandStep, LightsServo, Message, Step
+from app.robot.mavlink.actions import CommandStep, Message, Step, VehicleFacts
 from app.robot.mavlink.lights_and_tilt import LightsOutput, Output, TiltOutput, build_command
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
@@ -299,7 +299,7 @@ class AnswerDesk:
         The table's; None: nothing is shown.
     memory
         Keeps what was before a pattern.
-    servo
+    facts
         What the lights' output does; None: it is known to be the lights'.
 
     Attributes
@@ -316,9 +316,9 @@ class AnswerDesk:
         answers: Answers | None,
         vehicle: Vehicle,
         memory: Memory | None = None,
-        servo: LightsServo | None = None,
+        facts: VehicleFacts | None = None,
     ) -> None:
-        lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
+        lights, tilt = LightsOutput(vehicle, facts), TiltOutput(vehicle)
         outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
         shown = () if answers is None else answers.show

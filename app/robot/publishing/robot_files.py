@@ -18,9 +18,8 @@ from app.recognition.language.file import short_code
 from app.recognition.text.atomic_files import write_atomically
 from app.robot.active_language import ActiveLanguage
 from app.robot.mavlink.table import (
-    EMERGENCIES,
-    Action,
     VehicleTable,
+    describe_actions,
     parse_vehicle_table,
     read_vehicle_table,
 )
@@ -109,20 +108,15 @@ class RobotFiles:
             return []
         from app.robot.mavlink.actions import describe_sent
 
-        listed: dict[str, Mapping[str, Action]] = {
-            "emergency": {name: EMERGENCIES[does] for name, does in table.emergency.items()},
-            "gesture": table.gestures,
-            "phrase": table.phrases,
-        }
         return [
             {
                 "role": role,
                 "name": name,
-                "does": action.words,
-                "sends": describe_sent(action, table.vehicle),
+                "does": describe_actions(actions),
+                "sends": ", else ".join(describe_sent(each, table.vehicle) for each in actions),
             }
-            for role, actions in listed.items()
-            for name, action in actions.items()
+            for role, listed in table.list_roles().items()
+            for name, actions in listed.items()
         ]
 
     def propose(self, kind: FileKind, content: bytes) -> Proposal:
@@ -259,14 +253,13 @@ def _describe_command(command: Any) -> str:
 
 def compare_tables(old: VehicleTable | None, new: VehicleTable) -> Iterator[str]:
     """Yield the changes of a vehicle table, of emergencies first."""
-    emergencies = ({} if old is None else old.emergency, new.emergency)
-    yield from _compare_actions("EMERGENCY", *emergencies)
-    for role, name in (("gesture", "gestures"), ("phrase", "phrases")):
-        before, after = (
-            {label: action.words for label, action in getattr(table, name).items()} if table else {}
-            for table in (old, new)
-        )
-        yield from _compare_actions(role, before, after)
+    before = {} if old is None else old.list_roles()
+    for role, after in new.list_roles().items():
+        words = [
+            {name: describe_actions(actions) for name, actions in listed.items()}
+            for listed in (before.get(role, {}), after)
+        ]
+        yield from _compare_actions("EMERGENCY" if role == "emergency" else role, *words)
     compared = ("gestures", "phrases", "emergency")
     known = {} if old is None else old.model_dump(exclude=set(compared))
     for key, value in new.model_dump(exclude=set(compared)).items():

@@ -41,6 +41,7 @@ OTHER_KINDS = [
     (mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, "INVALID, GCS"),
     (250, 251, "MAV_AUTOPILOT 251, MAV_TYPE 250"),
 ]
+QUESTIONS = ("HEARTBEAT", "PARAM_REQUEST_READ", "AUTOPILOT_VERSION_REQUEST")
 QUICK: dict[str, Any] = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 0.5}}
 
 
@@ -116,7 +117,7 @@ class Socket:
             for message in codec.parse_buffer(data) or []:
                 if message.get_type() == "STATUSTEXT":
                     self.texts.append(message.text)
-                elif message.get_type() not in ("HEARTBEAT", "PARAM_REQUEST_READ"):
+                elif message.get_type() not in QUESTIONS:
                     self.commands.append(message)
 
     def close(self) -> None:

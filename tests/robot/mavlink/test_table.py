@@ -48,6 +48,8 @@ def read(tmp_path: Path, text: str) -> VehicleTable:
         ('[gestures]\na = { do = "depth", metres = 31 }', "deeper than 30"),
         ('[gestures]\na = { do = "depth", metres = { slot = "m" } }', "has no slots; give metres"),
         ('[emergency]\na = "camera"', "emergency.a: Input should be 'hold' or 'surface'"),
+        ("[emergency]\na = []", "emergency.a: Input should be 'hold' or 'surface'"),
+        ('[emergency]\na = ["hold", {}]', "emergency.a: Input should be 'hold' or 'surface'"),
         ('[gestures]\na = { do = "hold" }\n[emergency]\na = "hold"', "['a'] have two meanings"),
         ('cancel = ["a"]\n[gestures]\na = { do = "hold" }', "['a'] have two meanings"),
         ('[gestures]\na = { do = "hold" }\n[vehicle]\nsystem = 256', "vehicle.system"),
@@ -89,14 +91,15 @@ def test_toml_and_json_say_the_same(tmp_path: Path) -> None:
     content = {"format": "osg-studio/vehicle-table", "version": 1, "gestures": {"down": down}}
     file.write_text(json.dumps(content | {"cancel": ["no"]}))
     assert read_vehicle_table(file) == table
-    assert table.find_action("down") == Depth(do="depth", metres=5)
-    assert table.find_action("no") is None
+    assert table.find_actions("down") == (Depth(do="depth", metres=5),)
+    assert table.find_actions("no") == ()
 
 
 def test_emergencies_are_actions_that_need_no_repetition(tmp_path: Path) -> None:
-    table = read(tmp_path, '[emergency]\nhelp = "hold"')
-    assert table.find_action("help") == Hold()
-    assert table.rules.emergency == {"help"}
+    table = read(tmp_path, '[emergency]\nhelp = "hold"\nup = ["surface", "hold"]')
+    assert table.find_actions("help") == (Hold(),)
+    assert table.find_actions("up") == (Surface(), Hold())
+    assert table.rules.emergency == {"help", "up"}
     assert table.rules.confirmed
 
 
