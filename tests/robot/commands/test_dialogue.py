@@ -86,6 +86,7 @@ def test_what_a_diver_sees_of_a_gesture(
         ("repeat", None, None, Answer.refused),
         ("repeat", None, ("circle", "peak"), Answer.one_of_two),
         ("cancelled", "cross", None, Answer.done),
+        ("cancelled", None, None, Answer.refused),  # by the robot, which has lost it
         ("unexpected", "peak", None, Answer.refused),
         ("timed_out", None, None, Answer.refused),
         ("outside", "peak", None, Answer.refused),
