@@ -212,16 +212,14 @@ class MavlinkBridge:
         used = grammar.uses() if grammar is not None and grammar.phrases else ()
         labels = frozenset(use.label for use in used)
 
-        if self._without_salutes or active.trigger.spots:
-            unguarded = self._table.find_unguarded(language)
-            if unguarded:
-                words = {}
-                self._say(f"no commands without salutes: {unguarded}", mavlink.MAV_SEVERITY_ALERT)
+        spots = self._without_salutes or active.trigger.spots
+        for is_danger, fault in self._table.list_faults(language, spots=spots):
+            words = {} if is_danger else words
+            severity = mavlink.MAV_SEVERITY_ALERT if is_danger else mavlink.MAV_SEVERITY_WARNING
+            self._say(fault, severity)
         decision = self._dialogue.set_table(CommandTable(active.sha256, words, labels))
         if decision is not None:
             self._say(decision.reason)
-        for name in self._table.list_unknown(language):
-            self._say(f"not in the language: {name}", mavlink.MAV_SEVERITY_WARNING)
 
     def _decide_take(self, event: events.TakeEvent) -> None:
         recognized = isinstance(event, events.TakeRecognized)

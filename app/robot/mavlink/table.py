@@ -27,6 +27,8 @@ from typing_extensions import Self
 
 from app.recognition import Language
 from app.recognition.errors import VehicleError
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseParser
 from app.robot.commands.answers import PULSES, Answer
 from app.robot.commands.rules import (
     CONFIRM_SECONDS,
@@ -359,26 +361,34 @@ class VehicleTable(_Entry):
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 
-    def find_unguarded(self, language: Language) -> str:
-        """Return why no gesture may move the vehicle without triggers; empty if one may.
+    def list_faults(self, language: Language, *, spots: bool) -> Iterator[tuple[bool, str]]:
+        """Yield what is wrong with the table in a language, and whether nothing may be commanded.
 
-        A continuous movement would confirm itself: only a message of several gestures may act.
+        Without triggers (`spots`) a movement would confirm itself: only messages may act. An
+        emergency that begins a message would be obeyed with each one. What is only in vain is no
+        danger: what the language lacks, and a gesture that counts within phrases alone.
         """
-        grammar = language.grammar
-        if grammar is None or not grammar.phrases:
-            return f"the language {language.name!r} has no phrases"
-        words = {use.label for use in grammar.uses()}
+        grammar = language.grammar or Grammar()
+        phrases = [phrase.name for phrase in grammar.phrases]
+        words = {use.label for use in grammar.uses()} if phrases else set()
         alone = sorted({*self.gestures, *self.emergency} - (words - {*self.emergency}))
-        return f"{', '.join(alone)} would act alone" if alone else ""
-
-    def list_unknown(self, language: Language) -> Iterator[str]:
-        """Yield, in words, the labels and phrases of the table that the language lacks."""
-        for role, names in (("gestures", self.gestures), ("emergency", self.emergency)):
-            yield from (f"{role}.{label}" for label in names if label not in language.labels)
-        yield from (f"cancel {label}" for label in self.cancel if label not in language.labels)
-        grammar = language.grammar
-        known = () if grammar is None else tuple(phrase.name for phrase in grammar.phrases)
-        yield from (f"phrases.{name}" for name in self.phrases if name not in known)
+        if spots and (alone or not phrases):
+            why = f"{', '.join(alone)} would act alone" if phrases else "there are no phrases"
+            yield True, f"no commands without salutes: {why}"
+        for label in PhraseParser(grammar).expected:
+            if label in self.emergency:
+                yield True, f"no commands: emergency.{label} begins messages"
+        for role, names, known in (
+            ("emergency.", self.emergency, language.labels),
+            ("gestures.", self.gestures, language.labels),
+            ("cancel ", self.cancel, language.labels),
+            ("phrases.", self.phrases, phrases),
+        ):
+            for name in names:
+                if name not in known:
+                    yield False, f"{role}{name} is not in the language {language.name!r}"
+        for label in sorted(words.intersection(self.gestures)):
+            yield False, f"gestures.{label} counts within phrases only"
 
 
 def describe_actions(actions: Sequence[Action]) -> str:

@@ -130,10 +130,14 @@ class RobotFiles:
         """
         if kind == "language":
             new = ActiveLanguage.from_json(content, self._profile)
-            changes = (*self._list_lacking(new), *self._compare_languages(content))
+            changes = (
+                *self._list_unfit(self._read_table(), new),
+                *self._compare_languages(content),
+            )
         else:
             table = parse_vehicle_table(content, self._get_path("vehicle").name)
-            changes = (*compare_tables(self._read_table(), table), *self._list_unfit(table))
+            unfit = self._list_unfit(table, self._read_language())
+            changes = (*compare_tables(self._read_table(), table), *unfit)
         token = hashlib.sha256(self._read(kind) + b"\0" + content + kind.encode()).hexdigest()
         return Proposal(changes, token)
 
@@ -187,26 +191,16 @@ class RobotFiles:
         except LanguageError:
             return None
 
-    def _list_lacking(self, new: ActiveLanguage) -> Iterator[str]:
-        """Yield what the vehicle table names and a new language lacks."""
-        table = self._read_table()
-        if table is not None:
-            unknown = sorted(
-                table.list_unknown(new.recognizer.language),
-                key=lambda name: not name.startswith("emergency"),
-            )
-            yield from (
-                f"the vehicle table names {name}, which the language lacks" for name in unknown
-            )
-
-    def _list_unfit(self, table: VehicleTable) -> Iterator[str]:
-        """Yield what a new vehicle table names and the present language lacks."""
-        language = self._read_language()
-        if language is None:
+    def _list_unfit(
+        self, table: VehicleTable | None, language: ActiveLanguage | None
+    ) -> Iterator[str]:
+        """Yield what is wrong with a vehicle table in a language."""
+        if table is not None and language is None:
             yield "there is no language yet: upload one as well"
-        else:
-            unknown = table.list_unknown(language.recognizer.language)
-            yield from (f"the language {language.name!r} lacks {name}" for name in unknown)
+        elif table is not None and language is not None:
+            spots = language.trigger.spots
+            for _, fault in table.list_faults(language.recognizer.language, spots=spots):
+                yield f"vehicle table: {fault}"
 
     def _compare_languages(self, content: bytes) -> Iterator[str]:
         """Yield the changes of the language, of emergency gestures first."""

@@ -99,6 +99,15 @@ def test_what_a_diver_sees_of_a_part_of_a_message(
     assert find_phrase_answer(kind, label, pair) is answer
 
 
+def test_two_gestures_without_a_command_are_not_asked_about() -> None:
+    decision = dialogue().decide(between("wave", "zigzag", 1), 1)
+    assert (decision.reason, decision.answer) == (
+        "'wave' and 'zigzag' have no command",
+        Answer.refused,
+    )
+    assert dialogue().decide(between("wave", "circle", 1), 1).answer is Answer.one_of_two
+
+
 def test_a_gesture_is_confirmed_by_showing_it_again() -> None:
     assert commands_of(shown("circle", 1), shown("circle", 6)) == [None, "photo"]
 

@@ -76,6 +76,15 @@ def test_of_a_vehicle_that_addresses_its_answers_one_without_address_is_anothers
     ]
 
 
+def test_another_robot_on_the_vehicle_is_told_once() -> None:
+    known = VehiclePeer(Vehicle(), 0.0)
+    ours = mavlink.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
+    for component, message in ((1, beat()), (OUR_COMPONENT, ours), (OUR_COMPONENT, ours)):
+        message.pack(mavlink.MAVLink(None, 1, component))
+        known.admit(message, (), 0.0, busy=False)
+    assert known.take_notices() == ["another robot commands this vehicle too"]
+
+
 class Socket:
     """A sender of datagrams that may be anybody, and counts the commands that it gets."""
 

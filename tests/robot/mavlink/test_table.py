@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
 from app.recognition.errors import VehicleError
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase
 from app.robot.commands.answers import PULSES
 from app.robot.mavlink.table import (
     Answers,
@@ -23,6 +26,7 @@ from app.robot.mavlink.table import (
     read_vehicle_table,
 )
 from tests.conftest import ROOT
+from tests.robot.languages import language_of
 
 KINDS = (Hold, Surface, Mode, Lights, Camera, Depth)
 
@@ -112,3 +116,40 @@ def test_a_depth_that_is_none_is_not_gone_to(tmp_path: Path, shown: object) -> N
         table.resolve_mission([{"phrase": "stay", "slots": {}}])
     (action,) = table.resolve_mission([{"phrase": "go", "slots": {"m": "7.5"}}])
     assert action == Depth(do="depth", metres=7.5)
+
+
+WORDS = Phrase("go", (OneOf(("circle",)), OneOf(("line",))), {}, "go")
+
+
+@pytest.mark.parametrize(
+    ("table", "grammar", "faults"),
+    [
+        ('[gestures]\nline = { do = "hold" }', None, []),
+        (
+            '[gestures]\nline = { do = "hold" }',
+            Grammar((WORDS,)),
+            [(False, "gestures.line counts within phrases only")],
+        ),
+        (
+            '[emergency]\ncircle = "surface"',
+            Grammar((WORDS,)),
+            [(True, "no commands: emergency.circle begins messages")],
+        ),
+        (
+            '[emergency]\nsquare = "surface"',
+            Grammar((WORDS,), start="square"),
+            [(True, "no commands: emergency.square begins messages")],
+        ),
+        ('[emergency]\nsquare = "surface"', Grammar((WORDS,), cancel="square"), []),
+        (
+            '[phrases]\nstay = { do = "hold" }',
+            Grammar((WORDS,)),
+            [(False, "phrases.stay is not in the language 'pool'")],
+        ),
+    ],
+)
+def test_what_a_table_cannot_do_in_a_language_is_known_before_the_dive(
+    tmp_path: Path, table: str, grammar: Grammar | None, faults: list[tuple[bool, str]]
+) -> None:
+    language = replace(language_of("circle", "line", "square"), grammar=grammar)
+    assert [*read(tmp_path, table).list_faults(language, spots=False)] == faults
