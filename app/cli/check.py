@@ -17,7 +17,6 @@ from app.recognition.health.choice import describe_people, measure_confusions
 from app.recognition.health.forecast import Outcome
 from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
 from app.resources import known_signs_file
-from app.robot.mavlink.table import read_vehicle_table
 
 HAS_ERRORS = 1
 """Exit code when the report has an error."""
@@ -62,6 +61,8 @@ def check(
 
 def _list_table_faults(file: Path, language: Language) -> list[str]:
     """List what is wrong with a vehicle table in a language."""
+    from app.robot.mavlink.table import read_vehicle_table
+
     table = read_vehicle_table(file)
     return [fault for _, fault in table.list_faults(language, spots=language.trigger.spots)]
 
