@@ -3,7 +3,8 @@
 It is plain ASGI, for HTTP and websockets alike. A browser lets every web page send requests to
 127.0.0.1, and with DNS rebinding the page can even read the answers. Therefore `Host` must be ours,
 a request that changes something must come from our own page (Fetch Metadata and `Origin`, no CSRF
-tokens), and a websocket, which no same-origin policy covers, must send our own `Origin`.
+tokens), and a websocket, which no same-origin policy covers, must not send a foreign `Origin`.
+Browsers send it with every websocket; other programs need not.
 """
 
 from __future__ import annotations
