@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 from app.bags.bag_kind import METADATA, split_parts
+from app.bags.mcap_chunks import limit_chunks, require_little_overlap
 from app.bags.session_reader import TOPICS as SESSION_TOPICS
 from app.bags.session_reader import SessionReader, is_session
 from app.bags.staging import stage
@@ -294,6 +295,7 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
     place = Path(path)
     with explain_missing_package(f"the dive recording {place.name}", *NEEDED):
         from rosbags.rosbag2 import Reader
+    limit_chunks()
     with ExitStack() as open_things:
         found = open_things.enter_context(stage(place))
         with _convert_errors(found, place.name):
@@ -305,6 +307,8 @@ def open_bag(path: str | Path) -> Iterator[Bag]:
                 is_split = found.is_dir() and not (found / METADATA).is_file()
                 parts = split_parts(found) if is_split else []
                 readers = [open_things.enter_context(Reader(part)) for part in parts or (found,)]
+                for each in readers:
+                    require_little_overlap(each)
                 reader = SplitReader(readers, place.name) if parts else readers[0]
                 bag = Bag(reader, found, place.name)
         yield bag

@@ -13,6 +13,7 @@ from typing import IO, Any, Final
 
 import numpy as np
 
+from app.bags.mcap_chunks import require_stated_sizes
 from app.recognition.errors import BagError
 from app.recognition.poses.frame import SIDES, Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS
@@ -76,6 +77,7 @@ class SessionReader:
         summary = self._reader.get_summary()
         if summary is None or summary.statistics is None:
             raise BagError("the session was not written to its end; export it again")
+        require_stated_sizes(file, summary.chunk_indexes)
         counts = summary.statistics.channel_message_counts
         self.frames = sum(
             counts.get(channel.id, 0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import stat
-import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -11,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from zipfile import ZipFile, ZipInfo
 
 from app.bags.bag_kind import METADATA, BagKind, kind_of, split_parts
+from app.bags.mcap_chunks import load_zstd
 from app.recognition.errors import BagError
 from app.system.stand_in import stand_in
 from app.system.zip_archive import (
@@ -177,11 +177,7 @@ def _require_no_log(files: Iterable[str], name: str) -> None:
 
 def _require_small(folder: Path, name: str) -> None:
     """Refuse files that the reader would unpack a second time to more than is allowed."""
-    # As the reader does, which brings the second one.
-    if sys.version_info >= (3, 14):
-        from compression import zstd
-    else:
-        from backports import zstd
+    zstd = load_zstd()
     left = MOST_BYTES
     for path in folder.iterdir():
         # What is not packed by zstd raises this at once.

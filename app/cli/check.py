@@ -29,15 +29,19 @@ def check(
         int | None,
         typer.Option(min=1, metavar="K", help="Name the K gestures that are told apart best."),
     ] = None,
+    vehicle: Annotated[
+        Path | None, typer.Option(help="Also check a vehicle table of `osg-studio robot`.")
+    ] = None,
 ) -> None:
     """Check a language before the dive: what others will reach, and what is wrong.
 
-    The exit code is 1 when the report has an error.
+    The exit code is 1 when the report has an error, or the vehicle table does not fit.
     """
     language = Language.load(file)
     if keep is not None:
         _show_choice(language, keep, as_json=as_json)
         return
+    faults = [] if vehicle is None else _list_table_faults(vehicle, language)
     with progress_bar("check") as advance:
         report = check_health(
             language,
@@ -45,11 +49,22 @@ def check(
             known_signs=Language.load(known_signs_file()),
         )
     if as_json:
-        typer.echo(json.dumps(report.to_dict(), allow_nan=False))
+        told = report.to_dict() | ({} if vehicle is None else {"vehicle": faults})
+        typer.echo(json.dumps(told, allow_nan=False))
     else:
         typer.echo(format_report(report), nl=False)
-    if not report.ok:
+        for fault in faults:
+            typer.echo(f"error: vehicle table: {fault}")
+    if faults or not report.ok:
         raise typer.Exit(HAS_ERRORS)
+
+
+def _list_table_faults(file: Path, language: Language) -> list[str]:
+    """List what is wrong with a vehicle table in a language."""
+    from app.robot.mavlink.table import read_vehicle_table
+
+    table = read_vehicle_table(file)
+    return [fault for _, fault in table.list_faults(language, spots=language.trigger.spots)]
 
 
 def _show_choice(language: Language, keep: int, *, as_json: bool) -> None:

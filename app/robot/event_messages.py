@@ -15,7 +15,7 @@ from typing import Annotated, Any, Final, Literal, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, create_model, model_validator
 
-from app.recognition.phrases.parser import PhraseEventKind
+from app.recognition.phrases.parser import CancelReason, PhraseEventKind
 from app.recognition.text.described import DESCRIBED, read_descriptions
 from app.robot.events import JSON_TYPE, Event, PhraseHeard, Revision, Seconds, Sha256, Share
 
@@ -70,6 +70,9 @@ class PhraseHeardMessage(Message):
     """What may come next."""
     mission: tuple[MeaningMessage, ...] | None
     """What to do; only when complete."""
+    reason: CancelReason | None = None
+    """Why it is cancelled; only then. cancel_gesture: the diver's own wish. lost_source (camera or
+    diver), end, new_language: the robot has lost the message, and it is not done."""
     text: str
     """In words, for the diver."""
     confidence: Share = 0.0

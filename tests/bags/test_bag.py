@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import re
 import sqlite3
+import struct
 import sys
+import tracemalloc
+from collections import deque
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mcap.reader import make_reader
+from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import get_types_from_msg
@@ -17,6 +23,7 @@ from app.bags.bag import DEFINITIONS, USES, open_bag
 from app.bags.extraction import record_bag
 from app.bags.image_topic import BagFrames
 from app.bags.keypoint_topic import _READERS
+from app.bags.mcap_chunks import require_stated_sizes
 from app.bags.topic_summary import usable_topics
 from app.recognition.errors import BagError, TopicError, VideoError
 from tests.api.recordings import recording_of
@@ -316,3 +323,65 @@ def test_the_packages_beside_are_found() -> None:
 
 def test_every_type_of_keypoints_can_be_read() -> None:
     assert {kind for kind, use in USES.items() if use == "keypoints"} == set(_READERS)
+
+
+def packed_bag(path: Path, *, chunks: int, size: int, compression: str = "zstd") -> Path:
+    """Write an MCAP file of ROS 2 whose chunks hold zeros and all begin at the same time."""
+    with path.open("wb") as file:
+        writer = McapWriter(file, chunk_size=1, compression=CompressionType[compression.upper()])
+        writer.start(profile="ros2", library="test")
+        schema = writer.register_schema(
+            "sensor_msgs/msg/CompressedImage", "ros2msg", b"uint8[] data"
+        )
+        channel = writer.register_channel("/camera", "cdr", schema)
+        for _ in range(chunks):
+            writer.add_message(channel, 1, bytes(size), 1)
+        writer.finish()  # type: ignore[no-untyped-call]
+    return path
+
+
+@pytest.mark.withstands(row="H28")
+@pytest.mark.parametrize("compression", ["zstd", "lz4"])
+@pytest.mark.parametrize(("chunks", "size"), [(1, 300_000_000), (6, 60_000_000)])
+def test_a_recording_that_would_take_all_memory_is_refused_before_it_is_unpacked(
+    tmp_path: Path, compression: str, chunks: int, size: int
+) -> None:
+    file = packed_bag(tmp_path / "dive.mcap", chunks=chunks, size=size, compression=compression)
+    tracemalloc.start()
+    try:
+        with pytest.raises(BagError, match="must be unpacked at once"), open_bag(file) as bag:
+            bag.durations()
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()
+
+
+@pytest.mark.parametrize("compression", ["zstd", "lz4"])
+def test_a_chunk_is_unpacked_only_as_far_as_its_header_says(
+    tmp_path: Path, compression: str
+) -> None:
+    file = packed_bag(tmp_path / "dive.mcap", chunks=1, size=200_000_000, compression=compression)
+    content = file.read_bytes()
+    stated = re.search(rb"\x06.{8}.{16}(.{8})", content, re.DOTALL)
+    assert stated is not None
+    file.write_bytes(content.replace(stated[1], struct.pack("<Q", 1000)))
+    tracemalloc.start()
+    try:
+        with pytest.raises(BagError, match="damaged"), open_bag(file) as bag:
+            deque(bag.messages("/camera"), maxlen=0)
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()
+
+
+def test_a_session_is_not_unpacked_further_than_its_index_says(tmp_path: Path) -> None:
+    for compression in ("zstd", "lz4"):
+        path = packed_bag(tmp_path / compression, chunks=1, size=1000, compression=compression)
+        with path.open("rb") as file:
+            summary = make_reader(file).get_summary()
+            assert summary is not None
+            if compression == "zstd":
+                require_stated_sizes(file, summary.chunk_indexes)
+                summary.chunk_indexes[0].uncompressed_size -= 1
+            with pytest.raises(BagError, match="not as its index says"):
+                require_stated_sizes(file, summary.chunk_indexes)

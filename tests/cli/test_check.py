@@ -114,3 +114,21 @@ def test_the_limit_is_one_line_with_both_costs_or_says_that_one_person_has_shown
     assert costs.endswith("accepts 0% (0%-24%, n 12) of missing gestures")
     alone = format_report(check_health(pool(circle=circle))).splitlines()
     assert "limit: a cautious constant, because one person has shown this language" in alone
+
+
+def test_a_vehicle_table_that_does_not_fit_is_an_error(
+    osg_studio: OsgStudio, tmp_path: Path
+) -> None:
+    (drawn,) = pool(circle=circle).gestures
+    file, table = tmp_path / "pictures.json", tmp_path / "vehicle.toml"
+    Language("pool", [Gesture(label="old", salient=("right_wrist",), image=drawn.image)]).save(file)
+    head = 'format = "osg-studio/vehicle-table"\nversion = 1\n'
+    text = head + '[gestures]\n{label} = { do = "hold" }\n'
+    table.write_text(text.replace("{label}", "old"))
+    assert osg_studio("check", file, "--vehicle", table).code == 0
+    table.write_text(text.replace("{label}", "new"))
+    ended = osg_studio("check", file, "--vehicle", table)
+    told = "gestures.new is not in the language 'pool'"
+    assert (ended.code, f"error: vehicle table: {told}" in ended.out) == (1, True)
+    ended = osg_studio("check", file, "--vehicle", table, "--json")
+    assert (ended.code, json.loads(ended.out)["vehicle"]) == (1, [told])

@@ -58,6 +58,9 @@ MOST_INVITED: Final = 1
 INVITED_SECONDS: Final = 90.0
 """Longest look at an invited person's camera, for one take: another one may wait for the place."""
 
+PLACE_SECONDS: Final = 3.0
+"""Seconds to wait for a place: longer than who left it takes to process a last frame."""
+
 SILENCE_SECONDS: Final = 60.0
 """Seconds without frames after which a view is closed, to make place for another one."""
 
@@ -114,9 +117,7 @@ async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
     # Only an accepted websocket can be closed with a reason.
     await browser.accept(None if invitation is None else INVITED_PROTOCOL)
     try:
-        if places.locked():
-            raise _End(TRY_AGAIN_LATER, full)
-        async with places, _view(browser, studio, language_id) as view:
+        async with _place(places, full), _view(browser, studio, language_id) as view:
             try:
                 await asyncio.wait_for(view.run(), seconds)
             except TimeoutError as error:
@@ -124,6 +125,19 @@ async def watch_camera(browser: WebSocket, studio: CurrentStudio) -> None:
     except _End as end:
         with contextlib.suppress(RuntimeError, WebSocketDisconnect):
             await browser.close(end.code, end.reason)
+
+
+@asynccontextmanager
+async def _place(places: asyncio.Semaphore, full: str) -> AsyncIterator[None]:
+    """Hold a place; one that was left a moment ago is free once its last frame is processed."""
+    try:
+        await asyncio.wait_for(places.acquire(), PLACE_SECONDS)
+    except TimeoutError as error:
+        raise _End(TRY_AGAIN_LATER, full) from error
+    try:
+        yield
+    finally:
+        places.release()
 
 
 @asynccontextmanager

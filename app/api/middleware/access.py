@@ -3,7 +3,8 @@
 It is plain ASGI, for HTTP and websockets alike. A browser lets every web page send requests to
 127.0.0.1, and with DNS rebinding the page can even read the answers. Therefore `Host` must be ours,
 a request that changes something must come from our own page (Fetch Metadata and `Origin`, no CSRF
-tokens), and a websocket, which no same-origin policy covers, must send our own `Origin`.
+tokens), and a websocket, which no same-origin policy covers, must not send a foreign `Origin`.
+Browsers send it with every websocket; other programs need not.
 """
 
 from __future__ import annotations
@@ -233,7 +234,7 @@ class TokenRequired:
         if scope["type"] not in ("http", "websocket") or _is_below(scope["path"], *OPEN_PATHS):
             return await self._app(scope, receive, send)
         sign_ins: SignInStore = scope["app"].state.studio.sign_ins
-        answer: Identity | tuple[Identity, Proof] | ProblemError | Response
+        answer: tuple[Identity, Proof] | ProblemError | Response
         try:
             if _is_below(scope["path"], INVITED):
                 answer = await self._answer_invited(scope)
@@ -244,14 +245,9 @@ class TokenRequired:
         except StoreError as error:
             answer = problem_of(error)
         match answer:
-            case Identity() as inviter:
-                scope["state"]["identity"] = inviter
-                return await self._app(scope, receive, send)
             case (identity, proof):
                 scope.setdefault("state", {})["identity"] = identity
-                return await self._connections.answer(
-                    self._app, scope, receive, send, proof=proof, sign_ins=sign_ins
-                )
+                return await self._connections.answer(self._app, scope, receive, send, proof=proof)
             case ProblemError():
                 return await _refuse(answer, scope, receive, send)
             case Response():
@@ -302,7 +298,7 @@ class TokenRequired:
             )
         return response
 
-    async def _answer_invited(self, scope: Scope) -> Identity | ProblemError:
+    async def _answer_invited(self, scope: Scope) -> tuple[Identity, Proof] | ProblemError:
         """Return in whose name the sender of an invited take acts, or the answer that refuses it.
 
         Neither a session nor any other token counts here, so that the page of invited people shows
@@ -324,7 +320,7 @@ class TokenRequired:
         if found.closed or owner is None:
             return problem_of(closed(found.closed or "withdrawn"))
         scope.setdefault("state", {})["invitation"] = found
-        return owner
+        return owner, Proof(invitation=token)
 
     def _of_token(self, shown: str, client: str) -> Identity | ProblemError:
         """Return the identity of a token by its digest; count and refuse a wrong one."""

@@ -1,4 +1,4 @@
-"""Open connections: ends those whose token was withdrawn or lowered, or whose session ended.
+"""Open connections: ends those whose token, session or invitation is not valid any more.
 
 A request is let in once, but a stream, a websocket, a download or an upload may last for hours.
 """
@@ -16,11 +16,12 @@ from typing import Any, Final
 from starlette.concurrency import run_in_threadpool
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.api.http.problems import ProblemError
+from app.api.http.problems import ProblemError, problem_of
 from app.api.http.websockets import POLICY_VIOLATION
 from app.api.middleware.roles import SAFE_METHODS, includes, needed_role
 from app.api.services.identities import ANYBODY, Identities, Identity
-from app.store import Role, SignInStore, StoreError
+from app.store import InvitationStore, Role, SignInStore, StoreError
+from app.store.invitations import closed
 from app.store.tokens import TokensUnavailable
 
 WATCH_SECONDS: Final = 1.0
@@ -34,10 +35,14 @@ logger = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Proof:
-    """What a connection was let in by: a token's digest, a session's cookie, or nothing needed."""
+    """What a connection was let in by: a digest, a session's cookie, or nothing needed.
+
+    The digest is that of a token, or of an invitation's token.
+    """
 
     token: str = ""
     cookie: str = ""
+    invitation: str = ""
 
 
 class OpenConnections:
@@ -63,24 +68,27 @@ class OpenConnections:
         send: Send,
         *,
         proof: Proof,
-        sign_ins: SignInStore,
     ) -> None:
         """Answer a request by `app` as long as its proof and role are sufficient."""
+        studio = scope["app"].state.studio
         connection = _Connection(scope, receive, send, proof)
         self._open.add(connection)
         if self._watching is None or self._watching.done():
-            self._watching = asyncio.create_task(self._watch(sign_ins))
+            self._watching = asyncio.create_task(self._watch(studio.sign_ins, studio.invitations))
         try:
             await connection.answer(app)
         finally:
             self._open.discard(connection)
 
-    async def _watch(self, sign_ins: SignInStore) -> None:
+    async def _watch(self, sign_ins: SignInStore, invitations: InvitationStore) -> None:
         """Look again and again, while anything is open."""
         while self._open:
             await asyncio.sleep(WATCH_SECONDS)
             try:
-                valid = await self._identify({each.proof for each in self._open}, sign_ins)
+                proofs = {each.proof for each in self._open}
+                invited = {proof for proof in proofs if proof.invitation}
+                valid = await self._identify(proofs - invited, sign_ins)
+                valid |= await run_in_threadpool(self._identify_invited, invited, invitations)
             except Exception:
                 logger.exception("the tokens of open connections could not be looked at")
                 continue
@@ -89,6 +97,19 @@ class OpenConnections:
                     identity = valid[connection.proof]
                     if identity is None or not includes(identity.role, connection.needed):
                         connection.end()
+
+    def _identify_invited(
+        self, proofs: Set[Proof], invitations: InvitationStore
+    ) -> dict[Proof, Identity | None]:
+        """Return in whose name invited people act; leave out what cannot be told now."""
+        found: dict[Proof, Identity | None] = {}
+        with contextlib.suppress(StoreError, TokensUnavailable):
+            for proof in proofs:
+                made = invitations.find(proof.invitation)
+                found[proof] = None
+                if made is not None and made.closed is None:
+                    found[proof] = self._identities.of_inviter(made.owner, made.created)
+        return found
 
     async def _identify(
         self, proofs: Set[Proof], sign_ins: SignInStore
@@ -150,7 +171,7 @@ class _Connection:
             self._task.uncancel()
         if self._websocket and self._ended_at is not None and not self._closed:
             with contextlib.suppress(RuntimeError, OSError):
-                code, reason = POLICY_VIOLATION, withdrawn().code
+                code, reason = POLICY_VIOLATION, withdrawn(self.proof).code
                 await self._send({"type": "websocket.close", "code": code, "reason": reason})
 
     def end(self) -> None:
@@ -190,7 +211,7 @@ class _Connection:
 
     def _refuse(self) -> Message:
         if not self._websocket:
-            raise withdrawn()
+            raise withdrawn(self.proof)
         return {"type": "websocket.disconnect", "code": POLICY_VIOLATION, "reason": ""}
 
     async def _send_until_ended(self, message: Message) -> None:
@@ -201,14 +222,16 @@ class _Connection:
         elif message["type"] == "http.response.start" and not self._begun:
             if self._ended_at is not None and self._scope["method"] in SAFE_METHODS:
                 self._refused = True
-                await withdrawn().response()(self._scope, self._receive, self._send)
+                await withdrawn(self.proof).response()(self._scope, self._receive, self._send)
             self._begun = True
         if not self._refused:
             await self._send(message)
 
 
-def withdrawn() -> ProblemError:
-    """Return the problem of a request whose token was withdrawn before it was answered."""
+def withdrawn(proof: Proof) -> ProblemError:
+    """Return the problem of a request whose proof was withdrawn before it was answered."""
+    if proof.invitation:
+        return problem_of(closed("withdrawn"))
     detail = (
         "the token was withdrawn or may do less now, or its session has ended, so this was "
         "refused; sign in again"

@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, WebSocket
-from pydantic import Field, TypeAdapter, ValidationError
+from pydantic import Field, StrictBool, TypeAdapter, ValidationError
 
 from app.api.events.broadcast import Unread
 from app.api.http.schemas.values import Body
@@ -47,7 +47,7 @@ class Loop(Body):
     """Repeat the range on display, or play on."""
 
     do: Literal["loop"]
-    on: bool
+    on: StrictBool
 
 
 Command = Annotated[Seek | Step | Play | Loop, Field(discriminator="do")]

@@ -6,6 +6,7 @@ from http import HTTPStatus
 from typing import Final
 
 from fastapi import APIRouter, Response
+from pydantic import StrictBool
 
 from app.api.http.problems import ProblemError, problem_responses
 from app.api.http.schemas.values import Body, View
@@ -22,11 +23,11 @@ UNSHOWABLE: Final = HTTPStatus(422).name.lower()
 class WorkspaceOptions(Body):
     """How a workspace looks."""
 
-    dark: bool = True
+    dark: StrictBool = True
     """Dark colours rather than light ones."""
-    flat: bool = True
+    flat: StrictBool = True
     """The picture square to the camera rather than the space-time cube."""
-    animate: bool = True
+    animate: StrictBool = True
     """Move between the two, for people who do not mind moving pictures."""
 
 

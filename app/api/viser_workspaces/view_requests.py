@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from app.api.http.schemas.values import Body
 from app.api.services.running_studio import Studio
@@ -22,7 +22,7 @@ class ViewRequest(Body):
     language_id: Annotated[str | None, Field(max_length=64)] = None
     start: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
     end: Annotated[float | None, Field(ge=0, allow_inf_nan=False)] = None
-    keep_frame: bool = False
+    keep_frame: StrictBool = False
     """Whether the clock goes on where it is, in the same clip."""
 
 

@@ -332,9 +332,8 @@ def open_bridge(
     Raises
     ------
     VehicleError
-        When its library is missing, the table is invalid or names a label or phrase that the
-        language lacks, a continuous movement could confirm itself, or the vehicle's address cannot
-        be used.
+        When its library is missing, the table is invalid or does not fit the language, or the
+        vehicle's address cannot be used.
     OSError
         When the table or its key cannot be read.
 
@@ -345,16 +344,11 @@ def open_bridge(
         from app.robot.mavlink.table import read_signing_key, read_vehicle_table
     table = read_vehicle_table(table_file)
     language = listener.language.recognizer.language
-    if unknown := list(table.list_unknown(language)):
-        raise VehicleError(
-            f"{table_file}: {', '.join(unknown)} is not in the language {language.name!r}, which "
-            f"has {', '.join(language.labels)}; correct the table or choose its language"
-        )
     spots = options.without_salutes or listener.language.trigger.spots
-    if spots and (reason := table.find_unguarded(language)):
+    if faults := [fault for _, fault in table.list_faults(language, spots=spots)]:
         raise VehicleError(
-            f"without salutes a movement would confirm itself, and {reason}: command the vehicle "
-            "by phrases alone, or with salutes"
+            f"{table_file}: {'; '.join(faults)}; correct the table or choose its language "
+            f"(this one has {', '.join(language.labels)})"
         )
     key = read_signing_key(table, table_file)
     named = table.vehicle.key_file

@@ -27,6 +27,10 @@ PhraseEventKind = Literal[
     "outside",
 ]
 
+CancelReason = Literal["cancel_gesture", "lost_source", "end", "new_language"]
+"""Why a message is cancelled: by its diver, or because camera or diver were lost, the source ended,
+or another language was loaded."""
+
 ENOUGH = 2
 """Parses kept for a position: with two the message is ambiguous, whatever a third is."""
 
@@ -53,6 +57,8 @@ class PhraseEvent:
         Labels that may come next, in the grammar's order.
     mission
         The meaning of the message; only when complete.
+    reason
+        Why the message is cancelled; only then.
     start, end
         Seconds at which the message so far starts and ends, in the clock of the gestures.
 
@@ -64,6 +70,7 @@ class PhraseEvent:
     pair: tuple[str, str] | None = None
     expected: tuple[str, ...]
     mission: Mission | None = None
+    reason: CancelReason | None = None
     start: float
     end: float
 
@@ -80,7 +87,11 @@ class PhraseEvent:
             "continues": f"{so_far}: then {following}",
             "complete": so_far,
             "ambiguous": f"{so_far} has two meanings; nothing is done",
-            "cancelled": "cancelled",
+            "cancelled": {
+                "lost_source": f"{so_far}: the camera lost the diver; begin again",
+                "end": f"{so_far}: the recording ends before the message",
+                "new_language": f"{so_far}: another language was loaded; begin again",
+            }.get(self.reason or "", "cancelled"),
             "timed_out": f"{so_far}: waited too long for {following}; begin again",
             "unexpected": f"{self.label} does not follow {so_far}, {following} does; begin again",
             "repeat": f"not recognised, show it again: {following}",
@@ -187,9 +198,11 @@ class PhraseParser:
             return (self._end_message(None, parses),)
         return (self._drop("timed_out", None),)
 
-    def abandon(self) -> tuple[PhraseEvent, ...]:
-        """Drop an unfinished message."""
-        return (self._drop("cancelled", None),) if self._message.gestures else ()
+    def abandon(self, reason: CancelReason) -> tuple[PhraseEvent, ...]:
+        """Drop an unfinished message for a reason that is not its diver's."""
+        if not self._message.gestures:
+            return ()
+        return (replace(self._drop("cancelled", None), reason=reason),)
 
     def _advance(
         self, label: str | None, start: float, end: float, pair: tuple[str, str] | None = None
@@ -204,7 +217,7 @@ class PhraseParser:
             self._message = replace(self._message, asked=asked != (pair is not None))
             return (told if asked else replace(told, pair=pair),)
         if before.gestures and label == self.grammar.cancel:
-            return (self._drop("cancelled", label),)
+            return (replace(self._drop("cancelled", label), reason="cancel_gesture"),)
         following = self._following(label)
         if not following:
             return self._handle_unexpected(label, start, end)

@@ -134,7 +134,8 @@ class Recording:
         try:
             _require_size(source)
             with np.load(source, allow_pickle=False) as archive:
-                return cls._from_arrays({name: archive[name] for name in archive.files})
+                # Unpacks what is asked for, so that an array of an unknown name stays packed.
+                return cls._from_arrays(archive)
         except PoseError:
             raise
         except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:

@@ -45,9 +45,14 @@ PULSES = {answer: number for number, answer in enumerate(Answer, start=1)}
 
 
 def find_phrase_answer(kind: str, label: str | None, pair: tuple[str, str] | None) -> Answer | None:
-    """Return what the diver should see after a phrase event; see ``osg_interfaces/Phrase``."""
+    """Return what the diver should see after a phrase event; see ``osg_interfaces/Phrase``.
+
+    A message without a `label` is cancelled by no gesture: the robot has lost it.
+    """
     if kind == "repeat" and pair is not None:
         return Answer.one_of_two
     if kind == "outside" and label is None:
         return None
-    return {"continues": Answer.listening, "cancelled": Answer.done}.get(kind, Answer.refused)
+    if kind == "cancelled" and label is not None:
+        return Answer.done
+    return Answer.listening if kind == "continues" else Answer.refused

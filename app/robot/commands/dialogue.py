@@ -441,6 +441,9 @@ class CommandDialogue:
         if (pending and pending.mission) or self._phrase_only.issuperset(pair):
             return self._ask(pair)
         self.pending = None
+        if not {*self.table.commands, *self.rules.cancel}.intersection(pair):
+            named = " and ".join(map(repr, pair))
+            return Decision(f"{named} have no command", answer=Answer.refused)
         in_time = pending if self._is_repetition(pending, gesture) else None
         if in_time and in_time.asked:
             return Decision("not understood; begin again", answer=Answer.refused)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from app.recognition import PoseSequence
-from app.recognition.phrases.parser import PhraseEvent, PhraseParser
+from app.recognition.phrases.parser import CancelReason, PhraseEvent, PhraseParser
 from app.recognition.recording.segmentation import TakeState
 from app.robot.active_language import ActiveLanguage
 from app.robot.events import Event, PhraseHeard, TakeEvent, TakeRecognized, TakeRejected
@@ -46,7 +46,7 @@ class PhraseListener(WrappingListener):
         if self.order.late > late:
             return tuple(events)
         if time < self._time:  # another stream
-            events += self._cancel_message(time)
+            events += self._cancel_message(time, "lost_source")
         self._time = time
         events += self._add_phrases(found)
         # An open take may still continue the message, so a pause cannot end it yet.
@@ -57,18 +57,18 @@ class PhraseListener(WrappingListener):
     def abandon(self, time: float, reason: str) -> tuple[Event, ...]:
         """Clear the memory and cancel an open message."""
         events = self._add_phrases(self._listener.abandon(time, reason))
-        return (*events, *self._cancel_message(time))
+        return (*events, *self._cancel_message(time, "lost_source"))
 
     def finish(self) -> tuple[Event, ...]:
         """End the stream and cancel an open message."""
         events = self._add_phrases(self._listener.finish())
-        return (*events, *self._cancel_message(self._time))
+        return (*events, *self._cancel_message(self._time, "end"))
 
     def set_language(self, language: ActiveLanguage) -> None:
         """Recognise another language; an open message of the previous one is cancelled."""
         self._listener.set_language(language)
         if self._parser is not None:
-            self._cancelled += self._parser.abandon()
+            self._cancelled += self._parser.abandon("new_language")
         self._parser = create_parser(language)
 
     def _add_phrases(self, events: Iterable[Event]) -> tuple[Event, ...]:
@@ -89,8 +89,8 @@ class PhraseListener(WrappingListener):
             added += self._to_events(event.time, heard)
         return tuple(added)
 
-    def _cancel_message(self, time: float) -> tuple[PhraseHeard, ...]:
-        return () if self._parser is None else self._to_events(time, self._parser.abandon())
+    def _cancel_message(self, time: float, reason: CancelReason) -> tuple[PhraseHeard, ...]:
+        return () if self._parser is None else self._to_events(time, self._parser.abandon(reason))
 
     def _to_events(self, time: float, phrases: Iterable[PhraseEvent]) -> tuple[PhraseHeard, ...]:
         active = self.language

@@ -1,16 +1,16 @@
 """Vehicle actions as MAVLink: the messages that request an action, and the proof that it is done.
 
-A mode counts as set when it is acknowledged and the heartbeat shows it: an acknowledgement alone
-could belong to an earlier command, a heartbeat alone could date from before a restart. ArduSub does
-not acknowledge a depth, which counts as set when the reported target is that depth. Lights and
-camera are only acknowledged.
+A mode counts as set when it is acknowledged, also as in progress, and the heartbeat shows it: an
+acknowledgement alone could belong to an earlier command, a heartbeat alone could date from before a
+restart. ArduSub does not acknowledge a depth, which counts as set when the reported target is that
+depth. Lights and camera are only acknowledged.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -33,6 +33,13 @@ Message = Any
 OUR_COMPONENT: Final = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 """MAVLink component id of this computer, which is a part of the vehicle's system."""
 
+GO_ON: Final = (
+    mavlink.MAV_RESULT_ACCEPTED,
+    mavlink.MAV_RESULT_IN_PROGRESS,
+    mavlink.MAV_RESULT_TEMPORARILY_REJECTED,
+)
+"""Results after which a command is repeated until it is done; all others refuse it."""
+
 LEAST_PWM, MOST_PWM = 1100, 1900
 """Pulse lengths in microseconds at which the lights are off, and brightest."""
 
@@ -50,8 +57,11 @@ IGNORE_ALL_BUT_DEPTH: Final = 0b1101_1111_1011
 IGNORE_ALL_BUT_POSITION: Final = 0b1101_1111_1000
 """The same without ``X_IGNORE`` and ``Y_IGNORE``, which ArduSub before 4.5 takes for no depth."""
 
-VERSION_4_5: Final = 4 << 24 | 5 << 16
-"""Version 4.5.0 as ``AUTOPILOT_VERSION`` gives it."""
+VERSION_4_5, VERSION_4_7 = 4 << 24 | 5 << 16, 4 << 24 | 7 << 16
+"""Versions 4.5.0 and 4.7.0 as ``AUTOPILOT_VERSION`` gives them."""
+
+NEEDS_POSITION: Final = ("AUTO", "GUIDED", "CIRCLE", "POSHOLD")
+"""Modes that ArduSub takes only with a position; from 4.5 to 4.6 ``SURFACE`` too."""
 
 NOWHERE: Final = 2**31 - 1
 """A latitude and longitude that there is not: beside ``ALT_HOLD`` ArduSub drops such a target."""
@@ -63,8 +73,9 @@ class Reported:
 
     Attributes
     ----------
-    accepted
-        Number of the command that the vehicle accepted.
+    acknowledged
+        Whether the vehicle accepted a command, or has only begun it, by the component that
+        acknowledged it and the command's number. A refusal takes it back.
     mode
         Number of the vehicle's mode.
     altitude
@@ -74,7 +85,7 @@ class Reported:
 
     """
 
-    accepted: int | None = None
+    acknowledged: dict[tuple[int, int], bool] = field(default_factory=dict)
     mode: int | None = None
     altitude: float | None = None
     altitude_error: float | None = None
@@ -82,8 +93,15 @@ class Reported:
     def hear(self, message: Message) -> None:
         """Update the state from a message of the vehicle."""
         match message.get_type():
-            case "COMMAND_ACK" if message.result == mavlink.MAV_RESULT_ACCEPTED:
-                self.accepted = message.command
+            case "COMMAND_ACK":
+                command = (message.get_srcComponent(), message.command)
+                if message.result not in GO_ON:
+                    self.acknowledged.pop(command, None)
+                elif message.result != mavlink.MAV_RESULT_TEMPORARILY_REJECTED:
+                    is_accepted = message.result == mavlink.MAV_RESULT_ACCEPTED
+                    self.acknowledged[command] = is_accepted or self.acknowledged.get(
+                        command, False
+                    )
             case "HEARTBEAT":
                 self.mode = message.custom_mode
             case "VFR_HUD":
@@ -92,13 +110,16 @@ class Reported:
                 self.altitude_error = message.alt_error
 
 
-class LightsServo:
-    """What the vehicle's output for the lights does: that of a motor must never be set.
+class VehicleFacts:
+    """What the vehicle is asked about itself, until it answers.
 
     Attributes
     ----------
     function
-        Number of its ``SERVOn_FUNCTION``; None: not known.
+        Number of the function of its output for the lights, ``SERVOn_FUNCTION``: that of a motor
+        must never be set. None: not known.
+    version
+        Of its ArduSub, as ``AUTOPILOT_VERSION`` gives it; 0: not known.
 
     """
 
@@ -106,6 +127,7 @@ class LightsServo:
         self._vehicle = vehicle
         self._name = f"SERVO{vehicle.lights_servo}_FUNCTION"
         self.function: int | None = None
+        self.version = 0
         self._asked = -math.inf
 
     @property
@@ -117,17 +139,24 @@ class LightsServo:
         return f"output {self._vehicle.lights_servo} drives a motor" if is_motor else ""
 
     def hear(self, message: Message) -> None:
-        """Note the vehicle's answer to the question."""
-        is_answer = message.get_type() == "PARAM_VALUE" and message.param_id == self._name
-        if is_answer and math.isfinite(message.param_value):
-            self.function = round(message.param_value)
+        """Note the vehicle's answer to a question."""
+        match message.get_type():
+            case "AUTOPILOT_VERSION":
+                self.version = message.flight_sw_version
+            case "PARAM_VALUE" if message.param_id == self._name:
+                if math.isfinite(message.param_value):
+                    self.function = round(message.param_value)
 
     def list_due(self, now: float) -> Iterator[Message]:
-        """Yield the question what the output does, again until it is answered."""
-        if self.function is None and now - self._asked >= self._vehicle.repeat_seconds:
-            self._asked = now
-            address = (self._vehicle.system, self._vehicle.component)
+        """Yield the questions that are not answered, each again in the time of a repetition."""
+        if now - self._asked < self._vehicle.repeat_seconds:
+            return
+        self._asked = now
+        address = (self._vehicle.system, self._vehicle.component)
+        if self.function is None:
             yield mavlink.MAVLink_param_request_read_message(*address, self._name.encode(), -1)
+        if not self.version:
+            yield mavlink.MAVLink_autopilot_version_request_message(*address)
 
 
 @dataclass(frozen=True)
@@ -162,12 +191,12 @@ class CommandStep:
 
     def is_done(self, reported: Reported) -> bool:
         """Return whether the vehicle accepted it."""
-        return reported.accepted == self.command
+        return reported.acknowledged.get((self.component, self.command), False)
 
 
 @dataclass(frozen=True)
 class ModeStep:
-    """A change of the mode, repeated until the vehicle accepts and shows it."""
+    """A change of the mode, repeated until the vehicle acknowledges and shows it."""
 
     mode: int
     system: int
@@ -182,8 +211,9 @@ class ModeStep:
         return CommandStep(self.command, chosen, self.system, self.component).build(repetition)
 
     def is_done(self, reported: Reported) -> bool:
-        """Return whether the vehicle accepted it and is in the mode."""
-        return (reported.accepted, reported.mode) == (self.command, self.mode)
+        """Return whether the vehicle acknowledged it and is in the mode."""
+        is_acknowledged = (self.component, self.command) in reported.acknowledged
+        return is_acknowledged and reported.mode == self.mode
 
 
 @dataclass(frozen=True)
@@ -232,6 +262,15 @@ def name_entry(enum: str, number: int) -> str:
     return str(known[number].name.removeprefix(f"{enum}_")) if number in known else ""
 
 
+def describe_refusal(mode: str, version: int) -> str:
+    """Describe when a version of ArduSub refuses a mode; empty if it takes it always."""
+    named = f"ArduSub {version >> 24}.{version >> 16 & 255}"
+    if mode == "SURFTRAK" and version < VERSION_4_5:
+        return f"{named} has no {mode}"
+    needs = mode in NEEDS_POSITION or (mode == "SURFACE" and VERSION_4_5 <= version < VERSION_4_7)
+    return f"{named} takes {mode} only with a position" if needs else ""
+
+
 def describe_sent(action: Action, vehicle: Vehicle) -> str:
     """Describe the messages that request an action, such as ``DO_SET_MODE SURFACE``."""
     if isinstance(action, Depth) and isinstance(action.metres, SlotName):
@@ -251,12 +290,6 @@ def describe_step(step: Step) -> str:
         case CommandStep(command=command, parameters=parameters):
             shown = ", ".join(f"{each:g}" for each in parameters)
             return f"{name_entry('MAV_CMD', command)} {shown}"
-
-
-def build_question(vehicle: Vehicle) -> Message:
-    """Build the question which version the autopilot has."""
-    address = (vehicle.system, vehicle.component)
-    return mavlink.MAVLink_autopilot_version_request_message(*address)
 
 
 def build_steps(action: Action, vehicle: Vehicle, picture: int) -> tuple[Step, ...]:

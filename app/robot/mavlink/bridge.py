@@ -25,13 +25,19 @@ from app.robot.commands.dialogue import (
     RecognizedGesture,
     RecognizedPhrase,
 )
-from app.robot.mavlink.actions import LightsServo, Message, Step, build_steps
+from app.robot.mavlink.actions import (
+    Message,
+    Step,
+    VehicleFacts,
+    build_steps,
+    describe_refusal,
+)
 from app.robot.mavlink.links import Packet, VehicleLink
 from app.robot.mavlink.memory import Memory
-from app.robot.mavlink.orders import Order, OrderDesk, Outcome
+from app.robot.mavlink.orders import Order, OrderDesk, Outcome, is_from_vehicle
 from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.peer import Sender, VehiclePeer
-from app.robot.mavlink.table import Action, VehicleTable
+from app.robot.mavlink.table import Action, VehicleTable, describe_actions
 
 TEXT_BYTES: Final = 50
 """Bytes of a STATUSTEXT; many displays cut longer messages to this length."""
@@ -112,20 +118,21 @@ class MavlinkBridge:
         self._tell_people = tell
         self._now = now
         self._tell_answer = tell_answer
-        self._servo = LightsServo(table.vehicle)
-        self._answers = AnswerDesk(table.answers, table.vehicle, Memory(memory, tell), self._servo)
+        self._facts = VehicleFacts(table.vehicle)
+        kept = Memory(None if table.answers is None else memory, tell)
+        self._answers = AnswerDesk(table.answers, table.vehicle, kept, self._facts)
         self._answered = -math.inf
         self._without_salutes = without_salutes
         self._time = 0.0
         self._dialogue = CommandDialogue(table.rules)
-        self._desk = OrderDesk(table.vehicle)
+        self._desk = OrderDesk(table.vehicle, self._facts)
         self._texts: list[Message] = []
         self._handed: list[Message] = []
         self._pictures = 0
         self._beaten = clock.monotonic()
         self._peer = VehiclePeer(table.vehicle, self._beaten, link.expected)
         self._silent = self._broken = self._is_answered = False
-        self._reboots = 0
+        self._reboots = self._version = 0
         self._fault: Exception | None = None
         # Reentrant, because a line for people may cause an event: that it cannot be printed.
         self._lock = threading.RLock()
@@ -199,22 +206,20 @@ class MavlinkBridge:
     def _set_language(self) -> None:
         active = self._language()
         language = active.recognizer.language
-        actions = {label: self._table.find_action(label) for label in language.labels}
-        words = {label: action.words for label, action in actions.items() if action is not None}
+        actions = {label: self._table.find_actions(label) for label in language.labels}
+        words = {label: describe_actions(each) for label, each in actions.items() if each}
         grammar = language.grammar
         used = grammar.uses() if grammar is not None and grammar.phrases else ()
         labels = frozenset(use.label for use in used)
 
-        if self._without_salutes or active.trigger.spots:
-            unguarded = self._table.find_unguarded(language)
-            if unguarded:
-                words = {}
-                self._say(f"no commands without salutes: {unguarded}", mavlink.MAV_SEVERITY_ALERT)
+        spots = self._without_salutes or active.trigger.spots
+        for is_danger, fault in self._table.list_faults(language, spots=spots):
+            words = {} if is_danger else words
+            severity = mavlink.MAV_SEVERITY_ALERT if is_danger else mavlink.MAV_SEVERITY_WARNING
+            self._say(fault, severity)
         decision = self._dialogue.set_table(CommandTable(active.sha256, words, labels))
         if decision is not None:
             self._say(decision.reason)
-        for name in self._table.list_unknown(language):
-            self._say(f"not in the language: {name}", mavlink.MAV_SEVERITY_WARNING)
 
     def _decide_take(self, event: events.TakeEvent) -> None:
         recognized = isinstance(event, events.TakeRecognized)
@@ -228,10 +233,8 @@ class MavlinkBridge:
             novelty=math.nan if event.recognition is None else event.recognition.nearest_novelty,
         )
         decision = self._dialogue.decide(gesture, self._source_time())
-        action = None
-        if decision.command is not None and decision.label is not None:
-            action = self._table.find_action(decision.label)
-        self._act(decision, () if action is None else (action,))
+        is_command = decision.command is not None
+        self._act(decision, self._table.find_actions(decision.label or "") if is_command else ())
 
     def _decide_phrase(self, event: events.PhraseHeard) -> None:
         phrase, mission, text = event.phrase, "", event.phrase.text
@@ -275,26 +278,33 @@ class MavlinkBridge:
             if is_first:
                 self.answer(decision.answer, decision.reason)
             return
-        words = ", ".join(action.words for action in actions)
-        steps: list[Step] = []
-        for action in actions:
-            self._pictures += 1
-            steps += build_steps(action, self._table.vehicle, self._pictures)
-        order = Order(words, tuple(steps), decision.emergency)
+        choices = [(action,) for action in actions] if decision.emergency else [actions]
+        order, *others = (self._build_order(each, emergency=decision.emergency) for each in choices)
+        order = replace(order, others=tuple(others))
+        words = describe_actions(actions) if decision.emergency else order.words
         severity = mavlink.MAV_SEVERITY_CRITICAL if order.emergency else mavlink.MAV_SEVERITY_NOTICE
         self._say(f"{'EMERGENCY' if order.emergency else 'confirmed'}: {words}", severity)
         now = clock.monotonic()
-        is_known = self._servo.function is not None
+        is_known = self._facts.function is not None
         contest = self._peer.contest
         obstacle = self._find_obstacle(order) if is_known and not contest else ""
         if fault := self._peer.find_fault(now) or obstacle:
             self._report(Outcome(order, "stopped", fault))
             return
-        self._handed += (each for step in steps for each in self._answers.hand_over(step, now))
+        self._handed += (
+            each for step in order.steps for each in self._answers.hand_over(step, now)
+        )
         self._report(self._desk.give(order, now))
         if contest and self._desk.order is order:
             where = "to both" if order.emergency else "waits"
             self._report(Outcome(order, "waits", f"{where}, {contest}"))
+
+    def _build_order(self, actions: Sequence[Action], *, emergency: bool) -> Order:
+        steps: list[Step] = []
+        for action in actions:
+            self._pictures += 1
+            steps += build_steps(action, self._table.vehicle, self._pictures)
+        return Order(", ".join(action.words for action in actions), tuple(steps), emergency)
 
     def _source_time(self) -> float:
         return self._time if self._now is None else self._now()
@@ -352,8 +362,9 @@ class MavlinkBridge:
         for message, sender in packets:
             if not self._peer.admit(message, sender, now, busy=self._desk.order is not None):
                 continue
-            self._servo.hear(message)
-            self._is_answered |= message.get_type() == "COMMAND_ACK"
+            self._facts.hear(message)
+            is_answer = message.get_type() == "COMMAND_ACK"
+            self._is_answered |= is_answer and is_from_vehicle(message, self._table.vehicle)
             if not self._answers.hear(message, now):
                 self._report(self._desk.hear(message, now, proves=not self._peer.contest))
         self._report(self._desk.check_deadline(now))
@@ -366,7 +377,7 @@ class MavlinkBridge:
         own: list[Message] = []
         shared: list[Message] = []
         if self._peer.is_proven(now):
-            own += [*self._handed, *self._servo.list_due(now)]
+            own += [*self._handed, *self._facts.list_due(now)]
             if self._desk.order is not None and not self._find_obstacle(self._desk.order):
                 shared += self._desk.list_due(now)
         self._handed.clear()
@@ -384,7 +395,7 @@ class MavlinkBridge:
         if contest := self._peer.contest:
             return "" if order.emergency else contest
         sets = any(step.command == mavlink.MAV_CMD_DO_SET_SERVO for step in order.steps)
-        return self._servo.obstacle if sets else ""
+        return self._facts.obstacle if sets else ""
 
     def _list_answers(self, now: float) -> Iterator[Message]:
         """Yield the messages that show answers to the diver."""
@@ -408,6 +419,11 @@ class MavlinkBridge:
             self._silent = silent
             words = "vehicle is silent" if silent else "vehicle is back"
             self._say(words, mavlink.MAV_SEVERITY_ALERT)
+        if self._facts.version != self._version:
+            self._version = self._facts.version
+            for mode in self._table.list_modes():
+                if refusal := describe_refusal(mode, self._version):
+                    self._say(refusal, mavlink.MAV_SEVERITY_WARNING)
         if self._desk.reboots != self._reboots:
             self._reboots = self._desk.reboots
             self._say("vehicle has started again", mavlink.MAV_SEVERITY_ALERT)
@@ -421,7 +437,7 @@ class MavlinkBridge:
             outcome = replace(outcome, kind="stopped", answer=obstacle)
         told = {
             "unanswered": "NOT DONE, no answer",
-            "refused": f"refused ({outcome.answer})",
+            "refused": outcome.answer,
             "stopped": f"NOT DONE, {outcome.answer}",
             "waits": outcome.answer,
             "late": "done after all",

@@ -22,8 +22,8 @@ NUMBERS: Final = TypeAdapter(dict[str, list[FiniteFloat]])
 class Memory:
     """Numbers under names, kept in a file; without one, for this run alone.
 
-    A file that cannot be read counts as empty. One that cannot be written is told once, and the
-    bridge goes on without it.
+    A file that cannot be read counts as empty. One that cannot be written is told once, already at
+    the start, and the bridge goes on without it.
 
     Parameters
     ----------
@@ -37,6 +37,7 @@ class Memory:
     def __init__(self, file: Path | None = None, tell: Callable[[str], None] = print) -> None:
         self._file, self._tell, self._told = file, tell, False
         self._kept = {} if file is None else read_numbers(file)
+        self._save()
 
     def find(self, name: str) -> list[float]:
         """Return the numbers that were kept under a name; none where there are none."""
@@ -48,13 +49,15 @@ class Memory:
             return
         if numbers:
             self._kept[name] = [*map(float, numbers)]
+        self._save()
+
+    def _save(self) -> None:
         if self._file is None:
             return
         try:
-            if self._kept:
-                write_atomically(self._file, json.dumps(self._kept, allow_nan=False).encode())
-            else:
-                self._file.unlink(missing_ok=True)
+            write_atomically(self._file, json.dumps(self._kept, allow_nan=False).encode())
+            if not self._kept:
+                self._file.unlink()
         except OSError as error:
             if not self._told:
                 self._tell(f"{self._file} cannot be written ({error.strerror}): a restart forgets")

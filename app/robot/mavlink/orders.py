@@ -14,12 +14,13 @@ from typing import Final, Literal
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.mavlink.actions import (
+    GO_ON,
     OUR_COMPONENT,
     DepthStep,
     Message,
     Reported,
     Step,
-    build_question,
+    VehicleFacts,
     describe_step,
     name_entry,
 )
@@ -32,13 +33,6 @@ lost link uses up none: what saves a diver is sent when the vehicle is back."""
 
 REBOOT_MS: Final = 1000
 """Milliseconds by which packets out of order may set back the vehicle's time since boot."""
-
-GO_ON: Final = (
-    mavlink.MAV_RESULT_ACCEPTED,
-    mavlink.MAV_RESULT_IN_PROGRESS,
-    mavlink.MAV_RESULT_TEMPORARILY_REJECTED,
-)
-"""Results after which a command is repeated until it is done; all others refuse it."""
 
 SHOW_SECONDS: Final = LONGEST_GAP
 """Heard seconds for an accepted mode to show. Until then it is not requested again."""
@@ -72,12 +66,16 @@ class Order:
         Requests to the vehicle, in order.
     emergency
         Whether the order is repeated even after a refusal.
+    others
+        What of an emergency is tried instead, in order, when it is refused or has no effect; then
+        the first one again.
 
     """
 
     words: str
     steps: tuple[Step, ...]
     emergency: bool = False
+    others: tuple[Order, ...] = ()
 
     @property
     def moves(self) -> bool:
@@ -99,7 +97,7 @@ class Outcome:
         for the reason in `answer`. ``waits``: it goes on, in spite of the reason in `answer`.
         ``late``: the vehicle shows what was given up, after all.
     answer
-        Result of a refusal, such as ``DENIED``, or the reason.
+        The reason, such as ``refused (DENIED)``.
     sent
         What was sent of an order that is not proven, and how often: the vehicle may still do it.
 
@@ -120,6 +118,8 @@ class OrderDesk:
         Address of the vehicle, and how long to try: an order counts all seconds, because nothing
         may be done long after its request, an emergency heard seconds. Every method takes the time
         in seconds of a steady clock.
+    facts
+        What the vehicle has said of itself.
 
     Attributes
     ----------
@@ -130,8 +130,8 @@ class OrderDesk:
 
     """
 
-    def __init__(self, vehicle: Vehicle) -> None:
-        self._vehicle = vehicle
+    def __init__(self, vehicle: Vehicle, facts: VehicleFacts) -> None:
+        self._vehicle, self._facts = vehicle, facts
         self.order: Order | None = None
         self.reboots = 0
         self._position = 0
@@ -144,11 +144,11 @@ class OrderDesk:
         self._mode: int | None = None
         self._requested: dict[int, float] = {}
         self._armed: bool | None = None
-        self._told: set[OutcomeKind] = set()
+        self._told: set[str] = set()
         self._watch = ModeWatch(None)
         self._late: Order | None = None
         self._late_by = 0.0
-        self._version = 0
+        self._began = 0.0
         self._proves = True
 
     def give(self, order: Order, now: float) -> Outcome | None:
@@ -214,8 +214,9 @@ class OrderDesk:
         if self._late is None or self._armed is False:
             return None
         steps, shown = self._late.steps, self._reported
-        modes = [step.mode == shown.mode for step in steps if step.mode is not None]
-        if not all(modes + [step.is_done(shown) for step in steps if step.mode is None]):
+        modes = [step.mode for step in steps if step.mode is not None]
+        left = [step for step in steps[self._position :] if step.mode is None]
+        if modes[-1:] not in ([], [shown.mode]) or not all(step.is_done(shown) for step in left):
             return None
         order, self._late = self._late, None
         return Outcome(order, "late")
@@ -229,19 +230,19 @@ class OrderDesk:
         # back is broken.
         heard = self._clock.last
         is_urgent = self.order.emergency and now - max(heard, self._given) <= SILENT_SECONDS
-        if self._sent > 0 and heard < self._next and not is_urgent:
-            return ()
         step = self.order.steps[self._position]
+        if self._sent > 0:
+            if step.is_done(self._reported) or (heard < self._next and not is_urgent):
+                return ()
+        else:
+            self._reported = Reported()
         if step.mode is not None:
             self._requested[step.mode] = self._clock.seconds
-        due = [step.build(self._version if isinstance(step, DepthStep) else self._sent)]
-        # Asked while the mode is set, so that the depth knows the answer.
-        if not self._version and any(isinstance(each, DepthStep) for each in self.order.steps):
-            due.append(build_question(self._vehicle))
+        due = step.build(self._facts.version if isinstance(step, DepthStep) else self._sent)
         self._sent += 1
         self._sendings[step] += 1
         self._next = now + self._vehicle.repeat_seconds
-        return due
+        return (due,)
 
     def _is_over(self, now: float) -> bool:
         """Return whether the active order has had its time."""
@@ -276,15 +277,26 @@ class OrderDesk:
         self._note_state(message, now)
         if self.order is None:
             return self._find_late() if self.is_watched else None
-        if (
-            self.order.moves
-            and self._armed is False
-            and (outcome := self._go_on("stopped", "waits", DISARMED))
-        ):
-            return outcome
+        if self.order.moves and self._armed is False:
+            if not self.order.emergency:
+                return self._end("stopped", DISARMED)
+            if DISARMED not in self._told:
+                self._told.add(DISARMED)
+                return Outcome(self.order, "waits", DISARMED)
+        if reason := self._find_failure(self.order):
+            return self._fail(self.order, reason, now)
         if self._watch.contradiction:
             return self._end("stopped", self._watch.contradiction)
         return self._hear_answer(message, now) if self._sent else None
+
+    def _find_failure(self, order: Order) -> str:
+        """Return why the next action of an emergency is due; empty if none is."""
+        reason = self._watch.contradiction
+        if reason == OTHER_PILOT or all(each.words in self._told for each in order.others):
+            return ""
+        is_shown = self._reported.mode == order.steps[self._position].mode
+        is_over = self._clock.seconds - self._began > self._vehicle.give_up_seconds
+        return reason or ("no effect" if is_over and not is_shown else "")
 
     def _hear_answer(self, message: Message, now: float) -> Outcome | None:
         """Process what may prove or refuse the present step."""
@@ -292,13 +304,31 @@ class OrderDesk:
         step = self.order.steps[self._position]
         if step.is_done(self._reported):
             return self._advance(now)
-        answered = message.get_type() == "COMMAND_ACK" and message.command == step.command
-        if answered and message.result == mavlink.MAV_RESULT_ACCEPTED:
-            self._watch.accept(self._clock.seconds)
-        if not answered or message.result in GO_ON:
+        if message.get_type() != "COMMAND_ACK" or (
+            (message.get_srcComponent(), message.command) != (step.component, step.command)
+        ):
             return None
-        answer = name_entry("MAV_RESULT", message.result) or str(message.result)
-        return self._go_on("refused", "refused", answer)
+        self._watch.hear_answer(message.result, self._clock.seconds)
+        if message.result in GO_ON:
+            return None
+        result = name_entry("MAV_RESULT", message.result) or str(message.result)
+        return self._fail(self.order, f"refused ({result})", now)
+
+    def _fail(self, failed: Order, reason: str, now: float) -> Outcome | None:
+        """End an order that is refused; of an emergency try the next action, told once for each."""
+        if not failed.emergency:
+            return self._end("refused", reason)
+        is_new = failed.words not in self._told
+        self._told.add(failed.words)
+        following, *later = (*failed.others, replace(failed, others=()))
+        self.order = replace(following, others=tuple(later))
+        if later:
+            self._begin(0, now if is_new else now + self._vehicle.repeat_seconds)
+        if not is_new:
+            return None
+        if following.words in self._told:
+            return Outcome(failed, "refused", reason)
+        return Outcome(failed, "waits", f"{reason}, now {following.words}")
 
     def _note_state(self, message: Message, now: float) -> None:
         """Note what a message says of the vehicle's state."""
@@ -311,17 +341,6 @@ class OrderDesk:
                 self._mode = int(message.custom_mode)
                 self._armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
                 self._watch.hear_mode(self._mode, self._clock.seconds, sent=self._sent > 0)
-            case "AUTOPILOT_VERSION":
-                self._version = message.flight_sw_version
-
-    def _go_on(self, kind: OutcomeKind, told: OutcomeKind, answer: str) -> Outcome | None:
-        """End an ordinary order as `kind`; an emergency goes on, and is told as `told` once."""
-        assert self.order is not None
-        if not self.order.emergency:
-            return self._end(kind, answer)
-        is_new = told not in self._told
-        self._told.add(told)
-        return Outcome(self.order, told, answer) if is_new else None
 
     def _note_uptime(self, uptime: int, now: float) -> None:
         """Detect a restart of the vehicle, which has then lost its orders."""
@@ -345,6 +364,7 @@ class OrderDesk:
         """Begin a step; earlier reports of the vehicle do not prove it."""
         assert self.order is not None
         self._position, self._sent, self._next = position, 0, now
+        self._began = self._clock.seconds
         self._reported = Reported()
         modes = [step.mode for step in self.order.steps[: position + 1] if step.mode is not None]
         is_shown = bool(modes) and self.order.steps[position].mode is None
@@ -400,9 +420,11 @@ class ModeWatch:
         self._doubted: float | None = None
         self.contradiction = ""
 
-    def accept(self, now: float) -> None:
-        """Note that the vehicle has accepted the mode."""
-        if self._wanted is not None and self._accepted is None:
+    def hear_answer(self, result: int, now: float) -> None:
+        """Note that the vehicle has accepted the mode, or refused it after all."""
+        if result not in GO_ON:
+            self._accepted = None
+        elif result == mavlink.MAV_RESULT_ACCEPTED and self._accepted is None:
             self._accepted = now
 
     @property

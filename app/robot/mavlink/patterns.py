@@ -19,7 +19,7 @@ from typing import Final
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.commands.answers import Answer
-from app.robot.mavlink.actions import CommandStep, LightsServo, Message, Step
+from app.robot.mavlink.actions import GO_ON, CommandStep, Message, Step, VehicleFacts
 from app.robot.mavlink.lights_and_tilt import LightsOutput, Output, TiltOutput, build_command
 from app.robot.mavlink.memory import Memory
 from app.robot.mavlink.orders import is_from_vehicle
@@ -64,12 +64,6 @@ LATEST_SECONDS: Final = 6.0
 
 NOT_SHOWN: Final = "not shown to the diver"
 """Beginning of the line about an answer that could not be shown."""
-
-FAILURES: Final = (
-    mavlink.MAV_RESULT_DENIED,
-    mavlink.MAV_RESULT_UNSUPPORTED,
-    mavlink.MAV_RESULT_FAILED,
-)
 
 
 class PatternPlayer:
@@ -179,7 +173,7 @@ class PatternPlayer:
             self._unanswered = 0
             return False
         self._unanswered -= 1
-        if result in FAILURES:
+        if result not in GO_ON:
             self._is_refused = True
             self._drop()
         return True
@@ -299,7 +293,7 @@ class AnswerDesk:
         The table's; None: nothing is shown.
     memory
         Keeps what was before a pattern.
-    servo
+    facts
         What the lights' output does; None: it is known to be the lights'.
 
     Attributes
@@ -316,9 +310,9 @@ class AnswerDesk:
         answers: Answers | None,
         vehicle: Vehicle,
         memory: Memory | None = None,
-        servo: LightsServo | None = None,
+        facts: VehicleFacts | None = None,
     ) -> None:
-        lights, tilt = LightsOutput(vehicle, servo), TiltOutput(vehicle)
+        lights, tilt = LightsOutput(vehicle, facts), TiltOutput(vehicle)
         outputs: dict[str, Output] = {"lights": lights, "tilt": tilt}
         self._answers = answers
         shown = () if answers is None else answers.show

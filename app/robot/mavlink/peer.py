@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink.actions import Message, name_entry
+from app.robot.mavlink.actions import OUR_COMPONENT, Message, name_entry
 from app.robot.mavlink.heard import SILENT_SECONDS, HeardClock
 from app.robot.mavlink.orders import REBOOT_MS
 from app.robot.mavlink.table import Vehicle
@@ -66,11 +66,12 @@ class VehiclePeer:
         # A rival's last heartbeat, in heard seconds; None: it has the vehicle's own address.
         self._rivals: dict[Sender | None, float] = {}
         self._heard_clock = HeardClock()
-        self._refused = self._ignored = self._contradicted = -math.inf
+        self._refused = self._contradicted = -math.inf
         self._faulty: Sender | None = None
         self._clock: tuple[int, float] | None = None
-        self._set_back = False
+        self._set_back = self._addresses = False
         self._notices: list[str] = []
+        self._noted: dict[str, float] = {}
 
     def expect(self, sender: Sender | None) -> None:
         """Set the only address that may be the vehicle's; a new one has to prove itself."""
@@ -130,7 +131,8 @@ class VehiclePeer:
             if beats and not kind and self._is_named(sender):
                 self._note_rival(sender)
             elif beats:
-                self._note_ignored(sender, now)
+                notice = f"{self._two}{name_address(sender)} is ignored"
+                self._note("ignored", notice, now)
             self.dropped += 1
             return False
         if kind:
@@ -141,16 +143,27 @@ class VehiclePeer:
             if sender != self.sender:
                 if self._rivals.pop(sender, None) is not None:
                     self._rivals[self.sender] = self._heard_clock.seconds
-                self.sender, self._clock = sender, None
+                self.sender, self._clock, self._addresses = sender, None, False
             self._heard = now
             self._heard_clock.hear(now)
             least = self._heard_clock.seconds - RIVAL_SECONDS
             self._rivals = {each: last for each, last in self._rivals.items() if last >= least}
-        if is_its and message.get_type() == "SYSTEM_TIME" and sender == self.sender:
-            self._watch_clock(message.time_boot_ms, now)
+        if sender == self.sender:
+            self._watch(message, now, is_its=is_its)
         admitted = sender == self.sender and self.is_proven(now)
+        admitted = admitted and not (is_its and self._is_for_another(message))
         self.dropped += not admitted
         return admitted
+
+    def _is_for_another(self, message: Message) -> bool:
+        """Return whether a vehicle that addresses its acknowledgements gives this one no address.
+
+        Older vehicles address none.
+        """
+        if message.get_type() != "COMMAND_ACK":
+            return False
+        self._addresses |= message.target_system != 0
+        return self._addresses and message.target_system == 0
 
     def _is_named(self, sender: Sender) -> bool:
         """Return whether neither the link nor the table names another address."""
@@ -175,11 +188,19 @@ class VehiclePeer:
             self._notices.append(f"{self._two}, orders wait{name_address(sender)}")
         self._rivals[sender] = self._heard_clock.seconds
 
-    def _note_ignored(self, sender: Sender, now: float) -> None:
-        """Announce a sender with the vehicle's ids that is none, once while it is heard."""
-        if now - self._ignored > AGAIN_SECONDS:
-            self._notices.append(f"{self._two}{name_address(sender)} is ignored")
-        self._ignored = now
+    def _note(self, kind: str, notice: str, now: float) -> None:
+        """Announce what is heard again and again, once for each kind while it is heard."""
+        if now - self._noted.get(kind, -math.inf) > AGAIN_SECONDS:
+            self._notices.append(notice)
+        self._noted[kind] = now
+
+    def _watch(self, message: Message, now: float, *, is_its: bool) -> None:
+        """Detect another robot, and a second vehicle, behind the vehicle's address."""
+        named = (message.get_srcSystem(), message.get_srcComponent())
+        if named == (self._vehicle.system, OUR_COMPONENT):
+            self._note("robot", "another robot commands this vehicle too", now)
+        elif is_its and message.get_type() == "SYSTEM_TIME":
+            self._watch_clock(message.time_boot_ms, now)
 
     def _watch_clock(self, uptime: int, now: float) -> None:
         """Detect two vehicles behind one address: their clocks jump back and forth.

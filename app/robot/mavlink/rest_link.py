@@ -30,6 +30,7 @@ WANTED: Final = (
     "VFR_HUD",
     "NAV_CONTROLLER_OUTPUT",
     "PARAM_VALUE",
+    "AUTOPILOT_VERSION",
 )
 """Messages that report the state of the vehicle, and what an output does; further ones are polled
 once they are requested (``SET_MESSAGE_INTERVAL``)."""

@@ -9,16 +9,26 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, IPvAnyAddress, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    IPvAnyAddress,
+    PlainValidator,
+    ValidationError,
+    model_validator,
+)
 from typing_extensions import Self
 
 from app.recognition import Language
 from app.recognition.errors import VehicleError
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.parser import PhraseParser
 from app.robot.commands.answers import PULSES, Answer
 from app.robot.commands.rules import (
     CONFIRM_SECONDS,
@@ -145,6 +155,18 @@ Action = Annotated[Hold | Surface | Mode | Lights | Camera | Depth, Field(discri
 EMERGENCIES: Final[dict[str, Hold | Surface]] = {"hold": Hold(), "surface": Surface()}
 
 
+def build_emergency(value: object) -> tuple[Hold | Surface, ...]:
+    """Build the actions of an emergency from their names, or from one name."""
+    names = [value] if isinstance(value, str) else value
+    if not (isinstance(names, list) and names and all(each in [*EMERGENCIES] for each in names)):
+        raise ValueError("Input should be 'hold' or 'surface', or a list of both")
+    return tuple(EMERGENCIES[name] for name in names)
+
+
+Emergency = Annotated[tuple[Hold | Surface, ...], PlainValidator(build_emergency)]
+"""Actions of an emergency, tried in order: the next one when one fails."""
+
+
 class Vehicle(_Entry):
     """Address of the vehicle on its MAVLink network, and limits.
 
@@ -229,7 +251,8 @@ class VehicleTable(_Entry):
     phrases
         Action of each phrase, by its name; done when the diver has repeated the message.
     emergency
-        Labels of gestures that are obeyed at once: ``surface`` or ``hold``, nothing else.
+        Labels of gestures that are obeyed at once: ``surface``, ``hold``, or both in the order in
+        which they are tried; nothing else.
     cancel
         Labels of gestures that cancel a gesture or message that waits for its repetition.
     confirm_seconds, stale_seconds, least_confidence, emergency_seconds, emergency_confidence
@@ -245,7 +268,7 @@ class VehicleTable(_Entry):
     version: Literal[1]
     gestures: dict[str, Action] = {}
     phrases: dict[str, Action] = {}
-    emergency: dict[str, Literal["hold", "surface"]] = {}
+    emergency: dict[str, Emergency] = {}
     cancel: Annotated[tuple[str, ...], Field(strict=False)] = ()
     confirm_seconds: Annotated[float, Field(ge=1, le=300)] = CONFIRM_SECONDS
     stale_seconds: Annotated[float, Field(ge=0.1, le=60)] = STALE_SECONDS
@@ -290,11 +313,24 @@ class VehicleTable(_Entry):
             emergency=frozenset(self.emergency),
         )
 
-    def find_action(self, label: str) -> Action | None:
-        """Return the action of a gesture; None where it has none."""
-        if label in self.emergency:
-            return EMERGENCIES[self.emergency[label]]
-        return self.gestures.get(label)
+    def find_actions(self, label: str) -> Sequence[Action]:
+        """Return what a gesture does; of an emergency what is tried, in order; empty: nothing."""
+        roles = self.list_roles()
+        return roles["emergency"].get(label) or roles["gesture"].get(label, ())
+
+    def list_roles(self) -> dict[str, dict[str, Sequence[Action]]]:
+        """Return what emergencies, gestures and phrases do, by role and name."""
+        return {
+            "emergency": dict(self.emergency),
+            "gesture": {name: (action,) for name, action in self.gestures.items()},
+            "phrase": {name: (action,) for name, action in self.phrases.items()},
+        }
+
+    def list_modes(self) -> Iterator[str]:
+        """Yield the modes that its actions set, those of emergencies first."""
+        every = (actions for each in self.list_roles().values() for actions in each.values())
+        modes = (getattr(action, "mode", "") for actions in every for action in actions)
+        yield from filter(None, dict.fromkeys(modes))
 
     def resolve_mission(self, mission: list[dict[str, Any]]) -> tuple[Action, ...]:
         """Return the actions of a message's phrases, in order, with the values of its slots.
@@ -325,26 +361,39 @@ class VehicleTable(_Entry):
             raise VehicleError(f"no depth: {shown!r}, of 0 to {self.vehicle.deepest:g} m")
         return Depth(do="depth", metres=metres)
 
-    def find_unguarded(self, language: Language) -> str:
-        """Return why no gesture may move the vehicle without triggers; empty if one may.
+    def list_faults(self, language: Language, *, spots: bool) -> Iterator[tuple[bool, str]]:
+        """Yield what is wrong with the table in a language, and whether nothing may be commanded.
 
-        A continuous movement would confirm itself: only a message of several gestures may act.
+        Without triggers (`spots`) a movement would confirm itself: only messages may act. An
+        emergency that begins a message would be obeyed with each one. What is only in vain is no
+        danger: what the language lacks, and a gesture that counts within phrases alone.
         """
-        grammar = language.grammar
-        if grammar is None or not grammar.phrases:
-            return f"the language {language.name!r} has no phrases"
-        words = {use.label for use in grammar.uses()}
+        grammar = language.grammar or Grammar()
+        phrases = [phrase.name for phrase in grammar.phrases]
+        words = {use.label for use in grammar.uses()} if phrases else set()
         alone = sorted({*self.gestures, *self.emergency} - (words - {*self.emergency}))
-        return f"{', '.join(alone)} would act alone" if alone else ""
+        if spots and (alone or not phrases):
+            why = f"{', '.join(alone)} would act alone" if phrases else "there are no phrases"
+            yield True, f"no commands without salutes: {why}"
+        for label in PhraseParser(grammar).expected:
+            if label in self.emergency:
+                yield True, f"no commands: emergency.{label} begins messages"
+        for role, names, known in (
+            ("emergency.", self.emergency, language.labels),
+            ("gestures.", self.gestures, language.labels),
+            ("cancel ", self.cancel, language.labels),
+            ("phrases.", self.phrases, phrases),
+        ):
+            for name in names:
+                if name not in known:
+                    yield False, f"{role}{name} is not in the language {language.name!r}"
+        for label in sorted(words.intersection(self.gestures)):
+            yield False, f"gestures.{label} counts within phrases only"
 
-    def list_unknown(self, language: Language) -> Iterator[str]:
-        """Yield, in words, the labels and phrases of the table that the language lacks."""
-        for role, names in (("gestures", self.gestures), ("emergency", self.emergency)):
-            yield from (f"{role}.{label}" for label in names if label not in language.labels)
-        yield from (f"cancel {label}" for label in self.cancel if label not in language.labels)
-        grammar = language.grammar
-        known = () if grammar is None else tuple(phrase.name for phrase in grammar.phrases)
-        yield from (f"phrases.{name}" for name in self.phrases if name not in known)
+
+def describe_actions(actions: Sequence[Action]) -> str:
+    """Describe what is tried, in order, such as ``surface, else hold``."""
+    return ", else ".join(action.words for action in actions)
 
 
 def read_vehicle_table(path: str | Path) -> VehicleTable:

@@ -18,9 +18,8 @@ from app.recognition.language.file import short_code
 from app.recognition.text.atomic_files import write_atomically
 from app.robot.active_language import ActiveLanguage
 from app.robot.mavlink.table import (
-    EMERGENCIES,
-    Action,
     VehicleTable,
+    describe_actions,
     parse_vehicle_table,
     read_vehicle_table,
 )
@@ -109,20 +108,15 @@ class RobotFiles:
             return []
         from app.robot.mavlink.actions import describe_sent
 
-        listed: dict[str, Mapping[str, Action]] = {
-            "emergency": {name: EMERGENCIES[does] for name, does in table.emergency.items()},
-            "gesture": table.gestures,
-            "phrase": table.phrases,
-        }
         return [
             {
                 "role": role,
                 "name": name,
-                "does": action.words,
-                "sends": describe_sent(action, table.vehicle),
+                "does": describe_actions(actions),
+                "sends": ", else ".join(describe_sent(each, table.vehicle) for each in actions),
             }
-            for role, actions in listed.items()
-            for name, action in actions.items()
+            for role, listed in table.list_roles().items()
+            for name, actions in listed.items()
         ]
 
     def propose(self, kind: FileKind, content: bytes) -> Proposal:
@@ -136,10 +130,14 @@ class RobotFiles:
         """
         if kind == "language":
             new = ActiveLanguage.from_json(content, self._profile)
-            changes = (*self._list_lacking(new), *self._compare_languages(content))
+            changes = (
+                *self._list_unfit(self._read_table(), new),
+                *self._compare_languages(content),
+            )
         else:
             table = parse_vehicle_table(content, self._get_path("vehicle").name)
-            changes = (*compare_tables(self._read_table(), table), *self._list_unfit(table))
+            unfit = self._list_unfit(table, self._read_language())
+            changes = (*compare_tables(self._read_table(), table), *unfit)
         token = hashlib.sha256(self._read(kind) + b"\0" + content + kind.encode()).hexdigest()
         return Proposal(changes, token)
 
@@ -193,26 +191,16 @@ class RobotFiles:
         except LanguageError:
             return None
 
-    def _list_lacking(self, new: ActiveLanguage) -> Iterator[str]:
-        """Yield what the vehicle table names and a new language lacks."""
-        table = self._read_table()
-        if table is not None:
-            unknown = sorted(
-                table.list_unknown(new.recognizer.language),
-                key=lambda name: not name.startswith("emergency"),
-            )
-            yield from (
-                f"the vehicle table names {name}, which the language lacks" for name in unknown
-            )
-
-    def _list_unfit(self, table: VehicleTable) -> Iterator[str]:
-        """Yield what a new vehicle table names and the present language lacks."""
-        language = self._read_language()
-        if language is None:
+    def _list_unfit(
+        self, table: VehicleTable | None, language: ActiveLanguage | None
+    ) -> Iterator[str]:
+        """Yield what is wrong with a vehicle table in a language."""
+        if table is not None and language is None:
             yield "there is no language yet: upload one as well"
-        else:
-            unknown = table.list_unknown(language.recognizer.language)
-            yield from (f"the language {language.name!r} lacks {name}" for name in unknown)
+        elif table is not None and language is not None:
+            spots = language.trigger.spots
+            for _, fault in table.list_faults(language.recognizer.language, spots=spots):
+                yield f"vehicle table: {fault}"
 
     def _compare_languages(self, content: bytes) -> Iterator[str]:
         """Yield the changes of the language, of emergency gestures first."""
@@ -259,14 +247,13 @@ def _describe_command(command: Any) -> str:
 
 def compare_tables(old: VehicleTable | None, new: VehicleTable) -> Iterator[str]:
     """Yield the changes of a vehicle table, of emergencies first."""
-    emergencies = ({} if old is None else old.emergency, new.emergency)
-    yield from _compare_actions("EMERGENCY", *emergencies)
-    for role, name in (("gesture", "gestures"), ("phrase", "phrases")):
-        before, after = (
-            {label: action.words for label, action in getattr(table, name).items()} if table else {}
-            for table in (old, new)
-        )
-        yield from _compare_actions(role, before, after)
+    before = {} if old is None else old.list_roles()
+    for role, after in new.list_roles().items():
+        words = [
+            {name: describe_actions(actions) for name, actions in listed.items()}
+            for listed in (before.get(role, {}), after)
+        ]
+        yield from _compare_actions("EMERGENCY" if role == "emergency" else role, *words)
     compared = ("gestures", "phrases", "emergency")
     known = {} if old is None else old.model_dump(exclude=set(compared))
     for key, value in new.model_dump(exclude=set(compared)).items():

@@ -7,8 +7,10 @@ import httpx
 import pytest
 from fastapi import FastAPI
 from fastapi.routing import APIRoute
+from pydantic import ValidationError
 
 from app.api.http.problems import problem_of
+from app.api.http.schemas.values import Body
 from app.recognition.errors import (
     AmbiguousRangeError,
     GestureError,
@@ -218,3 +220,20 @@ def test_every_route_below_the_api_is_documented() -> None:
         and not route.include_in_schema
     ]
     assert hidden == []
+
+
+def test_a_text_or_number_is_no_truth_value_in_any_body() -> None:
+    waiting, found = [Body], set()
+    while waiting:
+        model = waiting.pop()
+        waiting += model.__subclasses__()
+        for name, field in model.model_fields.items():
+            if field.annotation is bool:
+                found.add(name)
+                for value in ("yes", 1, "false"):
+                    with pytest.raises(ValidationError) as refused:
+                        model.model_validate({name: value})
+                    assert "bool_type" in [
+                        fault["type"] for fault in refused.value.errors() if fault["loc"] == (name,)
+                    ]
+    assert found >= {"confirmed", "further", "keep_transit"}

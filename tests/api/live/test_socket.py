@@ -19,7 +19,7 @@ from websockets.sync.client import connect
 from websockets.sync.connection import Connection
 from websockets.typing import Origin, Subprotocol
 
-from app.api.http.websockets import UNSUPPORTED_DATA
+from app.api.http.websockets import POLICY_VIOLATION, UNSUPPORTED_DATA
 from app.api.live.frame_pipeline import decode_frame
 from app.api.live.socket import (
     INVITED_PROTOCOL,
@@ -158,6 +158,31 @@ def test_an_invited_person_learns_when_a_take_ends_and_not_what_was_read(
     for wrong in (token[1:], "x"):
         with pytest.raises(InvalidHandshake), live(server, invited=wrong):
             raise AssertionError("the view is open")
+
+
+def test_the_camera_of_an_invited_person_ends_with_the_invitation_and_leaves_its_place(
+    server: Running, client: httpx.Client
+) -> None:
+    language = sample_language(client)
+    made, other = (invite(client, language) for _ in range(2))
+    with live(server, invited=token_of(made)) as view:
+        place = f"/api/v1/languages/{language}/invitations/{made['id']}"
+        assert client.delete(place).status_code == 204
+        with pytest.raises(ConnectionClosed) as closed:
+            view.recv(timeout=60)
+        assert closed.value.rcvd is not None
+        assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (
+            POLICY_VIOLATION,
+            "invitation_closed",
+        )
+    # Who leaves and comes back, or comes next, waits for the place and is not sent away.
+    for _ in range(3):
+        with live(server, invited=token_of(other)) as view:
+            view.send(json.dumps({"do": "listen"}))
+            with pytest.raises(ConnectionClosed) as closed:
+                view.recv(timeout=60)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == UNSUPPORTED_DATA
 
 
 def test_only_the_newest_of_many_frames_is_looked_at(server: Running, sample_clips: Path) -> None:

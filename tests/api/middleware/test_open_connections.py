@@ -28,8 +28,10 @@ from app.api.http.websockets import POLICY_VIOLATION
 from app.api.middleware.access import COOKIE
 from app.settings import Settings
 from app.store import Role, TokenFile
+from tests.api.invitations import invite, token_of
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, client_of, running
+from tests.robot.languages import language_of
 
 API = "/api/v1"
 OWN = "correct-horse-battery"
@@ -277,6 +279,26 @@ def test_an_upload_is_refused_in_mid_body_with_the_token_or_the_role(
     # What arrived is kept for who may go on.
     with client_of(guarded.address, headers=bearer(OWN) | TUS) as admin:
         assert admin.head(place).headers["upload-offset"] == "1000"
+
+
+def test_an_invited_upload_is_refused_in_mid_body_with_the_invitation(guarded: Running) -> None:
+    with client_of(guarded.address, headers=bearer(OWN)) as owner:
+        content = language_of("circle").to_json()
+        language = owner.post(f"{API}/languages/import", content=content).json()["id"]
+        made = invite(owner, language)
+        head = (
+            f"POST {API}/invited/takes?label=circle&diver=Bo HTTP/1.1\r\nHost: localhost\r\n"
+            f"Authorization: Bearer {token_of(made)}\r\nContent-Length: 100000\r\n"
+            "Content-Type: multipart/form-data; boundary=x\r\nExpect: 100-continue\r\n\r\n"
+        )
+        with socket.create_connection(("127.0.0.1", guarded.port), timeout=60) as connection:
+            connection.sendall(head.encode())
+            assert b"100 Continue" in connection.recv(4096)
+            connection.sendall(b'--x\r\nContent-Disposition: form-data; name="label"\r\n\r\n')
+            owner.delete(f"{API}/languages/{language}/invitations/{made['id']}")
+            answer = b"".join(iter(lambda: connection.recv(4096), b"")).decode()
+    assert answer.startswith("HTTP/1.1 403 ")
+    assert '"code":"invitation_closed"' in answer
 
 
 def test_what_was_computed_meanwhile_is_not_shown(

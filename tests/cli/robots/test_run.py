@@ -116,7 +116,7 @@ def test_without_salutes_no_gesture_alone_moves_a_vehicle(
     switch = ["--without-salutes"] if trigger == "salute" else []
     ended = osg_studio(*command, *switch, *options)
     assert (ended.code, ended.out) == (2, "")
-    assert "a movement would confirm itself, and the language 'pool' has no phrases" in ended.error
+    assert "no commands without salutes: there are no phrases" in ended.error
     photo = Phrase("photo", (OneOf(("line",)),), {}, "take a photo")
     replace(made, grammar=Grammar((photo,))).save(tmp_path / "pool.json")
     assert "circle would act alone" in osg_studio(*command, *switch, *options).error

@@ -84,12 +84,9 @@ def test_a_rejected_gesture_is_asked_for_again_and_the_sequence_kept() -> None:
 
 def test_cancel_drops_what_was_begun() -> None:
     parser = PhraseParser(MISSIONS)
-    assert kinds(feed(parser, "start", "photo", "cancel", "end")) == [
-        "continues",
-        "continues",
-        "cancelled",
-        "outside",
-    ]
+    events = feed(parser, "start", "photo", "cancel", "end")
+    assert kinds(events) == ["continues", "continues", "cancelled", "outside"]
+    assert [event.reason for event in events] == [None, None, "cancel_gesture", None]
     assert parser.expected == ("start",)
 
 
@@ -139,6 +136,7 @@ def test_an_event_is_plain_json() -> None:
         "mission": [
             {"phrase": "go", "slots": {"way": "left"}, "command": "go left", "spoken": "go left"}
         ],
+        "reason": None,
         "text": "mission: go left",
         "start": 0.0,
         "end": 7.0,

@@ -201,3 +201,23 @@ def test_places_in_the_world_are_saved_to_a_micrometre(tmp_path: Path) -> None:
     replace(whole, poses=poses).save(tmp_path / "clip.npz")
     loaded = known(Recording.load(tmp_path / "clip.npz").poses.world)
     np.testing.assert_allclose(loaded, world, atol=1e-6)
+
+
+def test_an_array_of_an_unknown_name_stays_packed(tmp_path: Path) -> None:
+    file = tmp_path / "clip.npz"
+    recording().save(file)
+    with (
+        zipfile.ZipFile(file, "a", zipfile.ZIP_DEFLATED) as archive,
+        archive.open("unknown.npy", "w") as packed,
+    ):
+        np.lib.format.write_array_header_1_0(
+            packed, {"descr": "|u1", "fortran_order": False, "shape": (100_000_000,)}
+        )
+        for _ in range(100):
+            packed.write(bytes(1_000_000))
+    tracemalloc.start()
+    try:
+        assert len(Recording.load(file).poses) == FRAMES
+        assert tracemalloc.get_traced_memory()[1] < 20_000_000
+    finally:
+        tracemalloc.stop()

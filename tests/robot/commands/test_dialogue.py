@@ -86,6 +86,7 @@ def test_what_a_diver_sees_of_a_gesture(
         ("repeat", None, None, Answer.refused),
         ("repeat", None, ("circle", "peak"), Answer.one_of_two),
         ("cancelled", "cross", None, Answer.done),
+        ("cancelled", None, None, Answer.refused),  # by the robot, which has lost it
         ("unexpected", "peak", None, Answer.refused),
         ("timed_out", None, None, Answer.refused),
         ("outside", "peak", None, Answer.refused),
@@ -96,6 +97,15 @@ def test_what_a_diver_sees_of_a_part_of_a_message(
     kind: str, label: str | None, pair: tuple[str, str] | None, answer: Answer | None
 ) -> None:
     assert find_phrase_answer(kind, label, pair) is answer
+
+
+def test_two_gestures_without_a_command_are_not_asked_about() -> None:
+    decision = dialogue().decide(between("wave", "zigzag", 1), 1)
+    assert (decision.reason, decision.answer) == (
+        "'wave' and 'zigzag' have no command",
+        Answer.refused,
+    )
+    assert dialogue().decide(between("wave", "circle", 1), 1).answer is Answer.one_of_two
 
 
 def test_a_gesture_is_confirmed_by_showing_it_again() -> None:

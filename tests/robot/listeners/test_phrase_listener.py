@@ -19,6 +19,7 @@ from app.robot import (
     TakeRejected,
     TriggerListener,
 )
+from app.robot.commands.answers import Answer, find_phrase_answer
 from tests.api.recordings import recording_of
 from tests.recognition.held_takes import FIST, FLAT, between_salutes, follow, hold
 from tests.robot.languages import ambiguous, language_of, moments_of, run_listener, spoken
@@ -122,8 +123,11 @@ def test_a_gesture_emitted_late_still_belongs_to_the_message() -> None:
         assert [kind for kind, _ in phrases(emitted)] == kinds
 
 
-@pytest.mark.parametrize("how", ["abandon", "finish", "speak"])
-def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> None:
+@pytest.mark.parametrize(
+    ("how", "reason"),
+    [("abandon", "lost_source"), ("finish", "end"), ("speak", "new_language")],
+)
+def test_a_message_does_not_outlive_its_source_stream_or_language(how: str, reason: str) -> None:
     listener = PhraseListener(TriggerListener(language(OPEN)))
     recording = recording_of("circle")
     run_listener(listener, recording)
@@ -137,6 +141,10 @@ def test_a_message_does_not_outlive_its_source_stream_or_language(how: str) -> N
         listener.set_language(language(CLOSED))
     emitted += quiet(listener, now + 1, now + 12)
     assert phrases(emitted) == [("cancelled", None)]
+    (heard,) = [event.phrase for event in emitted if isinstance(event, PhraseHeard)]
+    assert (heard.reason, heard.label) == (reason, None)
+    assert heard.text.startswith("circle: ")
+    assert find_phrase_answer(heard.kind, heard.label, heard.pair) is Answer.refused
 
 
 def test_a_stream_that_begins_anew_cancels_a_message() -> None:

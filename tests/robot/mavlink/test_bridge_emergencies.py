@@ -104,7 +104,7 @@ def test_circle_or_square_is_asked_of_the_diver_whose_answer_is_obeyed(
         }.get(link) or opened.enter_context(serving(vehicle.port))
         bridge = MavlinkBridge(table, open_link(address, 1, 1), lambda: language, lines.append)
         with closing(bridge):
-            wait_until(lambda: bool(vehicle.reports) and bridge._servo.function == 0)
+            wait_until(lambda: bool(vehicle.reports) and bridge._facts.function == 0)
             bridge.publish(build_language_changed(0.0, language))
             for event in first:
                 bridge.publish(event)

@@ -19,7 +19,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot import SourceEnded
 from app.robot.commands.answers import Answer
 from app.robot.mavlink import patterns
-from app.robot.mavlink.actions import CommandStep, LightsServo
+from app.robot.mavlink.actions import CommandStep, VehicleFacts
 from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.patterns import AnswerDesk
@@ -250,10 +250,10 @@ def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])
 def test_a_function_that_is_no_number_is_unknown_and_ends_nothing(value: float) -> None:
-    servo = LightsServo(Vehicle())
+    facts = VehicleFacts(Vehicle())
     kind = mavlink.MAV_PARAM_TYPE_INT16
-    servo.hear(mavlink.MAVLink_param_value_message(b"SERVO13_FUNCTION", value, kind, 900, 77))
-    assert servo.obstacle == "function of output 13 unknown"
+    facts.hear(mavlink.MAVLink_param_value_message(b"SERVO13_FUNCTION", value, kind, 900, 77))
+    assert facts.obstacle == "function of output 13 unknown"
 
 
 def test_a_pilot_sets_lights_a_little_less_bright_than_the_pulse() -> None:
@@ -281,10 +281,12 @@ def test_a_damaged_memory_sets_nothing(tmp_path: Path, content: bytes) -> None:
         assert diver.vehicle.shown == []
 
 
-def test_a_memory_that_cannot_be_written_is_told_and_the_answer_is_shown(tmp_path: Path) -> None:
+def test_a_memory_that_cannot_be_written_is_told_at_the_start_and_the_answer_is_shown(
+    tmp_path: Path,
+) -> None:
     with answering(memory=tmp_path / "no folder" / "before") as diver:
-        diver.show(None)
         assert "cannot be written" in diver.wait_for(str(tmp_path))
+        diver.show(None)
         wait_until(lambda: len(diver.vehicle.shown) == 2)
 
 

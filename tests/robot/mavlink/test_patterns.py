@@ -32,7 +32,7 @@ def answering(changes: Mapping[str, object] = LIGHTS, **settings: Any) -> Iterat
     with diving(changes=changes, **settings) as diver:
         wait_until(lambda: bool(diver.vehicle.reports))
         if diver.vehicle.function is not None:
-            wait_until(lambda: diver.bridge._servo.function == diver.vehicle.function)
+            wait_until(lambda: diver.bridge._facts.function == diver.vehicle.function)
         time.sleep(0.05)
         yield diver
 

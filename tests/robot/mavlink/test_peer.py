@@ -41,6 +41,7 @@ OTHER_KINDS = [
     (mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, "INVALID, GCS"),
     (250, 251, "MAV_AUTOPILOT 251, MAV_TYPE 250"),
 ]
+QUESTIONS = ("HEARTBEAT", "PARAM_REQUEST_READ", "AUTOPILOT_VERSION_REQUEST")
 QUICK: dict[str, Any] = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 0.5}}
 
 
@@ -58,6 +59,30 @@ def beat(mode: int = 0, kind: int = SUBMARINE, autopilot: int = ARDUPILOT) -> An
 
 def acknowledgement(command: int = mavlink.MAV_CMD_DO_SET_MODE) -> Any:
     return mavlink.MAVLink_command_ack_message(command, 0, 0, 0, 1, OUR_COMPONENT)
+
+
+def test_of_a_vehicle_that_addresses_its_answers_one_without_address_is_anothers() -> None:
+    known = VehiclePeer(Vehicle(), 0.0)
+    nobodys = mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, 0, 0, 0, 0, 0)
+    heard = [beat(), nobodys, acknowledgement(), nobodys, acknowledgement()]
+    for message in heard:
+        message.pack(mavlink.MAVLink(None, 1, 1))
+    assert [known.admit(each, (), 0.0, busy=True) for each in heard] == [
+        True,  # the heartbeat
+        True,  # an older vehicle addresses none
+        True,
+        False,
+        True,
+    ]
+
+
+def test_another_robot_on_the_vehicle_is_told_once() -> None:
+    known = VehiclePeer(Vehicle(), 0.0)
+    ours = mavlink.MAVLink_heartbeat_message(18, 8, 0, 0, 4, 3)
+    for component, message in ((1, beat()), (OUR_COMPONENT, ours), (OUR_COMPONENT, ours)):
+        message.pack(mavlink.MAVLink(None, 1, component))
+        known.admit(message, (), 0.0, busy=False)
+    assert known.take_notices() == ["another robot commands this vehicle too"]
 
 
 class Socket:
@@ -101,7 +126,7 @@ class Socket:
             for message in codec.parse_buffer(data) or []:
                 if message.get_type() == "STATUSTEXT":
                     self.texts.append(message.text)
-                elif message.get_type() not in ("HEARTBEAT", "PARAM_REQUEST_READ"):
+                elif message.get_type() not in QUESTIONS:
                     self.commands.append(message)
 
     def close(self) -> None:

@@ -132,13 +132,16 @@ def test_a_vehicle_that_waits_for_its_first_message_is_heard_after_a_restart(
 
 
 def test_a_vehicle_that_rejects_our_signature_is_named() -> None:
-    """The vehicle is heard, signed as it should be, and answers nothing."""
+    """The vehicle is heard, signed as it should be, and answers a ground station alone."""
+    accepted = mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, 0, 0, 0, 255, 190)
     signed = VehicleTable.model_validate(
         {**TABLE, "vehicle": {**QUICK["vehicle"], "key_file": "key"}}
     )
     with listening_diver_of(KEY, signed) as (diver, port), closing(Socket(port)) as vehicle:
         signing = create_signing(KEY)
-        vehicle.send_always(lambda: [packed(beat(), signing=signing)], 0.02)
+        vehicle.send_always(
+            lambda: [packed(each, signing=signing) for each in (beat(), accepted)], 0.02
+        )
         diver.confirm("stop")
         assert diver.wait_for("NOT DONE").startswith("NOT DONE, no answer: hold; ")
         assert diver.wait_for("the vehicle rejects our signature") == bridge.SIGNATURE_REJECTED

@@ -194,3 +194,18 @@ def test_a_pilot_who_takes_over_during_an_outage_ends_the_emergency(diver: Diver
     vehicle.wait(5)
     assert "NOT DONE, the pilot changed the mode: surface" in take_lines(diver)
     assert vehicle.mode == mavlink.SUB_MODE_STABILIZE
+
+
+def test_an_emergency_that_is_first_shown_in_an_outage_is_sent_whatever_the_mode_is(
+    diver: Diver,
+) -> None:
+    """Nobody knows whether the pilot changed the mode before it or after it."""
+    vehicle = vehicle_of(diver)
+    vehicle.linked = False
+    diver.show("help")
+    vehicle.wait(36)
+    vehicle.mode = mavlink.SUB_MODE_STABILIZE
+    vehicle.linked = True
+    vehicle.wait(5)
+    assert take_lines(diver)[-1] == "done: surface"
+    assert vehicle.mode == mavlink.SUB_MODE_SURFACE

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
 import pytest
 
 from app.recognition.errors import VehicleError
+from app.recognition.phrases.grammar import Grammar
+from app.recognition.phrases.phrase import OneOf, Phrase
 from app.robot.commands.answers import PULSES
 from app.robot.mavlink.table import (
     Answers,
@@ -23,6 +26,7 @@ from app.robot.mavlink.table import (
     read_vehicle_table,
 )
 from tests.conftest import ROOT
+from tests.robot.languages import language_of
 
 KINDS = (Hold, Surface, Mode, Lights, Camera, Depth)
 
@@ -48,6 +52,8 @@ def read(tmp_path: Path, text: str) -> VehicleTable:
         ('[gestures]\na = { do = "depth", metres = 31 }', "deeper than 30"),
         ('[gestures]\na = { do = "depth", metres = { slot = "m" } }', "has no slots; give metres"),
         ('[emergency]\na = "camera"', "emergency.a: Input should be 'hold' or 'surface'"),
+        ("[emergency]\na = []", "emergency.a: Input should be 'hold' or 'surface'"),
+        ('[emergency]\na = ["hold", {}]', "emergency.a: Input should be 'hold' or 'surface'"),
         ('[gestures]\na = { do = "hold" }\n[emergency]\na = "hold"', "['a'] have two meanings"),
         ('cancel = ["a"]\n[gestures]\na = { do = "hold" }', "['a'] have two meanings"),
         ('[gestures]\na = { do = "hold" }\n[vehicle]\nsystem = 256', "vehicle.system"),
@@ -89,14 +95,15 @@ def test_toml_and_json_say_the_same(tmp_path: Path) -> None:
     content = {"format": "osg-studio/vehicle-table", "version": 1, "gestures": {"down": down}}
     file.write_text(json.dumps(content | {"cancel": ["no"]}))
     assert read_vehicle_table(file) == table
-    assert table.find_action("down") == Depth(do="depth", metres=5)
-    assert table.find_action("no") is None
+    assert table.find_actions("down") == (Depth(do="depth", metres=5),)
+    assert table.find_actions("no") == ()
 
 
 def test_emergencies_are_actions_that_need_no_repetition(tmp_path: Path) -> None:
-    table = read(tmp_path, '[emergency]\nhelp = "hold"')
-    assert table.find_action("help") == Hold()
-    assert table.rules.emergency == {"help"}
+    table = read(tmp_path, '[emergency]\nhelp = "hold"\nup = ["surface", "hold"]')
+    assert table.find_actions("help") == (Hold(),)
+    assert table.find_actions("up") == (Surface(), Hold())
+    assert table.rules.emergency == {"help", "up"}
     assert table.rules.confirmed
 
 
@@ -109,3 +116,40 @@ def test_a_depth_that_is_none_is_not_gone_to(tmp_path: Path, shown: object) -> N
         table.resolve_mission([{"phrase": "stay", "slots": {}}])
     (action,) = table.resolve_mission([{"phrase": "go", "slots": {"m": "7.5"}}])
     assert action == Depth(do="depth", metres=7.5)
+
+
+WORDS = Phrase("go", (OneOf(("circle",)), OneOf(("line",))), {}, "go")
+
+
+@pytest.mark.parametrize(
+    ("table", "grammar", "faults"),
+    [
+        ('[gestures]\nline = { do = "hold" }', None, []),
+        (
+            '[gestures]\nline = { do = "hold" }',
+            Grammar((WORDS,)),
+            [(False, "gestures.line counts within phrases only")],
+        ),
+        (
+            '[emergency]\ncircle = "surface"',
+            Grammar((WORDS,)),
+            [(True, "no commands: emergency.circle begins messages")],
+        ),
+        (
+            '[emergency]\nsquare = "surface"',
+            Grammar((WORDS,), start="square"),
+            [(True, "no commands: emergency.square begins messages")],
+        ),
+        ('[emergency]\nsquare = "surface"', Grammar((WORDS,), cancel="square"), []),
+        (
+            '[phrases]\nstay = { do = "hold" }',
+            Grammar((WORDS,)),
+            [(False, "phrases.stay is not in the language 'pool'")],
+        ),
+    ],
+)
+def test_what_a_table_cannot_do_in_a_language_is_known_before_the_dive(
+    tmp_path: Path, table: str, grammar: Grammar | None, faults: list[tuple[bool, str]]
+) -> None:
+    language = replace(language_of("circle", "line", "square"), grammar=grammar)
+    assert [*read(tmp_path, table).list_faults(language, spots=False)] == faults

@@ -308,8 +308,7 @@ class Ardusub:
             return int(mavlink.MAV_RESULT_DENIED)
         # 00d5b0f84fc2 ArduSub/mode.cpp 82-93.
         name = MODES.get(int(message.param2))
-        older = (4, 5, 0) <= self.version < (4, 7, 0)
-        needs = name in NEEDS_POSITION or (name == "SURFACE" and older)
+        needs = needs_position(name, self.version)
         is_missing = name is None or (name == "SURFTRAK" and self.version < (4, 5, 0))
         if is_missing or (needs and not self.has_position):
             # In 4.0: 000f342b5f12 libraries/GCS_MAVLink/GCS_Common.cpp 1363-1386.
@@ -373,6 +372,12 @@ class Ardusub:
         if self.mode != mode:
             self.mode = mode
             self.obeyed.append(MODES[mode])
+
+
+def needs_position(mode: str | None, version: tuple[int, int, int]) -> bool:
+    """Return whether a version takes a mode only with a position."""
+    older = (4, 5, 0) <= version < (4, 7, 0)
+    return mode in NEEDS_POSITION or (mode == "SURFACE" and older)
 
 
 @contextmanager

@@ -167,7 +167,7 @@ def test_changes_of_emergencies_come_first(robot: Robot) -> None:
     _, proposal = robot.send("language", language_of("circle backwards", "line").to_json())
     changes = proposal["changes"]
     assert changes[:2] == [
-        "the vehicle table names emergency.circle, which the language lacks",
+        "vehicle table: emergency.circle is not in the language 'pool'",
         "EMERGENCY gesture 'circle': removed",
     ]
     code = ActiveLanguage.from_json(language_of("circle backwards", "line").to_json())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from app.api.http.schemas.values import (
     Body,
@@ -32,7 +32,7 @@ class NewDemonstration(Body):
     clip_id: Identifier
     start: Seconds | None = None
     end: Seconds | None = None
-    keep_transit: bool = False
+    keep_transit: StrictBool = False
     """Keep the hand's way from and to the salute, where the range is a take's own."""
     diver: Diver = ""
     """Name of the diver who shows it; empty: unknown."""
@@ -76,7 +76,7 @@ class GestureChange(Body):
     label: NewLabel | None = None
     demonstration: NewDemonstration | None = None
     """Takes the place of the first demonstration, unless `further`."""
-    further: bool = False
+    further: StrictBool = False
     """Add the demonstration to those that the gesture has."""
     diver: Diver | None = None
     """Name of the first demonstration's diver."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import datetime
 from typing import Annotated, Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from app.api.http.schemas.values import Body, View
 from app.recognition.gestures.demonstration import MAX_DEMONSTRATIONS
@@ -65,7 +65,7 @@ class InvitedTakeView(View):
 class InvitedAnswer(Body):
     """What the person who shows says about a take that is asked about."""
 
-    confirmed: bool
+    confirmed: StrictBool
     """It is the gesture; false: another take will be shown."""
 
 
