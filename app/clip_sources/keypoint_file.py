@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -159,5 +160,6 @@ def _without_path(text: str, place: Path) -> str:
     """Replace the stored file's name, and mention that the named option is of the command line."""
     text = text.replace(f"{place}/", "").replace(str(place), "the file")
     text = text.replace(place.name, "the file")
-    option = " --landmark" in text and "(an option of the command line)" not in text
-    return f"{text} (an option of the command line)" if option else text
+    note = "(an option of the command line)"
+    option = re.search(" --(landmark|keypoints) ", text) and note not in text
+    return f"{text} {note}" if option else text

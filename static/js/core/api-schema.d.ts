@@ -3042,6 +3042,14 @@ export interface components {
                 [key: string]: (number | null)[];
             };
             /**
+             * Unseen
+             * @description First and last second of each span across which no gesture is read: a hole, or a part of a take in which a salute may have been missed.
+             */
+            unseen: [
+                number,
+                number
+            ][];
+            /**
              * Unit
              * @description Of the speed's lengths: torso_length, or extent without a torso.
              */
