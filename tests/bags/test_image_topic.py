@@ -268,6 +268,13 @@ def test_limits_hold(tmp_path: Path, limits: VideoLimits, words: str) -> None:
         frames_of(tmp_path, rows, limits)
 
 
+def test_a_step_that_is_left_out_is_that_of_whole_rows(tmp_path: Path) -> None:
+    content = raw(picture(0), "rgb8", START)
+    content.step = 0
+    (frame,), _ = frames_of(tmp_path, [("/camera", content, START)])
+    np.testing.assert_array_equal(frame.image, picture(0))
+
+
 @pytest.mark.parametrize(
     ("field", "value", "words"),
     [

@@ -15,7 +15,7 @@ from app.recognition import Language, Recognizer, Recording
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.landmarks import POSE_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
-from app.recognition.poses.skeletons import BODY_25, LandmarkSet
+from app.recognition.poses.skeletons import BODY_25, COCO_17, LandmarkSet
 from app.recognition.recording.clip_range import find_clip_range
 from tests.conftest import RECORDINGS
 from tests.keypoint_files.files import write_rows
@@ -197,3 +197,33 @@ def test_names_from_the_viewer_s_side_are_told(tmp_path: Path) -> None:
     assert any("viewer's side" in told for told in read.recording.warnings)
     plain = read_keypoints(write(tmp_path, "csv", LINE.time.tolist(), LINE.xy), OPTIONS)
     assert not any("viewer's side" in told for told in plain.recording.warnings)
+
+
+@pytest.mark.parametrize("layout", ["posenet", "ml5", "ultralytics"])
+def test_layouts_of_neighbours_are_read(tmp_path: Path, layout: str) -> None:
+    points = [LINE.column(name).tolist() for name in COCO_17]
+    frames: list[Any] = []
+    for row in zip(*points, strict=True):
+        parts = [
+            {"part": name, "score": 0.9, "position": {"x": x, "y": y}}
+            for name, (x, y) in zip(COCO_17, row, strict=True)
+        ]
+        xs, ys = map(list, zip(*row, strict=True))
+        frames.append(
+            {
+                "posenet": {"score": 0.9, "keypoints": parts},
+                "ml5": [{"pose": {"score": 0.9, "keypoints": parts}, "skeleton": []}],
+                "ultralytics": [{"name": "person", "keypoints": {"x": xs, "y": ys}}],
+            }[layout]
+        )
+    path = tmp_path / "pose.json"
+    path.write_text(json.dumps(frames))
+    read = read_keypoints(path, KeypointOptions(25, LINE.frame_size))
+    wrist = read.recording.poses.column("right_wrist")
+    np.testing.assert_allclose(wrist, LINE.column("right_wrist"))
+
+
+def test_the_line_of_a_spreadsheet_that_names_the_separator_is_no_heading(tmp_path: Path) -> None:
+    path = write(tmp_path, "csv", LINE.time.tolist(), LINE.xy)
+    path.write_text("sep=,\n" + path.read_text())
+    assert len(read_keypoints(path, OPTIONS).recording.poses) == len(LINE)

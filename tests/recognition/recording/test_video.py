@@ -2,6 +2,7 @@
 
 import gc
 import io
+import re
 import weakref
 from collections.abc import Iterator
 from fractions import Fraction
@@ -132,6 +133,12 @@ def test_joined_recordings_go_on_in_time(tmp_path: Path) -> None:
     assert (np.diff(times) > 0).all()
     assert times[-1] == pytest.approx(98 / 25 + SEAM, abs=0.1)
     assert any("begins again" in told for told in warnings)
+
+
+def test_a_picture_that_turns_is_told_before_all_else(tmp_path: Path) -> None:
+    parts = [write_clip(tmp_path / f"{size[0]}.ts", size=size) for size in ((96, 64), (64, 96))]
+    _, warnings = read(joined(*parts))
+    assert re.match(r"the picture turns at \d\.\d s, from 96 x 64 to 64 x 96;", warnings[0])
 
 
 @pytest.mark.parametrize(
