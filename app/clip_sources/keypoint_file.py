@@ -35,6 +35,7 @@ from app.recognition.errors import (
     FrameSizeError,
     KeypointFileError,
     OsgError,
+    RoundedTimesError,
 )
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -46,6 +47,10 @@ NO_HANDS = (
 FRAME_RATE_NEEDED = (
     "the file counts frames and has no timestamps; give the frames per second of its video (field "
     "frame_rate, as 30)"
+)
+ROUNDED_TIMES = (
+    "the times are rounded, so that several frames have one; give the frames per second of the "
+    "video (field frame_rate, as 30), by which frames are counted instead"
 )
 FRAME_SIZE_NEEDED = (
     "the file holds fractions of a picture, whose size it does not say; give the size of its "
@@ -121,6 +126,8 @@ class KeypointFileSource(ClipSource):
     def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Return a refusal that names missing values by form field, and not the stored file."""
         match error:
+            case RoundedTimesError():
+                return Refusal("frame_rate_needed", ROUNDED_TIMES)
             case FrameRateError():
                 return Refusal("frame_rate_needed", FRAME_RATE_NEEDED)
             case FrameSizeError():

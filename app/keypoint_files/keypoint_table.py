@@ -11,7 +11,7 @@ from typing import TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.errors import FrameRateError, KeypointFileError
+from app.recognition.errors import KeypointFileError, RoundedTimesError
 from app.recognition.poses.frame import Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -129,7 +129,7 @@ class Times:
 
         Raises
         ------
-        FrameRateError
+        RoundedTimesError
             When neighbouring frames have one time: a frame rate can stand in for it.
         KeypointFileError
             When time goes back, or is no number.
@@ -151,7 +151,7 @@ class Times:
                 f"{path}: frame {there} stands twice; keep one row a frame, of one person"
             )
         if (steps >= 0).all():
-            raise FrameRateError(
+            raise RoundedTimesError(
                 f"{path}: times are rounded: frames {at} and {at + 1} are both at {there}; write "
                 "exact times, or give --frame-rate, as 25, by which frames are counted instead"
             )

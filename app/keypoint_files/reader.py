@@ -13,7 +13,12 @@ import numpy.typing as npt
 
 from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times
 from app.keypoint_files.registry import find_reader
-from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
+from app.recognition.errors import (
+    FrameRateError,
+    FrameSizeError,
+    KeypointFileError,
+    RoundedTimesError,
+)
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
@@ -140,7 +145,7 @@ def _count_rounded(
     """Count frames whose times cannot be told apart, if the frame rate is given."""
     try:
         table.times.require_order(path)
-    except FrameRateError:
+    except RoundedTimesError:
         twice = np.diff(table.times.values) == 0
         if np.array_equal(table.xy[1:][twice], table.xy[:-1][twice], equal_nan=True):
             raise KeypointFileError(

@@ -42,7 +42,7 @@ def explain_missing_salutes(
 
     """
     if odd and len(find_held(poses.time, scores)) < 2:
-        yield f"salutes may be missing because {odd[0]}"
+        yield f"two salutes were not seen, and something else is odd: {odd[0]}"
         return
     frames, with_hand = len(hands), sum(map(bool, hands))
     seen = with_hand + without_fingers

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from app.recognition import Language, Recognizer, Recording, takes_in
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.recording.clip_range import find_clip_range
+from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.recording.salute import HOLD_SECONDS, SHORTEST_TAKE
 from app.recognition.recording.segmentation import TakeMachine, TakeState, list_unseen
 from app.recognition.recording.unseen import (
@@ -138,3 +139,10 @@ def test_what_is_odd_about_a_clock_is_told(time: FloatArray, words: str) -> None
     assert "sort" not in told
     assert "hold" not in told
     assert all(each.end > each.start for each in find_holes(time))
+
+
+def test_what_is_odd_about_the_file_speaks_before_the_salutes() -> None:
+    clear = np.zeros(len(LINE.poses))
+    (told,) = explain_missing_salutes(LINE.poses, clear, LINE.hands, odd=["the picture turns"])
+    assert told == "two salutes were not seen, and something else is odd: the picture turns"
+    assert not list(explain_missing_salutes(LINE.poses, LINE.salute, LINE.hands, odd=["x"]))
