@@ -239,12 +239,12 @@ def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
     """
     xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)
     place = {name: at for at, name in enumerate(kind.landmarks) if name}
-    body = xy[:, list(place.values())]
-    body = body[2 * np.isfinite(body[..., 0]).sum(axis=1) > body.shape[1]]
     xy = xy[2 * np.isfinite(xy[:, list(place.values()), 0]).sum(axis=1) > len(place)]
-    extent = _diagonal(body)
-    face = [place[name] for name in FACE if name in place]
-    apart = [_diagonal(xy[:, face]) - LARGEST_FACE * extent] if face else []
+    if not len(xy):
+        return None
+    body, face = xy[:, list(place.values())], xy[:, [place[name] for name in FACE]]
+    extent = np.linalg.norm(np.nanmax(body, axis=1) - np.nanmin(body, axis=1), axis=1)
+    apart = [np.linalg.norm(np.ptp(face, axis=1), axis=1) - LARGEST_FACE * extent]
     for middle, pair in zip(kind.middles, (SHOULDERS, HIPS), strict=False):
         one, other = (xy[:, place[name]] for name in pair)
         off = np.linalg.norm(xy[:, middle] - (one + other) / 2, axis=1)
@@ -253,13 +253,6 @@ def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
     known = [each[np.isfinite(each)] for each in apart]
     judged = [bool(np.median(each) <= 0) for each in known if len(each)]
     return all(judged) if judged else None
-
-
-def _diagonal(xy: FloatArray) -> FloatArray:
-    """Return the ``(T,)`` diagonals of boxes around points ``(T, K, 2)``, NaN without all."""
-    if not len(xy):
-        return np.empty(0)
-    return np.asarray(np.linalg.norm(np.nanmax(xy, axis=1) - np.nanmin(xy, axis=1), axis=1))
 
 
 def table_of_people(
