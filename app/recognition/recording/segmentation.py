@@ -336,7 +336,7 @@ def find_brackets(recording: Recording, trigger: Trigger = SALUTE) -> list[Brack
 
 
 def list_unseen(recording: Recording, trigger: Trigger = SALUTE) -> tuple[Span, ...]:
-    """Return the spans across which no gesture of a recording is read, holes first."""
+    """Return the spans of a recording in which a trigger may have been missed, holes first."""
     takes = find_brackets(recording, trigger)
     return (
         *find_holes(recording.poses.time),

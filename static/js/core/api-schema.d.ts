@@ -3043,7 +3043,7 @@ export interface components {
             };
             /**
              * Unseen
-             * @description First and last second of each span across which no gesture is read: a hole, or a part of a take in which a salute may have been missed.
+             * @description First and last second of each span in which a salute may have been missed: a hole, or a part of a take in which too little was seen.
              */
             unseen: [
                 number,

@@ -168,7 +168,7 @@ const unseen = ([start, end], duration) =>
     className: "unseen",
     role: "img",
     "aria-label": `Not seen, ${moment(start)} to ${moment(end)}`,
-    title: "Too little was seen here: no gesture is read across it.",
+    title: "Too little was seen here: a salute may have been missed.",
     style: { left: percent(start, duration), width: percent(end - start, duration) },
   });
 

@@ -42,8 +42,8 @@ class TimelineView(View):
     speed: dict[str, list[float | None]]
     """Per wrist, torso lengths a second; null where it was not seen."""
     unseen: list[tuple[float, float]]
-    """First and last second of each span across which no gesture is read: a hole, or a part of a
-    take in which a salute may have been missed."""
+    """First and last second of each span in which a salute may have been missed: a hole, or a part
+    of a take in which too little was seen."""
     unit: str
     """Of the speed's lengths: torso_length, or extent without a torso."""
     thumbnails: int
