@@ -81,8 +81,9 @@ def raw_image(message: Any, limits: VideoLimits) -> Image:
 
 def _pixels(message: Any, channels: int, depth: int) -> Image:
     """Cut the padding off the rows, and keep the upper byte of deep pixels."""
-    height, width, step = int(message.height), int(message.width), int(message.step)
+    height, width = int(message.height), int(message.width)
     row = width * channels * depth
+    step = int(message.step) or row  # 0 where a driver leaves it out
     data = np.asarray(message.data, dtype=np.uint8)
     odd = width % 2 == 1 and str(message.encoding) in _SHARED_COLOUR
     if not row or not height or odd or step < row or data.size < step * (height - 1) + row:

@@ -13,15 +13,15 @@ class MessageClock:
     """Computes the times of a topic's messages.
 
     Time is the stamp in the headers, at which the picture was taken; if the first message has none,
-    it is the time of reception. Where the stamps jump ahead and reception does not, their clock was
-    set: time goes on as reception does.
+    it is the time of reception. Where the stamps jump and reception does not, their clock was set:
+    time goes on as reception does.
 
     Attributes
     ----------
     by_header
         Whether time is that of the headers; None before the first message.
     jumps
-        Seconds by which the headers' clock was set ahead, each time.
+        Seconds by which the headers' clock was set, each time; negative: back.
 
     """
 
@@ -47,7 +47,7 @@ class MessageClock:
         else:
             ahead = stamp - self._last[0]
             jump = ahead - max(0, message.received - self._last[1])
-            if min(ahead, jump) > DISCONTINUITY * 1e9:
+            if min(abs(ahead), abs(jump)) > DISCONTINUITY * 1e9 and ahead * jump > 0:
                 self.jumps.append(jump / 1e9)
                 self._first += jump
         self._last = stamp, message.received
@@ -70,4 +70,5 @@ class MessageClock:
                 f"{self._frames.repaired} of {frames} messages had no timestamp, or one not later "
                 "than that of the message before; their time is estimated"
             )
-        return [*found, *tell_jumps([*self.jumps, *self._frames.jumps])]
+        steady = tell_jumps(self.jumps, "time goes on as messages were received")
+        return [*found, *steady, *self._frames.sentences]

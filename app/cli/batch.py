@@ -17,6 +17,7 @@ from app.evaluation.take_table import COLUMNS, Row, row_of_fault, rows_of_clip, 
 from app.recognition import Recognizer
 from app.recognition.errors import OsgError, VideoError, explain_missing_package
 from app.recognition.language.file import seal
+from app.recognition.recording.chapters import tell_pieces
 from app.recognition.spotting import Spotter
 from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.wording import list_some
@@ -257,6 +258,8 @@ class FolderBatch:
         done = {clip: journal.find(self._name(clip), states[clip]) for clip in clips}
         left = {clip: measure_bytes(clip) for clip in clips if done[clip] is None}
         tell_left_out(self.folder, (*clips, *self.excluded, self.table, self._journal_file))
+        for told in tell_pieces(clips):
+            tell(told)
         if len(left) < len(clips):
             tell(f"{len(clips) - len(left)} of {len(clips)} clips are done already")
         with batch_bar(len(left), sum(left.values())) as advance:

@@ -24,6 +24,7 @@ from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
 from app.recognition.recording.segmentation import LONGEST_TAKE
+from app.recognition.recording.unseen import find_unseen
 from app.recognition.recording.video import Turn
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -46,6 +47,14 @@ LandmarkOption = Annotated[
     list[str] | None,
     typer.Option(
         metavar="NAME=LANDMARK", help="What a keypoint file's name means here; repeat for more."
+    ),
+]
+
+KeypointsOption = Annotated[
+    str | None,
+    typer.Option(
+        metavar="SET",
+        help="Set of a file's keypoints without names: body25, coco, halpe, mediapipe, ...",
     ),
 ]
 
@@ -83,6 +92,7 @@ def read_options(
     landmark: list[str] | None,
     turn: Turn,
     water: WaterCorrection = "auto",
+    keypoints: str | None = None,
 ) -> ReadOptions:
     """Parse the user's options for files; the first three are for keypoint files.
 
@@ -107,8 +117,8 @@ def read_options(
                 f"{pair!r} is not NAME=LANDMARK; say what a name means, as in paw=right_wrist"
             )
         names[name] = meant
-    keypoints = KeypointOptions(frame_rate, size, names)
-    return ReadOptions(**vars(keypoints), turn=turn, water=water)
+    given = KeypointOptions(frame_rate, size, names, keypoints)
+    return ReadOptions(**vars(given), turn=turn, water=water)
 
 
 @dataclass(frozen=True)
@@ -204,13 +214,13 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
 
     """
     start, end = span
-    poses = recording.poses.between(start, end)
+    poses, last = recording.poses.between(start, end), recording.poses.time[-1]
     if len(poses) < 2:
-        last = recording.poses.time[-1]
         raise GestureError(
             f"{start:g}-{end:g} s holds {len(poses)} frames of a clip that ends at {last:.2f} s; "
             "give START < END inside the clip"
         )
+    begin, finish = max(start, float(recording.poses.time[0])), min(end, float(last))
     return Take(
         start=start,
         end=end,
@@ -219,6 +229,7 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
         stroke_start=start,
         stroke_end=end,
         untrimmed=poses,
+        unseen=find_unseen(poses.time.tolist(), begin, finish),
     )
 
 
@@ -324,8 +335,9 @@ def _build_reading(
     frame_rate: FrameRateOption = None,
     frame_size: FrameSizeOption = None,
     landmark: LandmarkOption = None,
+    keypoints: KeypointsOption = None,
 ) -> ClipReading:
-    options = read_options(frame_rate, frame_size, landmark, turn, water)
+    options = read_options(frame_rate, frame_size, landmark, turn, water, keypoints)
     return ClipReading(options, estimator, hands)
 
 

@@ -23,6 +23,7 @@ from app.recognition.explanation.explanation import explain
 from app.recognition.gestures.profile import PROFILES
 from app.recognition.recording.chapters import tell_chapters
 from app.recognition.recording.missing_salutes import explain_missing_salutes
+from app.recognition.recording.unseen import tell_clock
 from app.recognition.spotting import Spotter
 from app.recognition.text.wording import ask_twins
 from app.recognition.triggers.arm_pose import HOLD_SECONDS
@@ -73,7 +74,8 @@ def recognize(
     path, span = clip_and_span(clip)
     loaded = Language.load(language)
     if expected is not None:
-        loaded.gesture(expected)  # raises an error for an unknown label before the clip is read
+        # Raises an error for an unknown label before the clip is read.
+        expected = loaded.gesture(expected).label
     recognizer = Recognizer(loaded, profile)
     for twins in recognizer.undecided_twins:
         tell(ask_twins(twins))
@@ -140,8 +142,11 @@ def explain_absence(
             f"pause before and after a gesture, or give the range: {path}@START-END"
         )
     elif recognizer.language.trigger == SALUTE:
-        why = explain_missing_salutes(recording.poses, recording.salute, recording.hands)
-        reason = next(why, f"no salute found in {seconds}")
+        poses, odd = recording.poses, tuple(tell_clock(recording.poses.time))
+        why = recording.salute_warnings or explain_missing_salutes(
+            poses, recording.salute, recording.hands, odd=odd
+        )
+        reason = next(iter(why), f"no salute found in {seconds}")
         tell(f"{path}: no take: {reason}; or give the range: {path}@START-END")
     else:
         words = recognizer.language.trigger.words

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import get_args
@@ -34,6 +35,7 @@ from app.recognition.errors import (
     FrameSizeError,
     KeypointFileError,
     OsgError,
+    RoundedTimesError,
 )
 from app.recognition.recording.video_limits import VideoLimits
 
@@ -45,6 +47,10 @@ NO_HANDS = (
 FRAME_RATE_NEEDED = (
     "the file counts frames and has no timestamps; give the frames per second of its video (field "
     "frame_rate, as 30)"
+)
+ROUNDED_TIMES = (
+    "the times are rounded, so that several frames have one; give the frames per second of the "
+    "video (field frame_rate, as 30), by which frames are counted instead"
 )
 FRAME_SIZE_NEEDED = (
     "the file holds fractions of a picture, whose size it does not say; give the size of its "
@@ -120,6 +126,8 @@ class KeypointFileSource(ClipSource):
     def refuse(self, error: OsgError, path: Path) -> Refusal:
         """Return a refusal that names missing values by form field, and not the stored file."""
         match error:
+            case RoundedTimesError():
+                return Refusal("frame_rate_needed", ROUNDED_TIMES)
             case FrameRateError():
                 return Refusal("frame_rate_needed", FRAME_RATE_NEEDED)
             case FrameSizeError():
@@ -159,5 +167,6 @@ def _without_path(text: str, place: Path) -> str:
     """Replace the stored file's name, and mention that the named option is of the command line."""
     text = text.replace(f"{place}/", "").replace(str(place), "the file")
     text = text.replace(place.name, "the file")
-    option = " --landmark" in text and "(an option of the command line)" not in text
-    return f"{text} (an option of the command line)" if option else text
+    note = "(an option of the command line)"
+    option = re.search(" --(landmark|keypoints) ", text) and note not in text
+    return f"{text} {note}" if option else text

@@ -52,7 +52,7 @@ class ReadOptions(BaseModel):
         Topic of a dive recording; None for the only usable one.
     ending
         Ending by which a keypoint file that was stored without its name is read.
-    frame_rate, frame_size, landmarks
+    frame_rate, frame_size, landmarks, keypoint_set
         Values for a keypoint file, see `KeypointOptions`.
     water
         Whether colour and contrast are corrected before landmarks are found.
@@ -70,6 +70,7 @@ class ReadOptions(BaseModel):
     frame_rate: float | None = None
     frame_size: tuple[int, int] | None = None
     landmarks: dict[str, str] = Field(default_factory=dict)
+    keypoint_set: str | None = None
     water: WaterCorrection = "auto"
     turn: Turn = 0
     chapters: tuple[int, ...] = ()
@@ -84,7 +85,7 @@ class ReadOptions(BaseModel):
             When a rate or a size is not positive.
 
         """
-        return KeypointOptions(self.frame_rate, self.frame_size, self.landmarks)
+        return KeypointOptions(self.frame_rate, self.frame_size, self.landmarks, self.keypoint_set)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from pathlib import Path, PurePosixPath
 from app.clip_sources import is_take
 from app.evaluation.kept_recordings import RECORDING_ENDING
 from app.recognition.errors import OsgError
+from app.recognition.text.look_alikes import compose
 
 LAYOUTS = ("{label}_*", "{label}/*", "{person}/{label}/*")
 """Default layouts for files one, two and three levels deep."""
@@ -75,7 +76,8 @@ def labelled_files(folder: Path, layout: str | None = None) -> tuple[LabelledFil
         relative = PurePosixPath(path.relative_to(folder).as_posix())
         name = str(relative if path.is_dir() else relative.with_suffix(""))
         if fields := _read(name, layout):
-            found.append(LabelledFile(path, fields["label"], fields.get("person") or ""))
+            label, person = (compose(fields.get(key) or "") for key in ("label", "person"))
+            found.append(LabelledFile(path, label, person))
     if not found:
         raise OsgError(
             f"{folder} holds no clip that fits {layout or ' or '.join(LAYOUTS)}; name its files "

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
+from app.recognition.errors import KeypointFileError
 from app.recognition.poses.frame import Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS, POSE_LANDMARKS
 
@@ -101,6 +102,12 @@ def columns_of(headings: Sequence[str]) -> Columns:
     """Read the headings of a table with one frame a row; unknown columns are skipped.
 
     Numbered landmarks are named by `name_numbers`.
+
+    Raises
+    ------
+    KeypointFileError
+        When two columns mean the same.
+
     """
     points: dict[str, dict[str, int]] = {}
     for place, heading in enumerate(headings):
@@ -109,7 +116,13 @@ def columns_of(headings: Sequence[str]) -> Columns:
             continue
         match = next((found for each in _PATTERNS if (found := each.fullmatch(text))), None)
         if match:
-            points.setdefault(match["name"], {})[AXES[match["axis"].lower()]] = place
+            places, axis = points.setdefault(match["name"], {}), AXES[match["axis"].lower()]
+            if axis in places:
+                raise KeypointFileError(
+                    f"the column {headings[places[axis]]!r} stands twice, as {heading!r} in column "
+                    f"{place + 1}; keep the right one"
+                )
+            places[axis] = place
     whole = {name: places for name, places in points.items() if {"x", "y"} <= set(places)}
     when, unit = time_column(headings)
     plainly = [plain(heading) for heading in headings]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 from typing import Final
 
@@ -23,10 +23,9 @@ from app.keypoint_files.keypoint_table import (
 )
 from app.recognition.errors import KeypointFileError
 from app.recognition.poses.frame import Hand, Side
-from app.recognition.poses.landmarks import HAND_LANDMARKS
+from app.recognition.poses.landmarks import HAND_LANDMARKS, HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.poses.skeletons import (
-    COCO_17,
     KEYPOINT_SETS,
     KeypointSet,
     find_keypoint_set,
@@ -34,11 +33,15 @@ from app.recognition.poses.skeletons import (
 from app.recognition.recording.people import Choice, People, SeenPerson
 from app.recognition.recording.salute import best_salute
 
-EYES_AND_EARS: Final = [1, 2, 3, 4]
-"""Their places in COCO's order and in all that build on it."""
+FACE: Final = ("left_eye", "right_eye", "left_ear", "right_ear")
+"""Landmarks that are close together, on every body."""
 
 LARGEST_FACE: Final = 0.35
 """Largest share of a body's extent that is between eyes and ears, also without legs in view."""
+
+LARGEST_SLIP: Final = 0.25
+"""Largest distance of a neck from the middle of the shoulders, in their width and a quarter of the
+body's extent: models find it a few hundredths off, and the width is small from the side."""
 
 LEAST_HAND: Final = 0.3
 """Least mean score of a hand among a whole body's keypoints: its model places both hands always."""
@@ -119,7 +122,16 @@ def name_points(
         raise KeypointFileError(
             f"{path} names {len(names)} keypoints and has {count}; export it again"
         )
-    found = find_keypoint_set(count, called, names)
+    found = find_keypoint_set(count, options.keypoint_set or called, names)
+    if options.keypoint_set is not None:
+        words = re.sub(r"[^a-z0-9]", "", options.keypoint_set.lower())
+        if found is None or words not in found.words:
+            known = ", ".join(sorted({word for each in KEYPOINT_SETS for word in each.words}))
+            raise KeypointFileError(
+                f"{path}: no set of {count} keypoints is called {options.keypoint_set!r}; there "
+                f"are {known}"
+            )
+        return replace(found, by_count=False)  # the user is believed
     if names and (found is None or not found.hands):
         return KeypointSet("", tuple(names))
     if found is None or not is_numbered(numbers):
@@ -141,7 +153,7 @@ def _unnamed(path: Path, count: int, why: str) -> KeypointFileError:
     return KeypointFileError(
         f"{path} has {count} keypoints without names, {why}; name them in the file (categories, or "
         'meta_info with "dataset_name": "h36m" or "crowdpose"), or say which they are, as in '
-        "--landmark 10=right_wrist"
+        "--keypoints body25 or --landmark 10=right_wrist"
     )
 
 
@@ -151,6 +163,8 @@ def table_of(
     times: Times,
     path: Path,
     hands: tuple[tuple[Hand, ...], ...] | None = None,
+    *,
+    named: bool = False,
     **facts: Unpack[Facts],
 ) -> KeypointTable:
     """Create the table of one person.
@@ -167,6 +181,8 @@ def table_of(
         The file, for messages.
     hands
         Hands of each frame; None: those of the set, if it has some.
+    named
+        Whether the file names the set.
     facts
         What else the table tells.
 
@@ -176,8 +192,7 @@ def table_of(
         When the keypoints are not in the order of their set.
 
     """
-    if kind.landmarks[:5] == COCO_17[:5] and _begins_without_face(points):
-        raise _unnamed(path, points.shape[1], "of which the first are no face, as COCO's would be")
+    kind = _verify(kind, points, path, named=named)
     if hands is None and kind.hands:
         hands = tuple(Person(row).find_hands(kind) for row in points)
     kept = [place for place, name in enumerate(kind.landmarks) if name is not None]
@@ -193,16 +208,51 @@ def table_of(
     )
 
 
-def _begins_without_face(points: FloatArray) -> bool:
-    """Return whether the first keypoints are mostly as far from each other as all of a body."""
-    xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)[:, : len(COCO_17)]
-    known = np.isfinite(xy[..., 0])
-    xy = xy[known[:, EYES_AND_EARS].all(axis=1) & (2 * known.sum(axis=1) > len(COCO_17))]
-    face, body = (
-        np.linalg.norm(np.nanmax(part, axis=1) - np.nanmin(part, axis=1), axis=1)
-        for part in (xy[:, EYES_AND_EARS], xy)
-    )
-    return bool(len(xy)) and bool(np.median(face) > LARGEST_FACE * np.median(body))
+def _verify(kind: KeypointSet, points: FloatArray, path: Path, *, named: bool) -> KeypointSet:
+    """Return the set of which keypoints without names are, by where they lie.
+
+    Raises
+    ------
+    KeypointFileError
+        When they do not lie as in the set, or in neither of two sets of their number.
+
+    """
+    if not kind.title or not kind.by_count:
+        return kind
+    count = len(kind.landmarks)
+    sets = [each for each in KEYPOINT_SETS if each.by_count and len(each.landmarks) == count]
+    agreeing = [each for each in sets if _agrees(each, points)]
+    if agreeing:
+        return kind if kind in agreeing else agreeing[0]
+    # A file that names its set, as OpenPose's do, is believed unless its keypoints contradict.
+    if (named or len(sets) == 1) and _agrees(kind, points) is None:
+        return kind
+    titles = " or ".join(each.title for each in sets)
+    raise _unnamed(path, count, f"and they do not lie as those of {titles} do")
+
+
+def _agrees(kind: KeypointSet, points: FloatArray) -> bool | None:
+    """Return whether keypoints lie as in a set; None where nothing that decides is seen.
+
+    Eyes and ears are close together, the neck is between the shoulders, and the middle of the hips
+    between these.
+    """
+    xy = mask_unseen(points[..., :2], visibility_of(points), 0.0)
+    place = {name: at for at, name in enumerate(kind.landmarks) if name}
+    xy = xy[2 * np.isfinite(xy[:, list(place.values()), 0]).sum(axis=1) > len(place)]
+    if not len(xy):
+        return None
+    body, face = xy[:, list(place.values())], xy[:, [place[name] for name in FACE]]
+    extent = np.linalg.norm(np.nanmax(body, axis=1) - np.nanmin(body, axis=1), axis=1)
+    apart = [np.linalg.norm(np.ptp(face, axis=1), axis=1) - LARGEST_FACE * extent]
+    for middle, pair in zip(kind.middles, (SHOULDERS, HIPS), strict=False):
+        one, other = (xy[:, place[name]] for name in pair)
+        off = np.linalg.norm(xy[:, middle] - (one + other) / 2, axis=1)
+        allowed = LARGEST_SLIP * (np.linalg.norm(one - other, axis=1) + extent / 4)
+        apart.append(off - allowed)
+    known = [each[np.isfinite(each)] for each in apart]
+    judged = [bool(np.median(each) <= 0) for each in known if len(each)]
+    return all(judged) if judged else None
 
 
 def table_of_people(
@@ -252,7 +302,7 @@ def table_of_people(
     followed = [persons[0] if persons else nobody for persons in everybody]
     points = np.stack([one.points for one in followed])
     hands = tuple(one.find_hands(kind) for one in followed) if beside else None
-    return table_of(kind, points, times, path, hands, **facts)
+    return table_of(kind, points, times, path, hands, named=bool(called), **facts)
 
 
 def _choose_person(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from types import MappingProxyType
 from typing import TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
-from app.recognition.errors import KeypointFileError
+from app.recognition.errors import KeypointFileError, RoundedTimesError
 from app.recognition.poses.frame import Hand, Side
 from app.recognition.poses.landmarks import HAND_LANDMARKS
 from app.recognition.poses.sequence import FloatArray
@@ -41,6 +42,9 @@ FALLBACK_RATE = 30.0
 MOST_PEOPLE = 10
 """Most people of a frame that are told apart; of a SLEAP project, in every frame on average."""
 
+MOST_RESTARTS = 3
+"""Most times that time goes back in files that are joined; in unsorted ones it does so often."""
+
 MALFORMED = (
     ValueError,
     TypeError,
@@ -66,6 +70,8 @@ class KeypointOptions:
     landmarks
         Name of each keypoint in the file, with its name here: one of `POSE_LANDMARKS`, or any other
         name to keep it under. Known names need not be given.
+    keypoint_set
+        Name of the set that keypoints without names are of; None: told by their count and places.
 
     Raises
     ------
@@ -77,6 +83,7 @@ class KeypointOptions:
     frame_rate: float | None = None
     frame_size: tuple[int, int] | None = None
     landmarks: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+    keypoint_set: str | None = None
 
     @property
     def nominal_rate(self) -> float:
@@ -108,27 +115,57 @@ class Times:
         ``(T,)`` increasing: seconds, or the numbers of the frames.
     counted
         Whether the values are numbers of frames.
-
-    Raises
-    ------
-    KeypointFileError
-        When the values do not increase.
+    written
+        What stands in the file, for messages; None: the values.
 
     """
 
     values: FloatArray
     counted: bool
+    written: FloatArray | None = None
 
-    def __post_init__(self) -> None:
-        """Refuse frames out of order: they are of two recordings, or sorted by something else."""
-        late = np.concatenate([[False], np.diff(self.values) <= 0])
-        wrong = np.flatnonzero(late | ~np.isfinite(self.values))
-        if len(wrong):
-            at = int(wrong[0])
+    def require_order(self, path: Path) -> None:
+        """Refuse times that do not go on.
+
+        Raises
+        ------
+        RoundedTimesError
+            When neighbouring frames have one time: a frame rate can stand in for it.
+        KeypointFileError
+            When time goes back, or is no number.
+
+        """
+        steps = np.diff(self.values)
+        wrong = np.flatnonzero(~(np.concatenate([[1.0], steps]) > 0) | ~np.isfinite(self.values))
+        if not len(wrong):
+            return
+        at = int(wrong[0])
+        written = self.values if self.written is None else self.written
+        before, there = (f"{each:.15g}" for each in written[[max(at - 1, 0), at]].tolist())
+        if not np.isfinite(written[at]):
             raise KeypointFileError(
-                f"time does not go on at frame {at + 1} of the file, which is at "
-                f"{self.values[at]:g}; sort the frames, and keep one recording in a file"
+                f"{path}: time does not go on at frame {at + 1}, which has none; write it"
             )
+        if (steps >= 0).all() and self.counted:
+            raise KeypointFileError(
+                f"{path}: frame {there} stands twice; keep one row a frame, of one person"
+            )
+        if (steps >= 0).all():
+            raise RoundedTimesError(
+                f"{path}: times are rounded: frames {at} and {at + 1} are both at {there}; write "
+                "exact times, or give --frame-rate, as 25, by which frames are counted instead"
+            )
+        back = int((steps < 0).sum())
+        if back <= MOST_RESTARTS:
+            raise KeypointFileError(
+                f"{path}: time does not go on at frame {at + 1}, but begins again, from {before} "
+                f"to {there}: several recordings in one file, or its clock was set back; keep one "
+                "recording in a file"
+            )
+        raise KeypointFileError(
+            f"{path}: time does not go on at frame {at + 1}, from {before} to {there}, and goes "
+            f"back {back} times; sort the frames"
+        )
 
 
 class Facts(TypedDict, total=False):

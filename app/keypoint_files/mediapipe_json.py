@@ -172,6 +172,10 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
     given = frame
     if isinstance(frame, Mapping):
         given = next((frame[key] for key in LANDMARKS if key in frame), None)
+    if isinstance(given, Mapping) and "keypoints" in given:  # of ml5
+        given = given["keypoints"]
+    if isinstance(given, Mapping) and isinstance(given.get("x"), list):  # of Ultralytics
+        given = [list(each) for each in zip(*(given[axis] for axis in "xy"), strict=True)]
     if not given:
         return (), np.empty((0, 3))
     if isinstance(given, list) and isinstance(given[0], int | float):
@@ -184,7 +188,7 @@ def _points(frame: Any) -> tuple[tuple[str, ...], FloatArray]:
         nested = isinstance(given[0], list) and isinstance((given[0] or [0])[0], Mapping | list)
         values = given[0] if nested else given
         names = [
-            (isinstance(each, Mapping) and each.get("name")) or place
+            (isinstance(each, Mapping) and (each.get("name") or each.get("part"))) or place
             for place, each in enumerate(values)
         ]
     points = np.array([_point(each) for each in values], dtype=np.float64).reshape(-1, 3)
@@ -245,7 +249,7 @@ def _group(frames: list[Any], content: Any, limits: VideoLimits) -> tuple[list[l
 def _is_people(frame: Any) -> bool:
     """Return whether a frame is a list of people and not of landmarks."""
     first = frame[0] if isinstance(frame, list) and frame else None
-    return isinstance(first, Mapping) and "keypoints" in first
+    return isinstance(first, Mapping) and bool({"keypoints", "pose"} & set(first))
 
 
 def _number_images(frames: list[Any], content: Any) -> dict[str, int]:
@@ -280,6 +284,9 @@ def _fill(numbers: list[int], limits: VideoLimits) -> list[int]:
 
 def _point(point: Any) -> tuple[float, float, float]:
     if isinstance(point, Mapping):
+        place = point.get("position")  # of PoseNet
+        if isinstance(place, Mapping) and "z" not in place:
+            point = {**point, **place}
         values = {AXES.get(plain(str(key))): value for key, value in point.items()}
     else:
         values = dict(zip(ORDER, point, strict=False))

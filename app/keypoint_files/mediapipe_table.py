@@ -56,15 +56,22 @@ def read_mediapipe_table(
     """Read a CSV file of either form; see `app.keypoint_files.read_keypoints`."""
     with path.open(newline="", encoding=find_encoding(path)) as file:
         heading = file.readline()
+        # By this line a spreadsheet is told the separator, which the heading shows as well.
+        if heading.strip().lower() in [f"sep={each}" for each in SEPARATORS]:
+            heading = file.readline()
         separator = max(SEPARATORS, key=heading.count)
         headings = next(csv.reader([heading], delimiter=separator, skipinitialspace=True), [])
         # Where a comma separates nothing, it is a decimal one.
         rows = csv.reader(file, delimiter=separator, skipinitialspace=True)
-        lines = rows if separator == "," else ([_point(cell) for cell in row] for row in rows)
+        points = rows if separator == "," else ([_point(cell) for cell in row] for row in rows)
+        lines = _whole(points, len(headings), path)
         plainly = [plain(heading) for heading in headings]
         if any(name in plainly for name in NAMES) and {"x", "y"} <= set(plainly):
             return _long(lines, headings, path, options, limits)
-        columns = columns_of(headings)
+        try:
+            columns = columns_of(headings)
+        except KeypointFileError as error:
+            raise KeypointFileError(f"{path}: {error}") from error
         if not columns.points or len(columns.points) > MOST_LANDMARKS:
             raise KeypointFileError(
                 f"{path} has no columns of keypoints among {_shown(headings)}; expected x0, y0, "
@@ -95,7 +102,7 @@ def times_of(values: FloatArray, unit: str) -> Times:
     units = [PER_SECOND[unit]] if unit != "s" else [*PER_SECOND.values()]
     scale = next((each for each in units if step <= each), units[-1])
     # Nanoseconds since 1970 are beyond the digits of a number of seconds.
-    return Times((values - values[:1]) / scale, counted=False)
+    return Times((values - values[:1]) / scale, counted=False, written=values)
 
 
 def _wide(
@@ -112,7 +119,7 @@ def _wide(
     rows: list[list[list[float]]] = []
     times: list[float] = []
     people: list[str] = []
-    for number, line in enumerate(_lines(lines)):
+    for number, line in enumerate(lines):
         limits.require_frames(1 + number // (1 if columns.who is None else MOST_PEOPLE))
         rows.append(
             [
@@ -198,7 +205,7 @@ def _long(
         )
     axes = {AXES[name]: place for place, name in enumerate(plainly) if name in AXES}
     frames: dict[float, dict[str, list[float]]] = {}
-    for number, line in enumerate(_lines(lines)):
+    for number, line in enumerate(lines):
         at = _number(line, when, number, path)
         landmarks = frames.setdefault(at, {})
         limits.require_frames(len(frames))
@@ -231,9 +238,16 @@ def _points(rows: list[list[list[float]]], count: int) -> FloatArray:
     return np.array(rows, dtype=np.float64).reshape(len(rows), count, 3)
 
 
-def _lines(lines: Iterator[list[str]]) -> Iterator[list[str]]:
-    """Skip empty lines."""
-    return (line for line in lines if any(cell.strip() for cell in line))
+def _whole(lines: Iterator[list[str]], cells: int, path: Path) -> Iterator[list[str]]:
+    """Skip empty lines, and refuse those with more cells than the heading has."""
+    for line in lines:
+        if any(cell.strip() for cell in line[cells:]):
+            raise KeypointFileError(
+                f"{path}: rows have {len(line)} cells, the heading {cells}; where commas are "
+                "decimal ones, separate the cells by semicolons"
+            )
+        if any(cell.strip() for cell in line):
+            yield line
 
 
 def _number(line: Sequence[str], place: int | None, row: int, path: Path) -> float:

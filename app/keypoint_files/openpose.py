@@ -36,7 +36,7 @@ def read_openpose(path: Path, options: KeypointOptions, limits: VideoLimits) -> 
     limits.require_frames(len(files))
     frames = np.array([number for number, _ in files], dtype=np.float64)
     everybody = [_people(file) for _, file in files]
-    return table_of_people(everybody, Times(frames, counted=True), path, options)
+    return table_of_people(everybody, Times(frames, counted=True), path, options, "openpose")
 
 
 def _files(folder: Path) -> list[Path]:

@@ -11,15 +11,20 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable
+from app.keypoint_files.keypoint_table import KeypointOptions, KeypointTable, Times
 from app.keypoint_files.registry import find_reader
-from app.recognition.errors import FrameRateError, FrameSizeError, KeypointFileError
+from app.recognition.errors import (
+    FrameRateError,
+    FrameSizeError,
+    KeypointFileError,
+    RoundedTimesError,
+)
 from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import find_missing_landmarks, translate_landmark
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.salute import best_salute
-from app.recognition.recording.timestamps import FrameClock, tell_jumps
+from app.recognition.recording.timestamps import FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 from app.recognition.text.wording import list_some
 
@@ -78,6 +83,7 @@ def read_keypoints(
     source, given = Path(path), options or KeypointOptions()
     allowed = limits or VideoLimits()
     table = _table(source, given, allowed)
+    table, rounded = _count_rounded(table, given, source)
     time, clock = _seconds(table, given, source), FrameClock()
     if not table.times.counted:
         time = np.array([clock.seconds(each) for each in time.tolist()])
@@ -101,11 +107,12 @@ def read_keypoints(
         hands=hands,
         salute=np.array([best_salute(frame) for frame in hands]),
         warnings=(
+            *rounded,
             *table.notes,
             *notes,
             *_gaps(poses, people),
-            *_direction(poses),
-            *tell_jumps(clock.jumps),
+            *(_direction(poses) or _sides(poses)),
+            *clock.sentences,
         ),
         people=people,
     )
@@ -130,6 +137,26 @@ def _table(path: Path, options: KeypointOptions, limits: VideoLimits) -> Keypoin
             f"--keypoint_scale 4"
         )
     return table
+
+
+def _count_rounded(
+    table: KeypointTable, options: KeypointOptions, path: Path
+) -> tuple[KeypointTable, tuple[str, ...]]:
+    """Count frames whose times cannot be told apart, if the frame rate is given."""
+    try:
+        table.times.require_order(path)
+    except RoundedTimesError:
+        twice = np.diff(table.times.values) == 0
+        if np.array_equal(table.xy[1:][twice], table.xy[:-1][twice], equal_nan=True):
+            raise KeypointFileError(
+                f"{path}: {twice.sum()} rows stand twice; keep one row a frame"
+            ) from None
+        if options.frame_rate is None:
+            raise
+        counted = Times(np.arange(len(table.xy), dtype=np.float64), counted=True)
+        told = f"times are rounded, so that frames are counted, {options.frame_rate:g} a second"
+        return replace(table, times=counted), (told,)
+    return table, ()
 
 
 def _seconds(table: KeypointTable, options: KeypointOptions, path: Path) -> FloatArray:
@@ -216,4 +243,18 @@ def _direction(poses: PoseSequence) -> tuple[str, ...]:
     return (
         "the body is upside down in every frame; if y points upwards in this file, write the "
         "picture's height minus y",
+    )
+
+
+def _sides(poses: PoseSequence) -> tuple[str, ...]:
+    """Return a sentence if left lies left in every frame, as the viewer's names for a diver do."""
+    if not {*SHOULDERS} <= set(poses.landmarks):
+        return ()
+    across = poses.column(SHOULDERS[0])[:, 0] - poses.column(SHOULDERS[1])[:, 0]
+    known = across[np.isfinite(across)]
+    if not len(known) or known.max() >= 0:
+        return ()
+    return (
+        "the left shoulder lies left in every frame: the diver's back is seen, or names are given "
+        "from the viewer's side, which is the other arm; then swap left and right in the file",
     )

@@ -47,6 +47,10 @@ class FrameRateError(KeypointFileError):
     """Raised when a keypoint file numbers its frames and no frame rate is given."""
 
 
+class RoundedTimesError(FrameRateError):
+    """Raised when neighbouring frames have one time and no frame rate is given."""
+
+
 class FrameSizeError(KeypointFileError):
     """Raised when a keypoint file has coordinates relative to a frame size that is not given."""
 

@@ -33,6 +33,8 @@ from app.recognition.preprocessing.moving_hands import find_moving_hands
 from app.recognition.preprocessing.quality import QualityFault, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.recording.segmentation import Take
+from app.recognition.recording.trimming import Span
+from app.recognition.recording.unseen import describe_unseen, find_pauses
 from app.recognition.triggers.arm_pose import mostly_hang
 from app.recognition.voters.registry import HAND_VOTER_NAMES
 
@@ -121,7 +123,7 @@ class Recognizer:
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
 
-    def recognize(self, poses: PoseSequence) -> Recognition:
+    def recognize(self, poses: PoseSequence, unseen: Sequence[Span] = ()) -> Recognition:
         """Recognise the gesture in a take, that is, poses without salutes around them.
 
         Profile ``paper``: each voter votes for its nearest gesture. The gesture with most votes
@@ -135,7 +137,14 @@ class Recognizer:
         still of insufficient quality get no label, and `fault` gives the reason. The same applies
         to poses in which no hand is seen although the hand shape of the nearest gesture counts.
         Three hand shapes in sequence, more than a gesture has, are reported as a finding; none of
-        them is compared.
+        them is compared. The same applies where a trigger may have been missed.
+
+        Parameters
+        ----------
+        poses
+            The stroke.
+        unseen
+            Spans of its take in which a trigger may have been missed.
 
         Raises
         ------
@@ -144,10 +153,17 @@ class Recognizer:
             holds a shape.
 
         """
-        return self.examine(poses).result
+        result = self.examine(poses).result
+        if unseen:
+            fault = describe_unseen(unseen, self.language.trigger.noun)
+            return result.model_copy(
+                update={"label": None, "pair": None, "fault": fault, "fault_kind": None}
+            )
+        findings = (*result.findings, *find_pauses(poses.time))
+        return result.model_copy(update={"findings": findings})
 
     def recognize_take(self, take: Take) -> Recognition:
-        """Recognise a take as `recognize` does; two kinds of takes get no label.
+        """Recognise a take as `recognize` does; two more kinds of takes get no label.
 
         The gesture of a take that is not closed may be incomplete: the diver forgot the second
         trigger, or is not done. A take in which both arms hang most of the time, as they do not in
@@ -159,7 +175,8 @@ class Recognizer:
             As `recognize`.
 
         """
-        result, noun = self.recognize(take.poses), self.language.trigger.noun
+        result = self.recognize(take.poses, take.unseen)
+        noun = self.language.trigger.noun
         fault = result.fault
         if not take.closed:
             fault = fault or f"no second {noun} ended it"

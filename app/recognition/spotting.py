@@ -25,6 +25,7 @@ from app.recognition.preprocessing.outliers import measure_body_unit
 from app.recognition.preprocessing.salience import MIN_DISPLACEMENT, measure_displacements
 from app.recognition.recognizer import Recognizer
 from app.recognition.recording.trimming import GRID_STEP, Motion, Span, measure_motion, split_pieces
+from app.recognition.recording.unseen import find_unseen
 from app.recognition.triggers.trigger import NO_TRIGGER, Trigger
 
 CONFIDENT = 0.8
@@ -322,7 +323,8 @@ class Spotter:
             if span.start < self._reported - SLOW_EDGE or len(poses) < 2:
                 continue
             try:
-                result = self._recognizer.recognize(poses)
+                unseen = find_unseen(poses.time.tolist(), span.start, span.end)
+                result = self._recognizer.recognize(poses, unseen)
             except PoseError:
                 return
             spotted = Spotted(span.start, span.end, result)

@@ -79,3 +79,15 @@ def test_what_is_missing_is_told_with_the_recording(tmp_path: Path) -> None:
     left_out, missing = warnings[1:]
     assert left_out.startswith("left out, for they mean no landmark here: PAW")
     assert missing == "the file gives no right_wrist"
+
+
+def test_rounded_times_ask_for_the_frame_rate_and_say_why(tmp_path: Path) -> None:
+    file = tmp_path / "received"
+    file.write_text("time,nose_x,nose_y\n1,20,30\n1,21,31\n2,22,32\n")
+    failed = refused(file, size=(640, 480))
+    assert failed.code == "frame_rate_needed"
+    assert "times are rounded" in failed.detail
+    read = KeypointFileSource().record(
+        file, ReadOptions(ending=".csv", frame_rate=25, frame_size=(640, 480))
+    )
+    assert read.recording.poses.time.tolist() == [0.0, 0.04, 0.08]

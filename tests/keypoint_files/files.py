@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from app.recognition.poses.frame import Hand
+from app.recognition.poses.landmarks import HIPS, SHOULDERS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.poses.skeletons import BODY_25, COCO_17, LandmarkSet
 
@@ -42,8 +43,10 @@ def write_openpose(
 def _person(poses: PoseSequence, index: int, landmarks: LandmarkSet) -> dict[str, Any]:
     values: list[float] = []
     anybody = bool(poses.seen[index].any())
-    for name in landmarks:
-        point = _place(poses, index, name) if anybody else None
+    for at, name in enumerate(landmarks):
+        # Of sets with several that have no counterpart, the first one is the neck.
+        pair = SHOULDERS if None not in landmarks[:at] else HIPS
+        point = _place(poses, index, name, pair) if anybody else None
         values += [0.0, 0.0, 0.0] if point is None else [*point, 0.875]
     return {
         "person_id": [-1],
@@ -54,11 +57,15 @@ def _person(poses: PoseSequence, index: int, landmarks: LandmarkSet) -> dict[str
     }
 
 
-def _place(poses: PoseSequence, index: int, name: str | None) -> tuple[float, float] | None:
-    """Return the place of a landmark; one without a counterpart here is in the body's middle."""
+def _place(
+    poses: PoseSequence, index: int, name: str | None, pair: tuple[str, str]
+) -> tuple[float, float] | None:
+    """Return the place of a landmark; one without a counterpart here is in the middle of a pair."""
     if name is None:
-        x, y = np.nanmean(poses.xy[index], axis=0).tolist()
-        return x, y
+        if not set(pair) <= set(poses.landmarks):
+            return None
+        x, y = np.mean([poses.column(each)[index] for each in pair], axis=0).tolist()
+        return None if np.isnan(x) else (x, y)
     if name not in poses.landmarks:
         return None
     x, y = poses.column(name)[index].tolist()
@@ -228,7 +235,7 @@ def write_results(path: Path, people: Sequence[PoseSequence], kind: str) -> Path
     """Write COCO's 17 keypoints of people as MMPose (``mmpose``) or COCO (``coco``) does."""
     frames: list[list[FloatArray]] = [
         [
-            np.array([(*(_place(each, index, name) or (0.0, 0.0)), 0.9) for name in COCO_17])
+            np.array([(*(_place(each, index, name, HIPS) or (0.0, 0.0)), 0.9) for name in COCO_17])
             for each in people
         ]
         for index in range(len(people[0]))

@@ -143,8 +143,8 @@ def test_pixels_need_no_size_and_fractions_do(tmp_path: Path) -> None:
         ([["time", "nose_x", "nose_y"]], "no keypoint is seen in any of 0 frames"),
         ([["time", "nose_x", "nose_y"], [0, "left", 2]], "row 0 has 'left' in column 2"),
         (
-            [["time", "nose_x", "nose_y"], [1, 20, 30], [1, 20, 30]],
-            "time does not go on at frame 2",
+            [["time", "nose_x", "nose_y"], [2, 20, 30], [1, 21, 30]],
+            "time does not go on at frame 2, but begins again, from 2 to 1:",
         ),
         ([["time", "nose_x", "nose_y"], ["", 20, 30]], "time does not go on at frame 1"),
         ([["time", "paw_x", "paw_y"], [0, 20, 30]], "--landmark paw=right_wrist"),

@@ -14,6 +14,7 @@ from app.recognition import (
     PoseSequence,
     Recognizer,
 )
+from app.recognition.recording.trimming import Span
 from app.recognition.spotting import Spotted, Spotter, TriggerGate
 from app.recognition.triggers.trigger import Trigger
 from tests.recognition.held_takes import TWO, hold
@@ -155,10 +156,10 @@ def test_memory_and_work_are_bounded(
     asked = 0
     recognize = recognizer.recognize
 
-    def counted(poses: PoseSequence) -> object:
+    def counted(poses: PoseSequence, unseen: Sequence[Span]) -> object:
         nonlocal asked
         asked += 1
-        return recognize(poses)
+        return recognize(poses, unseen)
 
     monkeypatch.setattr(recognizer, "recognize", counted)
     restless = perform([Movement(ZIGZAG[::step], 0.9) for step in (1, -1)] * 3).poses

@@ -280,7 +280,7 @@ def _require_read(recognizer: Recognizer, label: str, shown: ClipRange) -> None:
     """Raise `Doubted` unless a take is surely read as its gesture."""
     read = None
     with suppress(OsgError):
-        read = recognizer.recognize(shown.poses)
+        read = recognizer.recognize(shown.poses, shown.unseen)
     # The confidence of the paper's profile is no probability.
     doubted = read is not None and recognizer.profile != "paper" and read.confidence < DOUBT
     if read is None or read.label != label or doubted:

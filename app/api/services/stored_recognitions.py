@@ -46,7 +46,7 @@ def recognize_range(
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
     meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
     recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial)
-    answer = recognizer.recognize(meant.poses).to_dict()
+    answer = recognizer.recognize(meant.poses, meant.unseen).to_dict()
     if wanted.tuning is not None:
         answer["tuning"] = wanted.tuning.model_dump()
     if wanted.trial is not None:

@@ -440,7 +440,7 @@ def _recognize(
     if take.keypoints_of is not None:
         require_seen_landmarks(language, recording.poses, take.keypoints_of)
     shown = find_clip_range(recording, take.start, take.end, trigger=language.trigger)
-    answer = recognizer(take.without).recognize(shown.poses).to_dict()
+    answer = recognizer(take.without).recognize(shown.poses, shown.unseen).to_dict()
     return RecognizedTake(start=shown.start, end=shown.end, answer=answer)
 
 

@@ -289,7 +289,8 @@ def _list_seen(context: RecognitionContext, table: ScoreTable, gesture: Gesture)
     if context.result.fault is not None and not found:
         words = context.result.fault
         kind = CauseKind.keypoints_jumped if fault == "leaps" else CauseKind.not_seen
-        sentence = f"{words[0].upper()}{words[1:]}. Film nearer, or in better light."
+        remedy = " Film nearer, or in better light." if fault else ""
+        sentence = f"{words[0].upper()}{words[1:]}.{remedy}"
         yield Cause(kind=kind, sentence=sentence)
     here = context.trace.query.facing
     there = None if gesture.trajectory is None else gesture.trajectory.facing

@@ -11,7 +11,6 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
 from app.recognition.decision.result import WRITTEN, Distance
-from app.recognition.errors import OsgError
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.blame import Blame, find_blame
 from app.recognition.explanation.causes import Cause, CauseKind, find_causes
@@ -214,11 +213,7 @@ def explain(
         When no landmark that a gesture needs moves in the take.
 
     """
-    if expected not in context.language.labels:
-        raise OsgError(
-            f"no gesture {expected!r} in {context.language.name!r}; it has "
-            f"{', '.join(context.language.labels)}"
-        )
+    expected = context.language.gesture(expected).label
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
     rival = result.nearest if result.nearest != expected else result.runner_up

@@ -33,6 +33,7 @@ from app.recognition.preprocessing.salience import (
     measure_displacements,
 )
 from app.recognition.text.joiners import is_printable
+from app.recognition.text.look_alikes import compose
 from app.recognition.voters.registry import PAPER_VOTERS
 from app.recognition.voters.shape_voters import describe_drawing
 
@@ -296,7 +297,7 @@ def check_diver(diver: str) -> str:
             f"a diver's name must be at most {MAX_DIVER_LENGTH} printable characters, got "
             f"{str(diver)[:MAX_DIVER_LENGTH]!r}"
         )
-    return diver.strip()
+    return compose(diver.strip())
 
 
 def condense(trajectory: Trajectory) -> Trajectory:

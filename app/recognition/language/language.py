@@ -29,7 +29,7 @@ from app.recognition.phrases.grammar import Grammar
 from app.recognition.poses.landmarks import SKELETON
 from app.recognition.text.atomic_files import write_atomically
 from app.recognition.text.joiners import is_printable, without_joiners
-from app.recognition.text.look_alikes import find_confusable, list_look_alikes
+from app.recognition.text.look_alikes import compose, find_confusable, list_look_alikes
 from app.recognition.text.strict_json import build_pointer
 from app.recognition.text.wording import join_words
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -160,9 +160,10 @@ class Language:
 
         """
         for gesture in self.gestures:
-            if gesture.label == label:
+            if compose(gesture.label) == compose(label):
                 return gesture
-        raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {self.labels}")
+        known = ", ".join(self.labels)
+        raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {known}")
 
     def tuning_with(self, profile: str) -> Tuning:
         """Return the tuning for a profile; weight factors apply to the language's own only."""

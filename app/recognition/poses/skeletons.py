@@ -96,7 +96,10 @@ class KeypointSet:
     words
         What a file's own name of the set contains, in lower case, letters and digits alone.
     by_count
-        Whether N keypoints without any name are of this set. Other sets of 14 and 17 are common.
+        Whether N keypoints without any name are of this set, where their places agree. Other sets
+        of 14 and 17 are common.
+    middles
+        Places of the neck and of the middle of the hips, where the set has them.
     hands
         Place of the first of a hand's 21 keypoints, by its side.
 
@@ -106,24 +109,29 @@ class KeypointSet:
     landmarks: LandmarkSet
     words: tuple[str, ...] = ()
     by_count: bool = True
+    middles: tuple[int, ...] = ()
     hands: Mapping[Side, int] = field(default_factory=dict)
 
 
-def _whole_body(title: str, body: LandmarkSet, word: str) -> KeypointSet:
+def _whole_body(
+    title: str, body: LandmarkSet, word: str, middles: tuple[int, ...] = ()
+) -> KeypointSet:
     left = len(body) + FACE
     right = left + len(HAND_LANDMARKS)
     landmarks = (*body, *(None,) * (FACE + 2 * len(HAND_LANDMARKS)))
-    return KeypointSet(title, landmarks, (word,), hands={"left": left, "right": right})
+    hands: dict[Side, int] = {"left": left, "right": right}
+    return KeypointSet(title, landmarks, (word,), middles=middles, hands=hands)
 
 
 KEYPOINT_SETS: Final = (
     KeypointSet("COCO", COCO_17, ("coco",)),
-    KeypointSet("OpenPose's COCO", COCO_18),
-    KeypointSet("BODY_25", BODY_25),
-    KeypointSet("Halpe", HALPE_26),
-    KeypointSet("MediaPipe", POSE_LANDMARKS),
+    KeypointSet("OpenPose's COCO", COCO_18, ("openposecoco",), middles=(1,)),
+    KeypointSet("BODY_25", BODY_25, ("body25",), middles=(1, 8)),
+    KeypointSet("MediaPipe's upper body", POSE_LANDMARKS[:25], ("mediapipe",)),
+    KeypointSet("Halpe", HALPE_26, ("halpe",), middles=(18, 19)),
+    KeypointSet("MediaPipe", POSE_LANDMARKS, ("mediapipe",)),
     _whole_body("COCO-WholeBody", (*COCO_17, *(None,) * 6), "coco"),
-    _whole_body("Halpe", HALPE_26, "halpe"),
+    _whole_body("Halpe", HALPE_26, "halpe", (18, 19)),
     KeypointSet("H36M", H36M_17, ("h36m", "human36m"), by_count=False),
     KeypointSet("CrowdPose", CROWDPOSE_14, ("crowdpose",), by_count=False),
 )

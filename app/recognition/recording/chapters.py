@@ -13,6 +13,7 @@ from typing import Final
 
 import av
 from av.container import OutputContainer
+from av.video.stream import VideoStream
 
 from app.recognition.errors import VideoError
 from app.recognition.recording.file_kinds import COPIES
@@ -24,11 +25,14 @@ _GOPRO: Final = re.compile(r"(G[HXLP])(\d\d)(\d{4}\.\w+)", re.IGNORECASE)
 _NAMES: Final = (
     _GOPRO,
     re.compile(r"(DJI_)(?:\d{14}_)?(\d{4})((?:_[A-Z])?\.\w+)", re.IGNORECASE),
-    re.compile(r"(.*?)(\d{8}_?\d{6})(\.(?:ts|mp4))", re.IGNORECASE),
-    re.compile(r"(.*?)(\d{4,})(\.(?:ts|mp4))", re.IGNORECASE),
+    re.compile(r"(.*?)(\d{8}_?\d{6})(\.\w+)"),
+    re.compile(r"(.*?)(\d+)(\.\w+)"),
 )
-"""Names of chapters of GoPro, of DJI, and of cameras that begin a file every minute, by its time or
-its number: what comes before the number, the number, and what follows."""
+"""Names of chapters of GoPro, of DJI, and of all that begin a file every minute, by its time or its
+number: what comes before the number, the number, and what follows."""
+
+_NUMBERED: Final = re.compile(r"\d{4,}")
+"""Digits of numbers that are told to go on in the next file; fewer are in names of any kind."""
 
 _BESIDE: Final = COPIES | {".srt", ".thm"}
 """Endings of what cameras write beside a chapter."""
@@ -54,7 +58,8 @@ def tell_chapters(name: str) -> Iterator[str]:
     if (
         found is None
         or len(found[2]) >= _TIME
-        or (found.re in _NAMES[2:] and found[3].lower() == ".mp4")
+        or (found.re in _NAMES[2:] and found[3].lower() != ".ts")
+        or not (found.re is _GOPRO or _NUMBERED.fullmatch(found[2]))
     ):
         return
     goes_on = found.re is not _GOPRO or int(found[2]) <= (found[1].upper() != "GP")
@@ -100,22 +105,60 @@ def chapters_in(folder: Path) -> list[Path]:
     return found if sure or all(map(_follows, found, found[1:])) else []
 
 
+def tell_pieces(files: Sequence[Path]) -> Iterator[str]:
+    """Yield a sentence for files whose clocks follow each other, and which are clips of their own.
+
+    Parameters
+    ----------
+    files
+        The clips of a folder.
+
+    """
+    runs: dict[tuple[Path, str, str], list[Path]] = {}
+    for path in files:
+        if path.is_file() and (found := _match(path.name, _NAMES)) is not None:
+            runs.setdefault((path.parent, found[1], found[3]), []).append(path)
+    for run in runs.values():
+        pieces = in_order(run, _NAMES)
+        if any(_follows(*pair) for pair in pairwise(pieces)):
+            yield (
+                f"{pieces[0].name} to {pieces[-1].name}, {len(pieces)} files that may be one "
+                "recording: join them? Put them alone into a folder, or drop them on the page"
+            )
+
+
 def _follows(earlier: Path, later: Path) -> bool:
-    """Return whether a video begins when another one ends."""
-    return abs(_span(earlier)[1] - _span(later)[0]) <= SEAM_SECONDS
+    """Return whether a video begins when another one ends, and is coded alike."""
+    (begun, ended, form), (begins, _, other) = _span(earlier), _span(later)
+    return begun < begins and abs(ended - begins) <= SEAM_SECONDS and form == other
 
 
-def _span(path: Path) -> tuple[float, float]:
-    """Return begin and end in seconds of the container's own clock; NaN when it states none."""
-    with suppress(KeyError, ValueError, VideoError), open_video(path, VideoLimits()) as container:
+def _span(path: Path) -> tuple[float, float, tuple[object, ...]]:
+    """Return begin and end in seconds of the container's own clock, NaN without one, and the form.
+
+    A date of creation is of whole seconds; without one, time goes on from file to file.
+    """
+    with suppress(ValueError, VideoError), open_video(path, VideoLimits()) as container:
+        stated = container.metadata.get("creation_time")
+        begun = (container.start_time or 0) / av.time_base
         seconds = (container.duration or 0) / av.time_base
-        if container.format.name == "mpegts":
-            begun = (container.start_time or 0) / av.time_base
-        else:
-            stated = container.metadata["creation_time"].replace("Z", "+00:00")
-            begun = datetime.fromisoformat(stated).timestamp()
-        return begun, begun + seconds
-    return math.nan, math.nan
+        # Matroska counts its length from 0, not from its first frame.
+        if "matroska" in container.format.name and begun < seconds:
+            seconds -= begun
+        if stated is not None and container.format.name != "mpegts":
+            begun = datetime.fromisoformat(stated.replace("Z", "+00:00")).timestamp()
+        return begun, begun + seconds, _form(video_stream(container, path))
+    return math.nan, math.nan, ()
+
+
+def _form(stream: VideoStream) -> tuple[object, ...]:
+    """Return how a video is coded; parameter sets that differ by zeros at their end are the same.
+
+    Such zeros are padding (ITU-T H.264, annex B).
+    """
+    coded = stream.codec_context
+    sets = [each.rstrip(b"\0") for each in (coded.extradata or b"").split(b"\0\0\1")]
+    return coded.name, coded.width, coded.height, stream.time_base, *sets
 
 
 def join_chapters(chapters: Sequence[tuple[Path, ByteRange | None]], target: Path) -> None:
@@ -151,14 +194,16 @@ def _join(chapters: Sequence[tuple[Path, ByteRange | None]], joined: OutputConta
     for path, within in chapters:
         with open_video(path, VideoLimits(), within) as container:
             stream = video_stream(container, path)
-            coded = stream.codec_context
-            form = (coded.name, coded.width, coded.height, stream.time_base, coded.extradata)
+            form = _form(stream)
             if first is None:
                 written, first = joined.add_stream_from_template(stream), form
             if form != first:
+                here, there = (f"{each[1]} x {each[2]} {each[0]}" for each in (form, first))
+                if here == there:
+                    here, there = "another clock or other parameter sets", here
                 raise VideoError(
-                    f"a chapter ({form[1]} x {form[2]} {form[0]}) is coded otherwise than the "
-                    f"first one ({first[1]} x {first[2]} {first[0]}); give each clip by itself"
+                    f"a chapter ({here}) is coded otherwise than the first one ({there}); give "
+                    "each clip by itself"
                 )
             shift = None
             step = round(nominal_step(stream) / (stream.time_base or 1))

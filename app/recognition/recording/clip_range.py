@@ -8,6 +8,8 @@ from app.recognition.errors import AmbiguousRangeError, RangeError
 from app.recognition.poses.sequence import PoseSequence
 from app.recognition.recording.recording import Recording
 from app.recognition.recording.segmentation import Bracket, cut_take, find_brackets
+from app.recognition.recording.trimming import Span
+from app.recognition.recording.unseen import find_unseen
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
 SAME_MOMENT = 1e-3
@@ -25,12 +27,15 @@ class ClipRange:
         Seconds in the clip between which `poses` lies.
     poses
         Those of this part.
+    unseen
+        Spans of it, or of its take, in which a trigger may have been missed.
 
     """
 
     start: float
     end: float
     poses: PoseSequence
+    unseen: tuple[Span, ...] = ()
 
 
 def find_clip_range(
@@ -79,7 +84,8 @@ def find_clip_range(
             f"{poses.time[0]:g} s to {poses.time[-1]:g} s",
             "/end" if start is None else "/start",
         )
-    return ClipRange(first, last, inside)
+    begin, finish = max(first, float(poses.time[0])), min(last, float(poses.time[-1]))
+    return ClipRange(first, last, inside, find_unseen(inside.time.tolist(), begin, finish))
 
 
 def find_surroundings(
@@ -96,4 +102,4 @@ def _shown_in(
     poses: PoseSequence, bracket: Bracket, trigger: Trigger, keep_transit: bool
 ) -> ClipRange:
     take = cut_take(poses, bracket, trim=not keep_transit, trigger=trigger)
-    return ClipRange(take.stroke_start, take.stroke_end, take.poses)
+    return ClipRange(take.stroke_start, take.stroke_end, take.poses, take.unseen)

@@ -24,6 +24,7 @@ from app.recognition.recording.missing_salutes import explain_missing_salutes
 from app.recognition.recording.people import People, keep_person, see_people
 from app.recognition.recording.picture_turn import HEAD_POINTS, find_turn
 from app.recognition.recording.recording import Recording
+from app.recognition.recording.unseen import tell_clock
 from app.recognition.recording.video import (
     FrameSource,
     Turn,
@@ -248,7 +249,13 @@ class _Collector:
             ),
             people=choice.count,
             salute_warnings=tuple(
-                explain_missing_salutes(poses, choice.salute, hands, self._with_place)
+                explain_missing_salutes(
+                    poses,
+                    choice.salute,
+                    hands,
+                    self._with_place,
+                    (*warnings, *tell_clock(poses.time)),
+                )
                 if self._hands_sought
                 else ()
             ),

@@ -34,10 +34,13 @@ class FileKind:
 
 _PICTURE = "give a video: a single picture shows no gesture"
 
+_DUMP = "a dump becomes one by `ffmpeg -f mjpeg -framerate 25 -i FILE clip.mp4`"
+_MOVEMENT = "if it is of movement, save it as DeepLabCut's CSV (save_poses.to_dlc_file)"
+
 _MARKS: Final = (
     (rb"GIF8", "a GIF picture", CONVERT),
     (rb"\x89PNG", "a PNG picture", _PICTURE),
-    (rb"\xff\xd8\xff", "a JPEG picture", _PICTURE),
+    (rb"\xff\xd8\xff", "a JPEG picture, or a dump of many", f"{_PICTURE}; {_DUMP}"),
     (rb".{8}WEBP", "a WebP picture", _PICTURE),
     (rb"II\*\0", "a TIFF picture", _PICTURE),
     (rb".{4}ftyphei[cx]", "an HEIC picture", _PICTURE),
@@ -56,7 +59,12 @@ _MARKS: Final = (
     (rb"HIERARCHY", "a BVH motion file", SEND_VIDEO),
     (rb"PathFileType", "a TRC motion file", SEND_VIDEO),
     (rb"\x02\x50", "a C3D motion file", SEND_VIDEO),
-    (rb"CDF[\x01\x02\x05]", "a NetCDF file", SEND_VIDEO),
+    (rb"CDF[\x01\x02\x05]", "a NetCDF file", _MOVEMENT),
+    (
+        rb"\x1f\x43\xb6\x75",
+        "a piece of a WebM recording, of which the first piece is missing",
+        "write all pieces of the recorder into one file, beginning with the first one",
+    ),
     (rb"MATLAB 5\.0", "a MATLAB file", SEND_VIDEO),
     (rb"PAR1", "a Parquet table", SEND_VIDEO),
     (rb"version https://git-lfs", "a Git LFS pointer in place of the file", "run `git lfs pull`"),
@@ -137,7 +145,10 @@ def describe_unreadable(path: Path) -> str:
             head = file.read(HEAD_BYTES)
     except OSError as error:
         return f"{path.name} cannot be read ({error.strerror}); check the path"
-    if (kind := find_file_kind(head)) is not None:
+    kind = find_file_kind(head)
+    if head.startswith(b"\x89HDF"):
+        kind = FileKind("an HDF5 or NetCDF file", _MOVEMENT)
+    if kind is not None:
         return f"{path.name} is {kind.name}, and no video that is read here; {kind.remedy}"
     if video_type(head) is not None:
         return (

@@ -23,6 +23,7 @@ def explain_missing_salutes(
     scores: FloatArray,
     hands: Sequence[Sequence[Hand]],
     without_fingers: int = 0,
+    odd: Sequence[str] = (),
 ) -> Iterator[str]:
     """Yield why a take has no salutes around it, with a remedy; nothing where both were held.
 
@@ -36,8 +37,13 @@ def explain_missing_salutes(
         Per frame the hands that were found.
     without_fingers
         Number of the other frames in which the place of a hand was found.
+    odd
+        What is odd about the file or its clock, and may be the reason.
 
     """
+    if odd and len(find_held(poses.time, scores)) < 2:
+        yield f"two salutes were not seen, and something else is odd: {odd[0]}"
+        return
     frames, with_hand = len(hands), sum(map(bool, hands))
     seen = with_hand + without_fingers
     facing = Trajectory.from_poses(poses).facing if poses.seen.any() else None

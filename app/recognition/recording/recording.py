@@ -17,6 +17,7 @@ from app.recognition.poses.frame import Hand
 from app.recognition.poses.landmarks import HAND_LANDMARKS, WRISTS
 from app.recognition.poses.sequence import FloatArray, PoseSequence
 from app.recognition.recording.hand_sides import place_hands
+from app.recognition.recording.unseen import tell_clock
 from app.recognition.text.atomic_files import PRIVATE, replace_file
 from app.recognition.triggers.trigger import SALUTE, Trigger
 
@@ -41,7 +42,8 @@ class Recording:
     salute
         ``(T,)`` in [0, 1]: score of the best salute in the frame (`best_salute`), 0 without a hand.
     warnings
-        Problems of the clip, as sentences with counts.
+        Problems of the clip, as sentences with counts; those of its clock (`tell_clock`) are put
+        before the given ones.
     salute_warnings
         Those that concern salutes, and no language with another trigger or none.
     people
@@ -81,6 +83,9 @@ class Recording:
                 )
             people.setflags(write=False)
             object.__setattr__(self, "people", people)
+        # One check of the clock for every source; what a file kept is not told again.
+        odd = [each for each in tell_clock(self.poses.time) if each not in self.warnings]
+        object.__setattr__(self, "warnings", (*odd, *self.warnings))
         salute.setflags(write=False)
         object.__setattr__(self, "salute", salute)
         if self.poses.hands is None and any(self.hands):

@@ -139,6 +139,9 @@ SHORTEST_TAKE = 0.8
 """Least seconds between two salutes. A reach, a stroke and a reach back take 0.5 s each (Flash and
 Hogan 1985); a shorter pause is one salute that was lost for a while."""
 
+REACHES = 1.5
+"""Seconds of a reach, a stroke and a reach back: what a take between two salutes lasts at least."""
+
 LONGEST_TAKE = 60.0
 """Most seconds of a take. A gesture takes a few; after a minute the stop salute was forgotten, and
 the next salute begins a new take."""
@@ -277,7 +280,8 @@ class HeldTrigger:
 
     The time between neighbouring frames that both show the salute is summed, so a detection in a
     single frame adds nothing at any frame rate. One such step adds at most half of `hold`: a
-    salute needs at least three frames, also where a camera stalls.
+    salute needs at least three frames, also where a camera stalls. A step of `REACHES` may hide
+    a take: a salute before it and one after it are two.
 
     Attributes
     ----------
@@ -324,7 +328,8 @@ class HeldTrigger:
         previous, self._previous = self._previous, (time, score)
         if previous is not None:
             before, score_before = previous
-            if min(score_before, score) >= (self.leave if active else self.enter):
+            seen = time - before < REACHES
+            if seen and min(score_before, score) >= (self.leave if active else self.enter):
                 if not active:
                     self.since = before
                 self._collected += min(time - before, self.hold / 2)

@@ -5,6 +5,7 @@ A trigger is a salute unless a language names a pose of the arms (`app.recogniti
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -19,6 +20,7 @@ from app.recognition.recording.salute import LONGEST_TAKE as LONGEST_TAKE
 from app.recognition.recording.salute import SHORTEST_TAKE as SHORTEST_TAKE
 from app.recognition.recording.salute import HeldTrigger
 from app.recognition.recording.trimming import Span, find_stroke
+from app.recognition.recording.unseen import find_holes, find_missable
 from app.recognition.triggers.arm_pose import HOLD_SECONDS as POSE_SECONDS
 from app.recognition.triggers.arm_pose import LEAVE_SCORE as POSE_LEAVE_SCORE
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -48,12 +50,15 @@ class Bracket:
         stream or the time for a take ended without one.
     end
         Seconds: when the take ends, by the stop trigger or without one.
+    unseen
+        Spans of the take in which a trigger may have been missed (`find_missable`).
 
     """
 
     opening: Span
     closing: Span | None
     end: float
+    unseen: tuple[Span, ...] = ()
 
     @property
     def start(self) -> float:
@@ -105,6 +110,7 @@ class TakeMachine:
     gap: Bracket | None = field(default=None, init=False)
     _closing: float = field(default=0.0, init=False)
     _ended: Span | None = field(default=None, init=False)
+    _clear: deque[float] = field(default_factory=deque, init=False)  # frames without a trigger
 
     @classmethod
     def of(cls, trigger: Trigger) -> TakeMachine:
@@ -138,6 +144,10 @@ class TakeMachine:
         """
         held = self.trigger.update(time, score)
         self.gap = None
+        if max(score, stop_score) < self.trigger.enter:
+            self._clear.append(time)
+        while self._clear and time - self._clear[0] > 2 * self.longest:
+            self._clear.popleft()
         if self.stop is not None:
             return self._update_both(time, held, self.stop.update(time, stop_score))
         match self.state:
@@ -224,7 +234,7 @@ class TakeMachine:
     def _end(self, released: float, since: float, time: float) -> Bracket:
         """End the take by a trigger that is held since then."""
         self.state, self._closing = TakeState.done, since
-        return Bracket(opening=Span(self._began, released), closing=Span(since, time), end=since)
+        return self._bracket(Span(self._began, released), Span(since, time), since)
 
     def _end_too_long(self, released: float, time: float) -> Bracket | None:
         """End the take without a trigger, if it lasts longer than a take may."""
@@ -237,10 +247,15 @@ class TakeMachine:
         ended, self._ended = self._ended, None
         if ended is None or not self.shortest <= self._began - ended.end <= self.longest:
             return None
-        return Bracket(opening=ended, closing=Span(self._began, time), end=self._began)
+        return self._bracket(ended, Span(self._began, time), self._began)
 
     def _unclosed(self, released: float, end: float) -> Bracket:
-        return Bracket(opening=Span(self._began, released), closing=None, end=end)
+        return self._bracket(Span(self._began, released), None, end)
+
+    def _bracket(self, opening: Span, closing: Span | None, end: float) -> Bracket:
+        """Build a bracket, with the spans in which another trigger may have been missed."""
+        unseen = find_missable(tuple(self._clear), opening.end, end, self.trigger.hold)
+        return Bracket(opening, closing, end, unseen)
 
 
 def create_held_pose() -> HeldTrigger:
@@ -264,6 +279,8 @@ class Take:
         Seconds in the clip between which `poses` lies.
     untrimmed
         Everything between the triggers.
+    unseen
+        Spans in which a trigger may have been missed: such a take gets no label.
 
     """
 
@@ -274,6 +291,7 @@ class Take:
     stroke_start: float
     stroke_end: float
     untrimmed: PoseSequence
+    unseen: tuple[Span, ...] = ()
 
 
 def takes_in(
@@ -315,6 +333,15 @@ def find_brackets(recording: Recording, trigger: Trigger = SALUTE) -> list[Brack
     if times:
         found.append(machine.finish(times[-1]))
     return [bracket for bracket in found if bracket]
+
+
+def list_unseen(recording: Recording, trigger: Trigger = SALUTE) -> tuple[Span, ...]:
+    """Return the spans of a recording in which a trigger may have been missed, holes first."""
+    takes = find_brackets(recording, trigger)
+    return (
+        *find_holes(recording.poses.time),
+        *(span for take in takes for span in take.unseen),
+    )
 
 
 def find_takes(
@@ -368,4 +395,5 @@ def cut_take(
         stroke_start=stroke.start,
         stroke_end=stroke.end,
         untrimmed=untrimmed,
+        unseen=bracket.unseen,
     )

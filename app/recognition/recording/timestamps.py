@@ -26,7 +26,11 @@ not a frame out of order: B-frames reorder by a few frames at most."""
 
 LONGEST_PAUSE = 60.0
 """Seconds ahead from which a jump is a clock that is set, as on a computer without a battery for
-its clock: a camera that rests for so long, in the midst of a clip, shows no gesture over it."""
+its clock, or a camera that rested: no player waits for so long."""
+
+SEAM = 3.0
+"""Seconds that stand for an unknown time, where a clock was set or begins again: no take of two
+such parts gets a label, as of every hole of `2 * SHORTEST_TAKE` and a salute."""
 
 
 @dataclass
@@ -40,7 +44,7 @@ class FrameClock:
     - not later than the frame before (duplicates, frames out of order): `NUDGE` of a step after
       it;
     - more than `DISCONTINUITY` back, or `LONGEST_PAUSE` ahead: the clock restarted or was set; this
-      frame comes one step after the one before, and all later ones are moved along with it.
+      frame comes `SEAM` after the one before, and all later ones are moved along with it.
 
     A step is the last plausible difference of two timestamps.
 
@@ -52,15 +56,31 @@ class FrameClock:
         Number of frames whose timestamp was missing or not usable.
     jumps
         Seconds by which the clock was set ahead, each time.
+    restarts
+        Seconds at which it began again.
 
     """
 
     step: float = FALLBACK_STEP
     repaired: int = 0
     jumps: list[float] = field(default_factory=list)
+    restarts: list[float] = field(default_factory=list)
     _last: float | None = field(default=None, init=False)
     _last_stamp: float | None = field(default=None, init=False)
     _shift: float = field(default=0.0, init=False)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What is told of a clock that was set or began again."""
+        found = tell_jumps(self.jumps, "no gesture is read across it")
+        if not self.restarts:
+            return found
+        times = f", {len(self.restarts)} times in all" if len(self.restarts) > 1 else ""
+        return (
+            *found,
+            f"the clock begins again at {self.restarts[0]:.2f} s{times}: several recordings in one "
+            "file? No gesture is read across the seam; give each recording by itself",
+        )
 
     def __post_init__(self) -> None:
         """Replace an implausible nominal step."""
@@ -100,23 +120,33 @@ class FrameClock:
                 self.step = gap
         if now > last + LONGEST_PAUSE:
             self.jumps.append(now - last - self.step)
-            self._shift -= self.jumps[-1]
-            return last + self.step
+            self._shift -= now - last - SEAM
+            return last + SEAM
         if now > last:
             return now
         self.repaired += 1
         if last - now > DISCONTINUITY:
-            self._shift += last + self.step - now
-            return last + self.step
+            self.restarts.append(last)
+            self._shift += last + SEAM - now
+            return last + SEAM
         return last + NUDGE * self.step
 
 
-def tell_jumps(jumps: Sequence[float]) -> tuple[str, ...]:
-    """Return a sentence about seconds by which a clock was set ahead; none without any."""
+def tell_jumps(jumps: Sequence[float], then: str) -> tuple[str, ...]:
+    """Return a sentence about a clock that was set; none where it was not.
+
+    Parameters
+    ----------
+    jumps
+        Seconds by which it was set, each time; back where they are negative.
+    then
+        How time goes on.
+
+    """
     if not jumps:
         return ()
     times = f", {len(jumps)} times in all" if len(jumps) > 1 else ""
+    way = "ahead" if jumps[0] > 0 else "back"
     return (
-        f"the clock was set while it was recorded, ahead by {jumps[0]:.0f} s{times}; time goes on "
-        "at the rate of the frames",
+        f"the clock was set while it was recorded, {way} by {abs(jumps[0]):.0f} s{times}; {then}",
     )

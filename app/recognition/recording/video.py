@@ -27,7 +27,7 @@ from typing_extensions import Self
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
 from app.recognition.recording.file_kinds import describe_unreadable
-from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock, tell_jumps
+from app.recognition.recording.timestamps import FALLBACK_STEP, FrameClock
 from app.recognition.recording.video_limits import VideoLimits
 
 CONTAINERS = ("mov", "mp4", "matroska", "webm", "avi", "mpegts", "mpeg")
@@ -156,6 +156,8 @@ class FrameReader(Iterator[VideoFrame]):
         self._time = 0.0
         self._reformatter = VideoReformatter()
         self._first: DecodedFrame | None = None
+        self._size: tuple[int, int] | None = None
+        self._sizes: list[tuple[float, tuple[int, int], tuple[int, int]]] = []
         self._container = open_video(self._path, self._limits)
         self._decoded = self._decode()
         try:
@@ -193,9 +195,14 @@ class FrameReader(Iterator[VideoFrame]):
             raise StopIteration
         self._limits.require_pixels(frame.width, frame.height)
         self._limits.require_frames(self._count + 1)
+        size = frame.width, frame.height
+        self._size = self._size or size
         stamp = None if frame.pts is None else float(frame.pts * _time_base(frame, self._stream))
         self._time = self._clock.seconds(stamp)
         self._limits.require_seconds(self._time)
+        if size != self._size:
+            self._sizes.append((self._time, self._size, size))
+            self._size = size
         self._count += 1
         return VideoFrame(index=self._count - 1, time=self._time, image=self._upright(frame))
 
@@ -230,7 +237,16 @@ class FrameReader(Iterator[VideoFrame]):
                 f"{self._clock.repaired} of {self._count} frames had no usable timestamp; "
                 "their time is estimated"
             )
-        return (*found, *tell_jumps(self._clock.jumps))
+        found += self._clock.sentences
+        if self._sizes:
+            time, (width, height), (wide, high) = self._sizes[0]
+            verb = "turns" if (width > height) != (wide > high) else "changes its size"
+            found.insert(
+                0,
+                f"the picture {verb} at {time:.1f} s, from {width} x {height} to {wide} x {high}; "
+                "cut the clip there, and give each part by itself",
+            )
+        return tuple(found)
 
     def _check_statement(self) -> None:
         """Check the limits against the metadata, before decoding."""

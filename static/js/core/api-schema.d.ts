@@ -3066,6 +3066,14 @@ export interface components {
                 [key: string]: (number | null)[];
             };
             /**
+             * Unseen
+             * @description First and last second of each span in which a salute may have been missed: a hole, or a part of a take in which too little was seen.
+             */
+            unseen: [
+                number,
+                number
+            ][];
+            /**
              * Unit
              * @description Of the speed's lengths: torso_length, or extent without a torso.
              */

@@ -157,6 +157,21 @@ const saluteMarks = ({ start, end, closed }, duration) =>
     ),
   );
 
+/**
+ * Where too little was seen: no gesture is read across it.
+ *
+ * @param {number[]} span
+ * @param {number} duration
+ */
+const unseen = ([start, end], duration) =>
+  h("span", {
+    className: "unseen",
+    role: "img",
+    "aria-label": `Not seen, ${moment(start)} to ${moment(end)}`,
+    title: "Too little was seen here: a salute may have been missed.",
+    style: { left: percent(start, duration), width: percent(end - start, duration) },
+  });
+
 /** When the last frame is shown: the right edge of the timeline. */
 const timeOfFrames = () => /** @type {Timeline} */ (state.timeline).time;
 
@@ -301,7 +316,7 @@ function redrawTrack(track, content, takes) {
   const focused = [...track.querySelectorAll(".take")].findIndex(
     (each) => each === document.activeElement,
   );
-  track.querySelectorAll(".take, .range, .salute").forEach((each) => each.remove());
+  track.querySelectorAll(".take, .range, .salute, .unseen").forEach((each) => each.remove());
   const film = track.querySelector(".filmstrip");
   if (film) film.after(...content);
   else track.prepend(...content);
@@ -354,12 +369,13 @@ export function drawTimeline() {
   const salutes = marked
     .filter(({ start }, index) => second * (start - (marked[index - 1]?.end ?? 0)) > SALUTES_ROOM)
     .flatMap((take) => saluteMarks(take, duration));
+  const holes = state.timeline.unseen.map((span) => unseen(span, duration));
   drawNote(range, state.takes);
   drawOverview(box, state.takes, duration, zoom > 1);
   // While a clip is being read, its end moves.
   const drawn = `${clip.id} ${duration}`;
   if (track && box.dataset.clip === drawn) {
-    redrawTrack(track, [lengths, ...salutes, ...takes], takes);
+    redrawTrack(track, [lengths, ...salutes, ...takes, ...holes], takes);
     placeHandles(track, range);
     return undefined;
   }
@@ -371,6 +387,7 @@ export function drawTimeline() {
     lengths,
     salutes,
     takes,
+    holes,
     handle("start"),
     handle("end"),
   );

@@ -10,14 +10,16 @@ const NAMES = [
   GOPRO,
   /^(DJI_)(?:\d{14}_)?(\d{4})((?:_[A-Z])?\.\w+)$/i,
   /^(.*?)(\d{8}[-_]?\d{6})(\.(?:ts|mp4))$/i,
-  /^(.*?)(\d{4,})(\.ts)$/i,
+  /^(.*?)(\d{2,})(\.ts)$/i,
 ];
+// Of programs that cut any format; two files of this kind may as well be two takes.
+const PIECE = /^(.*?)(\d{2,})(\.\w+)$/;
 
 const TIME = /^(....)(..)(..)[-_]?(..)(..)(..)$/;
 const LONGEST = 10; // minutes of one chapter, where names tell times.
 const ALIKE = 1.25; // most times the size of another one, where only numbers tell chapters.
 
-/** @typedef {{ file: File, recording: string, at: number, step: number, sure: boolean }} Chapter */
+/** @typedef {{ file: File, recording: string, at: number, step: number, sure: boolean, fewest: number }} Chapter */
 
 /**
  * @param {File} file
@@ -25,12 +27,14 @@ const ALIKE = 1.25; // most times the size of another one, where only numbers te
  */
 function chapterOf(file) {
   const plain = file.name.replace(/^GOPR(?=\d{4}\.)/i, "GP00"); // its first chapter until 2017
-  const match = NAMES.map((each) => plain.match(each)).find(Boolean);
+  const known = NAMES.map((each) => plain.match(each)).find(Boolean);
+  const match = known ?? plain.match(PIECE);
   if (!match) return [];
   const [, before, digits, after] = match;
   const minutes = Date.parse(digits.replace(TIME, "$1-$2-$3T$4:$5:$6Z")) / 60000;
   const [at, step] = TIME.test(digits) ? [minutes, LONGEST] : [Number(digits), 1];
-  return [{ file, recording: before + after, at, step, sure: GOPRO.test(plain) }];
+  const sure = GOPRO.test(plain);
+  return [{ file, recording: before + after, at, step, sure, fewest: known ? 2 : 3 }];
 }
 
 /**
@@ -69,9 +73,10 @@ export function chaptersAmong(files) {
   return first
     .map((each, index) => ({
       sure: each.sure,
+      fewest: each.fewest,
       run: named.slice(begins[index], begins[index + 1]).map(({ file }) => file),
     }))
-    .filter(({ sure, run }) => run.length > 1 && (sure || alike(run)))
+    .filter(({ sure, fewest, run }) => run.length >= fewest && (sure || alike(run)))
     .map(({ run }) => run);
 }
 

@@ -20,6 +20,7 @@ from tests.keypoint_files.files import (
     write_named,
     write_numbered,
     write_openpose,
+    write_rows,
 )
 from tests.keypoint_files.test_keypoint_sets import WHOLE, alphapose, mmpose, points_of, wide
 from tests.recognition.demonstrations import pool
@@ -173,3 +174,21 @@ def test_a_frame_size_that_cannot_be_drawn_is_refused_at_once(
     answer = upload(client, path, path.name, frame_rate="30", frame_size=size)
     assert answer.status_code == 422
     assert reason in answer.json()["detail"]
+
+
+def test_no_gesture_is_read_across_a_hole_and_the_timeline_shows_it(
+    client: httpx.Client, language: str, tmp_path: Path
+) -> None:
+    poses = recording(line, frames=FRAMES)
+    rows = [
+        [time + (9.0 if at > FRAMES // 2 else 0.0), *place.ravel().tolist()]
+        for at, (time, place) in enumerate(zip(poses.time, poses.xy, strict=True))
+    ]
+    heads = ["time", *(f"{name}_{axis}" for name in poses.landmarks for axis in "xy")]
+    clip = added(client, write_rows(tmp_path / "dive.csv", [heads, *rows]), frame_size="640x480")
+    assert "no gesture is read across it" in clip["warnings"][1]
+    answer = recognised(client, clip["id"], language).json()
+    assert answer["label"] is None
+    assert "too little was seen from" in answer["fault"]
+    ((start, end),) = client.get(f"/api/v1/clips/{clip['id']}/timeline").json()["unseen"]
+    assert end - start > 9

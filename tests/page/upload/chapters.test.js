@@ -38,6 +38,17 @@ test("a file every minute is a chapter, by its time or its number", () => {
   assert.equal(found("cam_20241231_235900.mp4", "cam_20250101_000000.mp4").length, 1);
 });
 
+test("three pieces of one size and a rest are pieces of a recording, whatever their digits", () => {
+  for (const ending of ["ts", "mp4", "mkv"]) {
+    const pieces = ["00", "01", ["02", 7]].map((each) => {
+      const [digits, size = 100] = [each].flat();
+      return [`seg_${digits}.${ending}`, size];
+    });
+    assert.equal(found(...pieces)[0].length, 3);
+  }
+  assert.deepEqual(found("a-01.mp4", ["a-02.mp4", 300], "a-03.mp4"), []);
+});
+
 test("takes of a phone are not", () => {
   assert.deepEqual(found("VID_20240101_120000.mp4", "VID_20240101_120017.mp4"), []);
   assert.deepEqual(found("take-0001.mp4", "take-0002.mp4", "IMG_0001.MOV", "IMG_0002.MOV"), []);

@@ -297,3 +297,9 @@ def test_saving_replaces_the_file_in_one_step_or_leaves_it(
     with pytest.raises(OSError, match="directory"):
         language.save(target)
     assert [path.name for path in tmp_path.iterdir()] == ["pool.json"]
+
+
+def test_a_label_is_found_however_its_accents_are_written(language: Language) -> None:
+    gesture = replace(language.gestures[0], label="\u00e9")
+    named = Language("pool", (gesture,))
+    assert named.gesture("e\u0301").label == named.gesture("\u00e9").label == "\u00e9"

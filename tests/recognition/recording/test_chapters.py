@@ -10,9 +10,11 @@ import pytest
 
 from app.recognition.errors import VideoError
 from app.recognition.recording.chapters import (
+    _form,
     chapters_in,
     join_chapters,
     tell_chapters,
+    tell_pieces,
 )
 from app.recognition.recording.video import probe, read_frames
 from tests.recognition.damaged_clips import RATE, cut_off, sound_only, write_clip
@@ -64,6 +66,10 @@ def test_chapters_of_a_gopro_are_one_clip_in_a_folder_of_their_own(tmp_path: Pat
         (("cam_20240101_120000.ts", "cam_20240101_120100.ts"), (60, 70), False),
         (("cam-0001.ts", "cam-0002.ts"), (60, 64), True),
         (("cam-0001.ts", "cam-0002.ts"), (0, 0), False),
+        (("part_000.ts", "part_001.ts"), (60, 64), True),
+        (("seg_0.mkv", "seg_1.mkv"), (60, 64), True),
+        (("part_0000.mp4", "part_0001.mp4"), (0, 4), True),
+        (("take-1.mp4", "take-2.mp4"), (0, 0), False),
         (("DJI_0001.MP4", "DJI_0002.MP4"), (0, 0), False),
     ],
 )
@@ -76,6 +82,18 @@ def test_other_chapters_are_joined_only_where_one_begins_as_the_other_ends(
         write_clip(tmp_path / name, frames=frames, times=times)
     paths = [tmp_path / name for name in names]
     assert chapters_in(tmp_path) == (paths if joins else [])
+    assert len(list(tell_pieces(paths))) == joins
+
+
+def test_parameter_sets_that_differ_by_zeros_at_their_end_are_the_same(tmp_path: Path) -> None:
+    paths = [write_clip(tmp_path / f"{each}.ts") for each in "ab"]
+    forms = []
+    for path, more in zip(paths, (b"", b"\0"), strict=True):
+        with av.open(str(path)) as container:
+            stream = container.streams.video[0]
+            stream.codec_context.extradata = (stream.codec_context.extradata or b"") + more
+            forms.append(_form(stream))
+    assert forms[0] == forms[1]
 
 
 @pytest.mark.parametrize(("second", "joins"), [("12:00:04", True), ("12:00:30", False)])

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.recognition.errors import VideoError
-from app.recognition.recording.file_kinds import find_file_kind
+from app.recognition.recording.file_kinds import describe_unreadable, find_file_kind
 from app.recognition.recording.video import probe
 
 
@@ -84,3 +84,19 @@ def test_only_a_video_may_lack_its_index(tmp_path: Path, name: str, content: str
 )
 def test_an_unknown_kind_and_a_damaged_mp4_have_no_name(head: bytes) -> None:
     assert find_file_kind(head) is None
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"\x1f\x43\xb6\x75 I:", "of which the first piece is missing"),
+        (b"\x89HDF\r\n\x1a\n", "if it is of movement, save it as DeepLabCut's CSV"),
+        (b"\xff\xd8\xff\xe0" * 9, "ffmpeg -f mjpeg -framerate 25 -i FILE clip.mp4"),
+    ],
+)
+def test_what_neighbours_write_is_named_with_what_reads_it(
+    tmp_path: Path, content: bytes, words: str
+) -> None:
+    path = tmp_path / "a.bin"
+    path.write_bytes(content)
+    assert words in describe_unreadable(path)

@@ -2,6 +2,7 @@
 
 import gc
 import io
+import re
 import weakref
 from collections.abc import Iterator
 from fractions import Fraction
@@ -17,6 +18,7 @@ from hypothesis import strategies as st
 
 from app.recognition.errors import VideoError
 from app.recognition.poses.frame import Image
+from app.recognition.recording.timestamps import SEAM
 from app.recognition.recording.video import (
     FrameReader,
     Turn,
@@ -125,11 +127,18 @@ def test_a_repeated_timestamp_is_repaired_and_reported(tmp_path: Path) -> None:
 def test_joined_recordings_go_on_in_time(tmp_path: Path) -> None:
     long = [i / 25 for i in range(50)]
     parts = [write_clip(tmp_path / f"{i}.ts", frames=50, times=long) for i in range(2)]
-    frames, _ = read(joined(*parts))
+    frames, warnings = read(joined(*parts))
     times = np.array([frame.time for frame in frames])
     assert len(frames) == 100
     assert (np.diff(times) > 0).all()
-    assert times[-1] == pytest.approx(99 / 25, abs=0.1)
+    assert times[-1] == pytest.approx(98 / 25 + SEAM, abs=0.1)
+    assert any("begins again" in told for told in warnings)
+
+
+def test_a_picture_that_turns_is_told_before_all_else(tmp_path: Path) -> None:
+    parts = [write_clip(tmp_path / f"{size[0]}.ts", size=size) for size in ((96, 64), (64, 96))]
+    _, warnings = read(joined(*parts))
+    assert re.match(r"the picture turns at \d\.\d s, from 96 x 64 to 64 x 96;", warnings[0])
 
 
 @pytest.mark.parametrize(
@@ -248,7 +257,7 @@ def test_a_complete_recording_that_begins_late_is_not_cut_short(tmp_path: Path, 
 def test_a_clock_that_is_set_in_a_clip_is_told(tmp_path: Path, name: str, jump: int) -> None:
     times = [0.04 * index + (jump if index >= 25 else 0) for index in range(50)]
     frames, warnings = read(write_clip(tmp_path / name, frames=50, times=times))
-    assert frames[-1].time == pytest.approx(1.96, abs=1e-3)
+    assert frames[-1].time == pytest.approx(1.92 + SEAM, abs=1e-3)
     assert [told.split(";")[0] for told in warnings] == [
         f"the clock was set while it was recorded, ahead by {jump} s"
     ]
