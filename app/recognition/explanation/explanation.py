@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, computed_field
 
 from app.recognition.decision.result import WRITTEN, Distance
+from app.recognition.errors import LanguageError, OsgError
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.blame import Blame, find_blame
 from app.recognition.explanation.causes import Cause, CauseKind, find_causes
@@ -213,7 +214,10 @@ def explain(
         When no landmark that a gesture needs moves in the take.
 
     """
-    expected = context.language.gesture(expected).label
+    try:
+        expected = context.language.gesture(expected).label
+    except LanguageError as error:
+        raise OsgError(str(error)) from None
     table, result = context.score_table, context.result
     at = result.gestures.index(expected)
     rival = result.nearest if result.nearest != expected else result.runner_up
