@@ -85,7 +85,12 @@ def load_context(record: store.RecognitionRecord, studio: Studio) -> Recognition
     recording = studio.recording(record.clip_id, so_far=True)
     view = view_recognition(record)
     recognizer = make_recognizer(
-        studio, state, record.profile, view.tuning, view.trial, view.without
+        studio,
+        state,
+        record.profile,
+        view.tuning,
+        view.trial,
+        [(str(label), int(number)) for label, number in view.without],
     )
     language = recognizer.language
     return RecognitionContext(

@@ -2526,12 +2526,8 @@ export interface components {
             /**
              * Without
              * @description Label and number of the demonstrations that the take is itself, which did not read it.
-             * @default []
              */
-            without: [
-                string,
-                number
-            ][];
+            without: (string | number)[][];
             /** Expected */
             expected: string | null;
             /**
@@ -3069,10 +3065,7 @@ export interface components {
              * Unseen
              * @description First and last second of each span in which a salute may have been missed: a hole, or a part of a take in which too little was seen.
              */
-            unseen: [
-                number,
-                number
-            ][];
+            unseen: number[][];
             /**
              * Unit
              * @description Of the speed's lengths: torso_length, or extent without a torso.

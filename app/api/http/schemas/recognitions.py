@@ -52,7 +52,7 @@ class RecognitionView(Recognition):
     """Null: as the language says."""
     trial: GestureTrial | None = None
     """The change it was recognised with; null: none."""
-    without: tuple[tuple[str, int], ...] = ()
+    without: list[list[str | int]] = Field(default_factory=list)
     """Label and number of the demonstrations that the take is itself, which did not read it."""
     expected: str | None
     created: datetime

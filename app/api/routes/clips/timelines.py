@@ -41,7 +41,7 @@ class TimelineView(View):
     """Score of the salute, or of the language's other trigger, 0 to 1."""
     speed: dict[str, list[float | None]]
     """Per wrist, torso lengths a second; null where it was not seen."""
-    unseen: list[tuple[float, float]]
+    unseen: list[list[float]]
     """First and last second of each span in which a salute may have been missed: a hole, or a part
     of a take in which too little was seen."""
     unit: str
@@ -72,7 +72,7 @@ def get_timeline(
         "time": np.round(recording.poses.time, TIME_DIGITS).tolist(),
         "salute": np.round(scores, CURVE_DIGITS).tolist(),
         "speed": {name: _with_nulls(speed) for name, speed in speeds.items()},
-        "unseen": [(each.start, each.end) for each in list_unseen(recording, trigger)],
+        "unseen": [[each.start, each.end] for each in list_unseen(recording, trigger)],
         "unit": unit,
         "thumbnails": thumbnails_in(len(recording.poses)) if has_thumbnails else 0,
         "turn": find_turn(recording.poses) if shows_pictures(studio.clips.get(clip_id).clip) else 0,
