@@ -16,7 +16,8 @@ from app.api.services.stored_recognitions import require_landmarks_of
 from app.api.workers.worker_messages import Progress
 from app.evaluation.take_table import Row, row_of_fault, rows_of_clip
 from app.recognition import OsgError, Recognition, Take
-from app.recognition.recording.clip_range import SAME_MOMENT, find_clip_range
+from app.recognition.recording.clip_range import SAME_MOMENT, find_unseen_in
+from app.recognition.recording.segmentation import find_brackets
 from app.store import Clip, LabelledTake, LanguageState, StoreError
 
 SAME_TAKE = 0.5
@@ -101,7 +102,7 @@ def recognize_clip_takes(
 def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
     """Return the takes that the studio shows for a clip, with their strokes."""
     recording, trigger = studio.recording(clip.id), studio.language(state).trigger
-    poses = recording.poses
+    poses, brackets = recording.poses, find_brackets(recording, trigger)
     # Spotted takes get the margin of a range that a person chooses.
     margin = SAME_MOMENT if trigger.spots else 0.0
     return [
@@ -113,7 +114,7 @@ def _list_takes(studio: Studio, state: LanguageState, clip: Clip) -> list[Take]:
             stroke_start=found.stroke_start,
             stroke_end=found.stroke_end,
             untrimmed=poses.between(found.start, found.end),
-            unseen=find_clip_range(recording, found.start, found.end, trigger=trigger).unseen,
+            unseen=find_unseen_in(poses, brackets, found.start, found.end),
         )
         for found in find_takes(studio, clip.id, state)
     ]

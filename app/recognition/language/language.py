@@ -159,8 +159,9 @@ class Language:
             When there is none.
 
         """
+        wanted = compose(label)
         for gesture in self.gestures:
-            if compose(gesture.label) == compose(label):
+            if compose(gesture.label) == wanted:
                 return gesture
         known = ", ".join(self.labels)
         raise LanguageError(f"no gesture {label!r} in {self.name!r}; it has {known}")

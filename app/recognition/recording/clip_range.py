@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from app.recognition.errors import AmbiguousRangeError, RangeError
@@ -74,9 +75,8 @@ def find_clip_range(
             return _shown_in(poses, takes[0], trigger, keep_transit)
     first = float(poses.time[0]) if start is None else start
     last = float(poses.time[-1]) if end is None else end
-    for take in takes:
-        if abs(take.start - first) <= SAME_MOMENT and abs(take.end - last) <= SAME_MOMENT:
-            return _shown_in(poses, take, trigger, keep_transit)
+    if (take := _find_take(takes, first, last)) is not None:
+        return _shown_in(poses, take, trigger, keep_transit)
     inside = poses.between(first - SAME_MOMENT, last + SAME_MOMENT)
     if last <= first or not len(inside):
         raise RangeError(
@@ -84,8 +84,37 @@ def find_clip_range(
             f"{poses.time[0]:g} s to {poses.time[-1]:g} s",
             "/end" if start is None else "/start",
         )
-    begin, finish = max(first, float(poses.time[0])), min(last, float(poses.time[-1]))
-    return ClipRange(first, last, inside, find_unseen(inside.time.tolist(), begin, finish))
+    return ClipRange(first, last, inside, find_unseen_in(poses, takes, first, last))
+
+
+def find_unseen_in(
+    poses: PoseSequence, takes: Sequence[Bracket], start: float, end: float
+) -> tuple[Span, ...]:
+    """Return the spans of a range, or of the take that it equals, in which a trigger may be missed.
+
+    Parameters
+    ----------
+    poses
+        Of the whole recording.
+    takes
+        All of it, from `find_brackets`.
+    start, end
+        Seconds of the range.
+
+    """
+    if (take := _find_take(takes, start, end)) is not None:
+        return take.unseen
+    inside = poses.between(start - SAME_MOMENT, end + SAME_MOMENT)
+    begin, finish = max(start, float(poses.time[0])), min(end, float(poses.time[-1]))
+    return find_unseen(inside.time.tolist(), begin, finish)
+
+
+def _find_take(takes: Sequence[Bracket], start: float, end: float) -> Bracket | None:
+    """Return the take that a range equals, from salute to salute; None without one."""
+    for take in takes:
+        if abs(take.start - start) <= SAME_MOMENT and abs(take.end - end) <= SAME_MOMENT:
+            return take
+    return None
 
 
 def find_surroundings(
