@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.recognition import Recognition
+from app.recognition.features.png import to_data_url
 from app.recognition.poses.sequence import FloatArray
 from app.recognition.text.wording import humanize
 
@@ -308,7 +308,7 @@ def _range(values: Sequence[FloatArray]) -> tuple[float, float]:
 
 def data_url(image: npt.NDArray[np.uint8]) -> str:
     """Return an image as data URI of a PNG."""
-    return "data:image/png;base64," + base64.b64encode(png(image)).decode("ascii")
+    return to_data_url(png(image))
 
 
 def png(image: npt.NDArray[np.uint8]) -> bytes:

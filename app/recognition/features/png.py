@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import zlib
+from base64 import b64encode
 
 import cv2
 import numpy as np
@@ -28,6 +29,11 @@ def encode_png(image: BinaryImage) -> bytes:
     header = _HEADER.pack(width, height, 1, 0, 0, 0, 0)
     chunks = (_chunk(b"IHDR", header), _chunk(b"IDAT", stored), _chunk(b"IEND", b""))
     return _SIGNATURE + b"".join(chunks)
+
+
+def to_data_url(content: bytes) -> str:
+    """Return a PNG as data URI."""
+    return f"data:image/png;base64,{b64encode(content).decode('ascii')}"
 
 
 def decode_png(content: bytes, size: tuple[int, int]) -> BinaryImage:

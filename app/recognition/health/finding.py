@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from app.recognition.features.contour import BinaryImage
-from app.recognition.features.png import encode_png
+from app.recognition.features.png import encode_png, to_data_url
 from app.recognition.gestures.demonstration import MAX_MOMENTS
 from app.recognition.gestures.gesture import Gesture
 from app.recognition.poses.trajectory import Trajectory
@@ -99,10 +98,9 @@ class Finding:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types, the drawings as data URIs."""
-        pngs = [b64encode(encode_png(each)).decode("ascii") for each in self.drawings]
         return vars(self) | {
             "gestures": list(self.gestures),
-            "drawings": [f"data:image/png;base64,{png}" for png in pngs],
+            "drawings": [to_data_url(encode_png(each)) for each in self.drawings],
         }
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Callable, Sequence
 from typing import Annotated
 
@@ -19,6 +18,7 @@ from app.api.services.trajectory_images import draw_trajectory_image
 from app.recognition import Gesture, GestureError, Language, Recognizer
 from app.recognition.explanation.transcript import describe_strokes, transcribe_gesture
 from app.recognition.features.motion import find_hands
+from app.recognition.features.png import to_data_url
 from app.recognition.gestures.demonstration import condense
 from app.recognition.gestures.switches import Sensitivity, describe_effects
 from app.recognition.health.check import rank_others
@@ -218,8 +218,7 @@ def _view(
 
 def _image(gesture: Gesture, *, marks: bool) -> str:
     """Return a gesture's trajectory image as a data URI."""
-    image = draw_trajectory_image(gesture, marks)
-    return f"data:image/png;base64,{b64encode(image).decode('ascii')}"
+    return to_data_url(draw_trajectory_image(gesture, marks))
 
 
 def _keypoints(trajectory: Trajectory) -> list[KeypointView]:
