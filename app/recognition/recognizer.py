@@ -30,7 +30,7 @@ from app.recognition.preprocessing.holds import (
     keep_holds,
 )
 from app.recognition.preprocessing.moving_hands import find_moving_hands
-from app.recognition.preprocessing.quality import QualityFault, find_fault
+from app.recognition.preprocessing.quality import QualityFault, QualityFaultKind, find_fault
 from app.recognition.preprocessing.repair import Repair, repair_poses
 from app.recognition.recording.segmentation import Take
 from app.recognition.recording.trimming import Span
@@ -155,10 +155,7 @@ class Recognizer:
         """
         result = self.examine(poses).result
         if unseen:
-            fault = describe_unseen(unseen, self.language.trigger.noun)
-            return result.model_copy(
-                update={"label": None, "pair": None, "fault": fault, "fault_kind": None}
-            )
+            return _refuse(result, describe_unseen(unseen, self.language.trigger.noun), None)
         findings = (*result.findings, *find_pauses(poses.time))
         return result.model_copy(update={"findings": findings})
 
@@ -184,7 +181,7 @@ class Recognizer:
             fault = f"both arms hang most of the time, so that a {noun} was missed"
         else:
             return result
-        return result.model_copy(update={"label": None, "pair": None, "fault": fault})
+        return _refuse(result, fault, result.fault_kind)
 
     def _is_rest(self, poses: PoseSequence, result: Recognition) -> bool:
         """Return whether both arms mostly hang, as in no demonstration of the gestures named."""
@@ -216,10 +213,8 @@ class Recognizer:
         findings = (*findings, many) if many else findings
         poor = self._fault(repair, table, result.nearest) if repair else None
         poor = poor or self._find_unseen_shape(table, result.nearest)
-        changes: dict[str, object] = {"findings": findings}
-        if poor:
-            changes |= {"label": None, "pair": None, "fault": poor.words, "fault_kind": poor.kind}
-        result = result.model_copy(update=changes)
+        result = result.model_copy(update={"findings": findings})
+        result = _refuse(result, poor.words, poor.kind) if poor else result
         return Trace(query=query, score_table=table, result=result)
 
     def _describe_others(self, holds: Sequence[Hold]) -> str:
@@ -369,3 +364,10 @@ class Recognizer:
     def compare(self, trajectory: Trajectory) -> ScoreTable:
         """Compare a `query` with every gesture, voter by voter."""
         return self.vote.compare(trajectory)
+
+
+def _refuse(result: Recognition, fault: str, kind: QualityFaultKind | None) -> Recognition:
+    """Return a recognition without label or pair, for a reason."""
+    return result.model_copy(
+        update={"label": None, "pair": None, "fault": fault, "fault_kind": kind}
+    )

@@ -60,8 +60,11 @@ def find_missable(
 
 def describe_unseen(unseen: Sequence[Span], noun: str) -> str:
     """Return why a take has no label; `noun` is what may have been missed."""
-    spans = " and ".join(f"from {each.start:.2f} to {each.end:.2f} s" for each in unseen[:2])
-    return f"too little was seen {spans}: a {noun} may have been missed there"
+    return f"too little was seen {_name_spans(unseen)}: a {noun} may have been missed there"
+
+
+def _name_spans(spans: Sequence[Span]) -> str:
+    return " and ".join(f"from {each.start:.2f} to {each.end:.2f} s" for each in spans[:2])
 
 
 def find_pauses(time: FloatArray) -> tuple[str, ...]:
@@ -70,8 +73,8 @@ def find_pauses(time: FloatArray) -> tuple[str, ...]:
     long = np.flatnonzero((steps > HOLD_SECONDS) & (steps > UNUSUAL * np.median(steps)))
     if not len(long):
         return ()
-    spans = " and ".join(f"from {time[at]:.2f} to {time[at + 1]:.2f} s" for at in long[:2].tolist())
-    return (f"no frame {spans}: the path between is a straight line",)
+    spans = [Span(float(time[at]), float(time[at + 1])) for at in long.tolist()]
+    return (f"no frame {_name_spans(spans)}: the path between is a straight line",)
 
 
 def find_holes(time: FloatArray) -> tuple[Span, ...]:

@@ -157,7 +157,7 @@ class FrameReader(Iterator[VideoFrame]):
         self._reformatter = VideoReformatter()
         self._first: DecodedFrame | None = None
         self._size: tuple[int, int] | None = None
-        self._sizes: list[tuple[float, tuple[int, int], tuple[int, int]]] = []
+        self._resized: tuple[float, tuple[int, int]] | None = None
         self._container = open_video(self._path, self._limits)
         self._decoded = self._decode()
         try:
@@ -200,9 +200,8 @@ class FrameReader(Iterator[VideoFrame]):
         stamp = None if frame.pts is None else float(frame.pts * _time_base(frame, self._stream))
         self._time = self._clock.seconds(stamp)
         self._limits.require_seconds(self._time)
-        if size != self._size:
-            self._sizes.append((self._time, self._size, size))
-            self._size = size
+        if size != self._size and self._resized is None:
+            self._resized = self._time, size
         self._count += 1
         return VideoFrame(index=self._count - 1, time=self._time, image=self._upright(frame))
 
@@ -238,8 +237,8 @@ class FrameReader(Iterator[VideoFrame]):
                 "their time is estimated"
             )
         found += self._clock.sentences
-        if self._sizes:
-            time, (width, height), (wide, high) = self._sizes[0]
+        if self._size is not None and self._resized is not None:
+            (width, height), (time, (wide, high)) = self._size, self._resized
             verb = "turns" if (width > height) != (wide > high) else "changes its size"
             found.insert(
                 0,

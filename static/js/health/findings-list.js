@@ -21,14 +21,15 @@ const AT_FIRST = 5; // Findings shown before the table and the map; the worst co
  */
 const decideHands = (labels, position) =>
   attempt("Changing the switch", () =>
-    edit("Changing the switch", `Hand shape of ${labels.join(" and ")} ${position}`, (base) =>
-      labels.reduce(
-        (before, label) =>
-          before.then((language) =>
-            api.languages.changeGesture(language, label, { hand_shape: position }),
-          ),
-        Promise.resolve(base),
-      ),
+    edit(
+      "Changing the switch",
+      `Hand shape of ${labels.join(" and ")} ${position}`,
+      async (base) => {
+        let language = base;
+        for (const label of labels)
+          language = await api.languages.changeGesture(language, label, { hand_shape: position });
+        return language;
+      },
     ),
   );
 
