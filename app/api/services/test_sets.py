@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -256,21 +257,19 @@ class _OwnDemonstrations:
     def __init__(self, studio: Studio, state: store.LanguageState) -> None:
         self._studio = studio
         self._language = studio.language(state)
-        self._sources = [
-            (label, number, source)
-            for label, row in find_sources(studio, self._language).items()
-            for number, source in enumerate(row)
-            if source is not None
-        ]
+        self._of_clip = defaultdict[str, list[tuple[str, int, store.DemonstrationSource]]](list)
+        for label, row in find_sources(studio, self._language).items():
+            for number, source in enumerate(row):
+                if source is not None:
+                    self._of_clip[source.clip_id].append((label, number, source))
 
     def find(self, take: store.LabelledTake) -> LeftOut:
         """Return label and number of each demonstration that covers most of a take."""
         least = SAME_TAKE * (take.end - take.start)
         return tuple(
             (label, number)
-            for label, number, source in self._sources
-            if source.clip_id == take.clip_id
-            and min(take.end, source.end) - max(take.start, source.start) > least
+            for label, number, source in self._of_clip.get(take.clip_id, ())
+            if min(take.end, source.end) - max(take.start, source.start) > least
         )
 
     def is_testable(self, take: store.LabelledTake) -> bool:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from datetime import datetime
-from itertools import pairwise
+from itertools import pairwise, starmap
 from pathlib import Path
 from typing import Final
 
@@ -33,6 +33,9 @@ number: what comes before the number, the number, and what follows."""
 
 _NUMBERED: Final = re.compile(r"\d{4,}")
 """Digits of numbers that are told to go on in the next file; fewer are in names of any kind."""
+
+_Span = tuple[float, float, tuple[object, ...]]
+"""Begin and end of a video in seconds of its container's clock, and how it is coded."""
 
 _BESIDE: Final = COPIES | {".srt", ".thm"}
 """Endings of what cameras write beside a chapter."""
@@ -102,7 +105,7 @@ def chapters_in(folder: Path) -> list[Path]:
     visible = [each for each in folder.iterdir() if not each.name.startswith(".")]
     found = in_order([each for each in visible if each.suffix.lower() not in _BESIDE], _NAMES)
     sure = all(_match(each.name, [_GOPRO]) for each in found)
-    return found if sure or all(map(_follows, found, found[1:])) else []
+    return found if sure or all(starmap(_follows, pairwise(map(_span, found)))) else []
 
 
 def tell_pieces(files: Sequence[Path]) -> Iterator[str]:
@@ -120,20 +123,20 @@ def tell_pieces(files: Sequence[Path]) -> Iterator[str]:
             runs.setdefault((path.parent, found[1], found[3]), []).append(path)
     for run in runs.values():
         pieces = in_order(run, _NAMES)
-        if any(_follows(*pair) for pair in pairwise(pieces)):
+        if any(starmap(_follows, pairwise(map(_span, pieces)))):
             yield (
                 f"{pieces[0].name} to {pieces[-1].name}, {len(pieces)} files that may be one "
                 "recording: join them? Put them alone into a folder, or drop them on the page"
             )
 
 
-def _follows(earlier: Path, later: Path) -> bool:
+def _follows(earlier: _Span, later: _Span) -> bool:
     """Return whether a video begins when another one ends, and is coded alike."""
-    (begun, ended, form), (begins, _, other) = _span(earlier), _span(later)
+    (begun, ended, form), (begins, _, other) = earlier, later
     return begun < begins and abs(ended - begins) <= SEAM_SECONDS and form == other
 
 
-def _span(path: Path) -> tuple[float, float, tuple[object, ...]]:
+def _span(path: Path) -> _Span:
     """Return begin and end in seconds of the container's own clock, NaN without one, and the form.
 
     A date of creation is of whole seconds; without one, time goes on from file to file.
