@@ -23,8 +23,8 @@ from app.recognition.estimation import create_estimator, list_landmarks
 from app.recognition.estimation.factory import MEDIAPIPE_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.language.requirements import require_landmarks
+from app.recognition.recording.clip_range import find_unseen_in
 from app.recognition.recording.segmentation import LONGEST_TAKE
-from app.recognition.recording.unseen import find_unseen
 from app.recognition.recording.video import Turn
 from app.recognition.spotting import Spotter
 from app.recognition.triggers.trigger import SALUTE, Trigger
@@ -214,13 +214,13 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
 
     """
     start, end = span
-    poses, last = recording.poses.between(start, end), recording.poses.time[-1]
+    poses = recording.poses.between(start, end)
     if len(poses) < 2:
+        last = recording.poses.time[-1]
         raise GestureError(
             f"{start:g}-{end:g} s holds {len(poses)} frames of a clip that ends at {last:.2f} s; "
             "give START < END inside the clip"
         )
-    begin, finish = max(start, float(recording.poses.time[0])), min(end, float(last))
     return Take(
         start=start,
         end=end,
@@ -229,7 +229,7 @@ def take_by_hand(recording: Recording, span: tuple[float, float]) -> Take:
         stroke_start=start,
         stroke_end=end,
         untrimmed=poses,
-        unseen=find_unseen(poses.time.tolist(), begin, finish),
+        unseen=find_unseen_in(recording.poses, (), start, end),
     )
 
 
