@@ -18,7 +18,6 @@ from app.cli.robots.robot_options import RobotOptions
 from app.cli.robots.run import (
     Control,
     handle_signals,
-    profile_until_stopped,
     run_robot,
     run_with_uploads,
     try_answers,
@@ -30,6 +29,8 @@ from app.system.service_manager import ServiceManager
 if TYPE_CHECKING:
     from app.robot.publishing.robot_files import RobotFiles
     from app.robot.publishing.status_page import StatusPage
+
+STAGES_BENCHMARK = "python -m benchmarks.cost.stages"
 
 NOTHING_RECOGNISED = 1
 """Exit code of a recording in which no gesture was recognised."""
@@ -49,15 +50,15 @@ def robot(context: typer.Context, *, options: RobotOptions) -> None:
     lacking = {
         f"{BEGIN} needs --ros2: add that option": bool(context.obj) and not options.ros2,
         "--mavlink and --vehicle need each other: give both": has_mavlink != has_vehicle,
+        f"--profile-stages is a benchmark since 0.4.0: run {STAGES_BENCHMARK} in a clone": (
+            options.profile_stages
+        ),
         "--upload needs --page: give both": options.upload and not options.page,
         "--answers needs --mavlink and --vehicle: give all three": bool(options.answers)
         and not has_mavlink,
     }
     for fault in (words for words, lacks in lacking.items() if lacks):
         raise typer.BadParameter(fault, context)
-    if options.profile_stages:
-        profile_until_stopped(options)
-        return
     if options.answers:
         try_answers(options)
         return

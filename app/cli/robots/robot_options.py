@@ -88,7 +88,7 @@ class RobotOptions:
     ] = None
     profile_stages: Annotated[
         bool,
-        typer.Option("--profile-stages", help="Print only the time and energy of each stage."),
+        typer.Option("--profile-stages", hidden=True),
     ] = False
 
     def open_listener(self, first: ActiveLanguage) -> LandmarkListener:

@@ -5,7 +5,6 @@ Packages that only some options need are imported when the option is given.
 
 from __future__ import annotations
 
-import json
 import signal
 import time as clock
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,16 +13,11 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Final
 
-import typer
-from rich import box
-from rich.table import Table
-
 from app.cli.robots.channels import Channels, Handler, open_ros2_topics
 from app.cli.robots.robot_options import RobotOptions
-from app.cli.terminal import describe_error, people, tell
+from app.cli.terminal import describe_error, tell
 from app.recognition.errors import OsgError, VehicleError, explain_missing_package
 from app.recognition.estimation import create_estimator
-from app.recognition.estimation.factory import NO_HANDS
 from app.robot import (
     Event,
     LandmarkListener,
@@ -37,7 +31,6 @@ from app.robot.language_watcher import LanguageWatcher
 from app.robot.publishing.publisher import open_publisher
 from app.robot.runtime import Observer
 from app.robot.sources.live import LiveSource
-from app.robot.stage_profile import STAGES, StageProfile, StageProfiler, open_energy_meter
 
 if TYPE_CHECKING:
     from app.robot.mavlink.bridge import MavlinkBridge
@@ -263,25 +256,6 @@ def try_answers(options: RobotOptions) -> None:
         raise VehicleError(missing[0])
 
 
-def profile_until_stopped(options: RobotOptions) -> None:
-    """Print the costs of the stages when the source ends or a signal stops it."""
-    with ExitStack() as opened:
-        watcher = opened.enter_context(LanguageWatcher(options.language, options.profile))
-        listener = options.open_listener(watcher.first)
-        source = opened.enter_context(closing(open_source(options.source, options.turn)))
-        whole = create_estimator(options.estimator, hands=options.hands)
-        opened.enter_context(closing(whole))
-        body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))
-        stops: list[bool] = []
-        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
-        if meter := open_energy_meter():
-            opened.enter_context(closing(meter))
-        profiler = StageProfiler(body, whole, listener, water=options.water, meter=meter)
-        profile = profiler.run(source, is_over=lambda: bool(stops))
-    typer.echo(json.dumps(profile.to_dict(), allow_nan=False))
-    people.print(build_profile_table(profile))
-
-
 @contextmanager
 def handle_signals(stop: Callable[[], None], reload: Callable[[], None]) -> Iterator[None]:
     """Stop in order on SIGINT and SIGTERM, at once on a second; reload on SIGHUP."""
@@ -366,22 +340,3 @@ def open_bridge(
         without_salutes=options.without_salutes,
         memory=table_file.with_name(f"{table_file.name}.before"),
     )
-
-
-def build_profile_table(profile: StageProfile) -> Table:
-    """Build a table with one row per stage: frame rate and energy up to this stage."""
-    takes = "1 take" if profile.takes == 1 else f"{profile.takes} takes"
-    caption = (
-        f"{profile.frames} frames, {takes}; recognition lowers the rate of pose and "
-        f"hands by {profile.share:.1%} and takes {profile.processor_share:.1%} of the processor's "
-        f"time; energy: {profile.energy or 'not measured on this machine'}"
-    )
-    table = Table("with", caption=caption, caption_justify="left", box=box.SIMPLE_HEAD)
-    table.add_column("frames a second", justify="right")
-    table.add_column("joules a frame", justify="right")
-    for stage in STAGES:
-        joules = profile.joules_per_frame(stage)
-        rate = profile.frames_per_second(stage)
-        row = "" if joules is None else f"{joules:.2f}"
-        table.add_row(stage if stage == STAGES[0] else f"+ {stage}", f"{rate:.1f}", row)
-    return table

@@ -21,7 +21,6 @@ from typer.main import get_command
 from app.cli.application import command_line
 from app.cli.robots.robot import split_ros_arguments
 from app.robot.publishing.status_page import UPLOAD_TYPE
-from app.robot.stage_profile import STAGES
 from tests.command_line import OsgStudio
 from tests.conftest import ROOT
 from tests.documented import documented
@@ -349,28 +348,6 @@ def upload(port: int, kind: str, content: bytes) -> None:
             token = json.loads(answer.read()).get("token")
         headers = {**headers, "Confirm": str(token)}
     assert token is None
-
-
-@pytest.mark.slow
-def test_the_cost_of_each_stage_is_one_object_and_a_table(
-    osg_studio: OsgStudio,
-    installed_models: None,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    (command,) = documented("robot", page="robots/performance.md")
-    spoken, clip = (Path(command[command.index(it) + 1]) for it in ("--language", "--source"))
-    (tmp_path / clip).parent.mkdir(parents=True)
-    (tmp_path / spoken).symlink_to(ROOT / spoken)
-    write_clip(tmp_path / clip, frames=12)
-    monkeypatch.chdir(tmp_path)
-    ended = osg_studio(*command)
-    assert ended.code == 0
-    profile = json.loads(ended.out)
-    assert profile["frames"] == 2
-    assert [stage["up_to"] for stage in profile["stages"]] == list(STAGES)
-    assert "+ recognition" in ended.error
-    assert f"2 frames, {profile['takes']} take" in " ".join(ended.error.split())
 
 
 @pytest.mark.parametrize(

@@ -223,3 +223,9 @@ def test_answers_that_cannot_be_tried_are_one_line(
     ended = osg_studio(*command, *link, "--answers", "try")
     assert (ended.code, ended.error.count("\n")) == (2, 1)
     assert "has no [answers]" in ended.error
+
+
+def test_the_profile_of_stages_names_its_benchmark(osg_studio: OsgStudio) -> None:
+    ended = osg_studio("robot", "--language", "language.json", "--profile-stages")
+    assert ended.code == 2
+    assert "benchmarks.cost.stages in a clone" in " ".join(ended.error.split())

@@ -1,11 +1,16 @@
-"""Stage profile: time and energy of each stage from camera to recognition, in one run.
+"""Stages: time and energy of each stage from camera to recognition, in one run.
 
 The paper reports frames per second of the camera alone, with pose estimation, and with all stages
-(Sec. IV; on a Jetson Orin 15, 4.91 and 4.06): the last step is the cost of recognition.
+(Sec. IV; on a Jetson Orin 15, 4.91 and 4.06): the last step is the cost of recognition. Printed are
+one JSON object on stdout and a table on stderr, at the end of the source or at Ctrl-C.
+
+    python -m benchmarks.cost.stages --language languages/osg-table-2.json --source 0
 """
 
 from __future__ import annotations
 
+import argparse
+import json
 import operator
 import re
 import shutil
@@ -13,18 +18,27 @@ import subprocess
 import threading
 import time as clock
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import astuple, dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, Protocol, get_args
 
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from app.cli.robots.run import handle_signals
+from app.recognition.estimation import create_estimator
 from app.recognition.estimation.estimator import PoseEstimator
+from app.recognition.estimation.factory import NO_HANDS
 from app.recognition.estimation.water import WaterCorrection
 from app.recognition.estimation.water_sight import WaterSight
 from app.recognition.recording.extraction import build_frame_sequence
 from app.recognition.recording.people_in_stream import PeopleInStream
 from app.recognition.recording.salute import best_salute
+from app.robot import create_listener, open_source
 from app.robot.events import TakeEvent
+from app.robot.language_watcher import LanguageWatcher
 from app.robot.listeners.trigger_listener import LandmarkListener
 from app.robot.sources.source import Frame, Source
 
@@ -358,3 +372,48 @@ class StageProfiler:
 
 def _up_to(stage: Stage) -> tuple[Stage, ...]:
     return STAGES[: STAGES.index(stage) + 1]
+
+
+def build_table(profile: StageProfile) -> Table:
+    """Build a table with one row per stage: frame rate and energy up to this stage."""
+    takes = "1 take" if profile.takes == 1 else f"{profile.takes} takes"
+    caption = (
+        f"{profile.frames} frames, {takes}; recognition lowers the rate of pose and "
+        f"hands by {profile.share:.1%} and takes {profile.processor_share:.1%} of the processor's "
+        f"time; energy: {profile.energy or 'not measured on this machine'}"
+    )
+    table = Table("with", caption=caption, caption_justify="left", box=box.SIMPLE_HEAD)
+    table.add_column("frames a second", justify="right")
+    table.add_column("joules a frame", justify="right")
+    for stage in STAGES:
+        joules = profile.joules_per_frame(stage)
+        rate = profile.frames_per_second(stage)
+        row = "" if joules is None else f"{joules:.2f}"
+        table.add_row(stage if stage == STAGES[0] else f"+ {stage}", f"{rate:.1f}", row)
+    return table
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Profile a source until it ends, or a signal stops it."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--language", type=Path, required=True, help="language file")
+    parser.add_argument("--source", default="0", help="as of `osg-studio robot`")
+    parser.add_argument("--estimator", default="onnx", help="as of `osg-studio robot`")
+    options = parser.parse_args(arguments)
+    stops: list[bool] = []
+    with ExitStack() as opened:
+        watcher = opened.enter_context(LanguageWatcher(options.language))
+        listener = create_listener(watcher.first)
+        source = opened.enter_context(closing(open_source(options.source)))
+        whole = opened.enter_context(closing(create_estimator(options.estimator)))
+        body = opened.enter_context(closing(create_estimator(options.estimator, hands=NO_HANDS)))
+        opened.enter_context(handle_signals(lambda: stops.append(True), lambda: None))
+        if meter := open_energy_meter():
+            opened.enter_context(closing(meter))
+        profile = StageProfiler(body, whole, listener, meter=meter).run(source, lambda: bool(stops))
+    print(json.dumps(profile.to_dict(), allow_nan=False))
+    Console(stderr=True).print(build_table(profile))
+
+
+if __name__ == "__main__":
+    main()

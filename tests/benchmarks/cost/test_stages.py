@@ -13,8 +13,9 @@ from pathlib import Path
 import pytest
 
 from app.recognition.estimation import create_estimator
+from app.resources import samples_dir
 from app.robot import TriggerListener, open_source
-from app.robot.stage_profile import (
+from benchmarks.cost.stages import (
     STAGES,
     WARM_UP,
     Cost,
@@ -22,6 +23,7 @@ from app.robot.stage_profile import (
     StageProfile,
     StageProfiler,
     TegrastatsMeter,
+    main,
     parse_watts,
 )
 from tests.recognition.damaged_clips import write_clip
@@ -123,3 +125,18 @@ def test_power_is_summed_over_time(tmp_path: Path) -> None:
         while meter.read_joules() == 0:
             clock.sleep(0.01)
         assert 0 < meter.read_joules() <= 5.12 * (clock.monotonic() - began + 1)
+
+
+@pytest.mark.slow
+def test_the_cost_of_each_stage_is_one_object_and_a_table(
+    installed_models: None, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    clip = write_clip(tmp_path / "dive.mp4", frames=WARM_UP + 2)
+    language = str(samples_dir() / "osg-table-2.json")
+    main(["--language", language, "--source", str(clip)])
+    printed = capfd.readouterr()
+    profile = json.loads(printed.out)
+    assert profile["frames"] == 2
+    assert [stage["up_to"] for stage in profile["stages"]] == list(STAGES)
+    assert "+ recognition" in printed.err
+    assert f"2 frames, {profile['takes']} take" in " ".join(printed.err.split())
