@@ -16,6 +16,7 @@ from app.recognition.health.check import check_health
 from app.recognition.health.choice import describe_people, measure_confusions
 from app.recognition.health.forecast import Outcome
 from app.recognition.health.report import GestureHealth, HealthReport, LimitHealth
+from app.recognition.health.verdict import Verdict
 from app.resources import known_signs_file
 
 HAS_ERRORS = 1
@@ -48,11 +49,13 @@ def check(
             progress=lambda stage, done, total: advance(done, total or None, stage),
             known_signs=Language.load(known_signs_file()),
         )
+    verdict = Verdict.of(report.errors, language.labels)
     if as_json:
-        told = report.to_dict() | ({} if vehicle is None else {"vehicle": faults})
+        told = report.to_dict() | {"verdict": verdict.to_dict()}
+        told |= {} if vehicle is None else {"vehicle": faults}
         typer.echo(json.dumps(told, allow_nan=False))
     else:
-        typer.echo(format_report(report), nl=False)
+        typer.echo(format_report(report, verdict), nl=False)
         for fault in faults:
             typer.echo(f"error: vehicle table: {fault}")
     if faults or not report.ok:
@@ -99,10 +102,10 @@ COUNTING: Final = ("direction", "tempo", "hand_shape")
 """Properties that may count beside the figure, as in the answer's `counts`."""
 
 
-def format_report(report: HealthReport) -> str:
+def format_report(report: HealthReport, verdict: Verdict) -> str:
     """Format the report as text with a trailing line break."""
     lines = [
-        *_format_head(report),
+        *_format_head(report, verdict),
         *_format_trigger(report),
         *_format_limit(report.limit),
         *_format_gestures(report),
@@ -111,10 +114,8 @@ def format_report(report: HealthReport) -> str:
     return "\n".join([*lines, ""])
 
 
-def _format_head(report: HealthReport) -> Iterator[str]:
-    errors = sum(finding.error for finding in report.findings)
-    counted = "1 error" if errors == 1 else f"{errors} errors"
-    result = "no errors" if report.ok else f"NOT READY, {counted}"
+def _format_head(report: HealthReport, verdict: Verdict) -> Iterator[str]:
+    result = verdict.words if report.ok else f"NOT READY, {verdict.words}"
     yield f"{report.language}, revision {report.revision}: {result}"
     yield from wrap(report.forecast.words, WIDTH)
     counts = {words: report.forecast.count(outcome) for outcome, words in OTHERWISE.items()}

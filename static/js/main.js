@@ -49,8 +49,6 @@ import { drawWelcome, showExample } from "./studio/welcome.js";
 import { drawCosts, drawWhy, loadWhy } from "./studio/why.js";
 import { followTheme, openWorkspace, restart, recover } from "./studio/workspace.js";
 import { forgetArrived } from "./clips/arrived-clips.js";
-import { isCurrent } from "./health/health-check.js";
-import { failingWords } from "./health/rates.js";
 import { acceptFiles, drawUploads, tellUnsent } from "./upload/upload-list.js";
 
 /** @import { State } from "./core/types.d.ts" */
@@ -190,7 +188,7 @@ async function start() {
   acceptFiles();
   findClips();
   bindPicker();
-  bindExport({ isCurrent, failingWords });
+  bindExport();
   stageButtons();
   followTheme();
   drawEverything();

@@ -8,12 +8,18 @@ import pytest
 from app.cli.check import format_report
 from app.recognition import Gesture, Language
 from app.recognition.health.check import check_health
+from app.recognition.health.verdict import Verdict
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase
 from tests.command_line import OsgStudio
 from tests.posed import posed_language
 from tests.recognition.demonstrations import pool, shown_by
 from tests.recognition.strategies import circle, line
+
+
+def told_of(language: Language) -> str:
+    report = check_health(language)
+    return format_report(report, Verdict.of(report.errors, language.labels))
 
 
 @pytest.fixture
@@ -39,7 +45,7 @@ def test_a_language_with_nothing_below_the_bar_ends_with_zero(
     Language("pool", [picture]).save(file)
     ended = osg_studio("check", file)
     assert ended.code == 0
-    assert ended.out.splitlines()[0] == "pool, revision 1: no errors"
+    assert ended.out.splitlines()[0] == "pool, revision 1: no errors, old untested"
     assert "came without its demonstration" in ended.out
 
 
@@ -82,7 +88,7 @@ def test_a_file_that_is_no_language_is_bad_input(osg_studio: OsgStudio, tmp_path
 
 
 def test_columns_are_aligned_and_fit_a_terminal() -> None:
-    text = format_report(check_health(pool(circle=circle, line=line)))
+    text = told_of(pool(circle=circle, line=line))
     lines = text.splitlines()
     head = next(index for index, row in enumerate(lines) if row.startswith("gesture"))
     starts = {row.index("right_wrist") for row in lines[head + 1 : head + 3]}
@@ -91,28 +97,28 @@ def test_columns_are_aligned_and_fit_a_terminal() -> None:
 
 
 def test_the_rates_of_an_arm_trigger_are_told_above_the_gestures() -> None:
-    lines = format_report(check_health(posed_language())).splitlines()
+    lines = told_of(posed_language()).splitlines()
     assert "takes lie between two poses of the arms (left hand before the body)" in lines
     (rates,) = (line for line in lines if line.startswith("trigger: missed of 0% (0%-"))
     assert len(rates) <= 100
 
 
 def test_what_others_will_reach_stands_first_or_who_must_be_asked() -> None:
-    lines = format_report(check_health(shown_by(("Ann", "Bo", "Cy")))).splitlines()
+    lines = told_of(shown_by(("Ann", "Bo", "Cy"))).splitlines()
     assert lines[1].startswith("Other people's demonstrations are read right in ")
     assert ", n 12). The last person raised the" in lines[1]
     assert lines[3].startswith("asked back with the right one ")
-    alone = format_report(check_health(pool(circle=circle))).splitlines()
+    alone = told_of(pool(circle=circle)).splitlines()
     assert "nothing can be foretold" in alone[1]
     assert alone[2].endswith("Ask two more people to show it, and name the divers.")
 
 
 def test_the_limit_is_one_line_with_both_costs_or_says_that_one_person_has_shown_it() -> None:
-    lines = format_report(check_health(shown_by(("Ann", "Bo", "Cy")))).splitlines()
+    lines = told_of(shown_by(("Ann", "Bo", "Cy"))).splitlines()
     (costs,) = (line for line in lines if line.startswith("limit"))
     assert costs.startswith("limit of 3 people, dial 5%: refuses 8% (1%-35%, n 12) of right takes")
     assert costs.endswith("accepts 0% (0%-24%, n 12) of missing gestures")
-    alone = format_report(check_health(pool(circle=circle))).splitlines()
+    alone = told_of(pool(circle=circle)).splitlines()
     assert "limit: a cautious constant, because one person has shown this language" in alone
 
 

@@ -19,6 +19,7 @@ from app.api.services.stored_recognitions import read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
+from app.recognition.health.verdict import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range
 
 SAME_TAKE = 0.5
@@ -153,6 +154,12 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
     )
 
 
+def list_tested(studio: Studio, state: store.LanguageState) -> list[TestedGesture]:
+    """Return what the test set has shown of each gesture of a language."""
+    found = view_test_set(studio, state).gestures
+    return [TestedGesture(each.label, each.right, each.asked) for each in found]
+
+
 def _request_for(studio: Studio, take: store.LabelledTake, without: LeftOut) -> TakeToRecognize:
     recording, clip = studio.recording_file(take.clip_id).path, studio.clips.get(take.clip_id).clip
     return TakeToRecognize(
@@ -274,8 +281,10 @@ class _OwnDemonstrations:
 
     def is_testable(self, take: store.LabelledTake) -> bool:
         """Return whether the take's gesture is known by another demonstration than the take."""
+        if take.expected not in self._language.labels:
+            return False
         own = sum(label == take.expected for label, _ in self.find(take))
-        return not own or own <= len(self._language.gesture(take.expected).further)
+        return own <= len(self._language.gesture(take.expected).further)
 
     def list_valid(self, tested: store.TestedTake) -> list[store.LabelledResult]:
         """Return the results of a testable take that its own demonstration has not read.

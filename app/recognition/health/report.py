@@ -150,9 +150,14 @@ class HealthReport:
     limit: LimitHealth | None = None
 
     @property
+    def errors(self) -> int:
+        """Number of errors."""
+        return sum(finding.error for finding in self.findings)
+
+    @property
     def ok(self) -> bool:
         """Whether there is no error."""
-        return not any(finding.error for finding in self.findings)
+        return not self.errors
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain JSON types."""

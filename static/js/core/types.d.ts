@@ -193,6 +193,7 @@ export interface GestureHealth extends Outcomes {
 
 export interface HealthReport {
   ok: boolean;
+  verdict: Verdict;
   forecast: Forecast;
   warnings: Finding[];
   gestures: GestureHealth[];
@@ -201,6 +202,15 @@ export interface HealthReport {
   trigger: TriggerRates | null;
   /** The limit and its costs; null in a language without movements. */
   limit: LimitCosts | null;
+}
+
+/** What the check and the test set say of a language together. */
+export interface Verdict {
+  ready: boolean;
+  words: string;
+  errors: number;
+  failing: { label: string; right: number; asked: number }[];
+  untested: string[];
 }
 
 /** The limit of a language, with its two costs; null where one person has shown the gestures. */

@@ -148,9 +148,6 @@ const slateLinks = (language) =>
     slateLink(language, "svg"),
   );
 
-/** @type {{ isCurrent: (found: State["health"]) => boolean, failingWords: (set: State["testSet"]) => string }} */
-let health;
-
 /**
  * What the health check says of the language, as the view Health does.
  *
@@ -164,15 +161,10 @@ function healthLine({ id, revision }) {
   };
   const link = h("button", { type: "button", className: "link", onclick: see }, "See health");
   const line = h("p", { className: "export-health", role: "status" }, words, " ", link);
-  const known =
-    health.isCurrent(state.health) && state.health?.status === "done" && state.health.report;
-  Promise.resolve(known || api.languages.check(id, revision)).then(
-    ({ warnings }) => {
-      const errors = warnings.filter(({ error }) => error).length;
-      const failing = health.failingWords(state.testSet);
-      line.classList.toggle("unwell", Boolean(errors || failing));
-      const found = [errors ? plural(errors, "error") : "", failing].filter(Boolean).join(", ");
-      words.textContent = `Health: ${found || "no errors"}.`;
+  api.languages.check(id, revision).then(
+    ({ verdict }) => {
+      line.classList.toggle("unwell", !verdict.ready);
+      words.textContent = `Health: ${verdict.words}.`;
     },
     () => {
       words.textContent = "Health could not be checked.";
@@ -244,13 +236,8 @@ export async function openExport() {
   dialog.showModal();
 }
 
-/**
- * Bind the button in the header; `judging` is how the view Health judges.
- *
- * @param {typeof health} judging
- */
-export function bindExport(judging) {
-  health = judging;
+/** Bind the button in the header. */
+export function bindExport() {
   byId("export").onclick = openExport;
 }
 

@@ -72,7 +72,8 @@ export const readingAt = (/** @type {string} */ clip, /** @type {number} */ numb
 /**
  * The rows of clips, in their order. A take of a gesture that the language has is a further
  * demonstration of it. A row is initially selected, unless its clip is already the source of a
- * gesture of the language, its label occurs in an earlier row, or the language reads it right.
+ * gesture of the language, its label occurs in an earlier row, the language reads it right, it is a
+ * take of the test set, or has no end. No other row's selection changes what the user decided.
  *
  * @param {Clip[]} clips
  * @param {Map<string, Take[]>} takes by clip, of those whose poses are found
@@ -85,7 +86,8 @@ export function rowsOf(clips, takes, language, edited, readings = new Map()) {
   const shown = demonstrated(language);
   const labels = language?.labels ?? [];
   const known = new Map(labels.map((label) => [withoutJoiners(label), label]));
-  const taken = new Set(); // by earlier rows
+  /** @type {Set<string>} */
+  const taken = new Set(); // labels of earlier rows that are initially selected
   return clips.flatMap((clip) => {
     const found = takes.get(clip.id) ?? null;
     const alone = !found || found.length < 2;
@@ -93,17 +95,36 @@ export function rowsOf(clips, takes, language, edited, readings = new Map()) {
       const key = alone ? clip.id : `${clip.id} ${number}`;
       const reading = readings.get(readingAt(clip.id, number));
       const written = edited.get(key);
-      const label = written?.label ?? proposedLabel(clip, labels, reading, alone ? null : number);
-      const compared = withoutJoiners(label.trim());
-      const { further, right, misread } = asFurther(known.get(compared), reading);
-      const wanted = further ? misread : !taken.has(compared);
-      const chosen = written?.chosen ?? (wanted && !shown.has(clip.id));
-      if (chosen && label && !further) taken.add(compared);
+      const proposal = proposedLabel(clip, labels, reading, alone ? null : number);
+      const label = written?.label ?? proposal;
+      const { further, right } = asFurther(known.get(nameOf(label)), reading);
+      const usual = !shown.has(clip.id) && isUsual(nameOf(proposal), take, known, taken, reading);
+      const chosen = written?.chosen ?? usual;
       const why = whyLeftOut(written, chosen);
       return { key, clip, takes: found, take, number, label, chosen, further, right, why };
     });
   });
 }
+
+/**
+ * Whether a take is selected unless the user decides; a new gesture then counts as taken.
+ *
+ * @param {string} proposed its proposed label
+ * @param {Take | null} take
+ * @param {Map<string, string>} known labels of the language
+ * @param {Set<string>} taken
+ * @param {Pick<TakeRow, "label" | "expected"> | undefined} reading
+ */
+function isUsual(proposed, take, known, taken, reading) {
+  if (reading?.expected || take?.closed === false) return false;
+  const { further, misread } = asFurther(known.get(proposed), reading);
+  if (further) return misread;
+  const first = !taken.has(proposed);
+  if (proposed) taken.add(proposed);
+  return first;
+}
+
+const nameOf = (/** @type {string} */ label) => withoutJoiners(label.trim());
 
 /**
  * Why the last choice of the best has left a row out; empty while it is selected.
@@ -190,7 +211,7 @@ export function problemsOf(rows) {
   const seen = new Set();
   for (const { key, label, further } of chosen) {
     const text = label.trim();
-    const compared = withoutJoiners(text);
+    const compared = nameOf(label);
     if (!text) problems.set(key, "Name it.");
     else if (seen.has(compared)) problems.set(key, `Another row is called \u201c${text}\u201d.`);
     if (!further) seen.add(compared);

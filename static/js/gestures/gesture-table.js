@@ -6,6 +6,7 @@ import { olderClipsButton } from "../clips/older-clips.js";
 import { heldName } from "../clips/salutes.js";
 import { addedAt, posterOf, statusText } from "../clips/clip-store.js";
 import * as api from "../core/api.js";
+import { tabStore } from "../core/browser-store.js";
 import { byId, h, reconcile, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state } from "../core/state.js";
@@ -50,6 +51,7 @@ import {
  */
 
 const NEW = "";
+const KEPT = "gesture-table"; // what the user wrote and chose, until it is saved or cancelled
 const PROPOSED_NAME = "My gestures";
 const LONGEST_LABEL = 80;
 const MOST_READ = 100; // clips whose takes are read: some seconds
@@ -123,7 +125,14 @@ function change(key, values) {
   const { edited, refused } = onDisplay();
   edited.set(key, { ...edited.get(key), ...values });
   refused.delete(key);
+  remember();
   draw();
+}
+
+/** Keep what the user wrote and chose over a reload. */
+function remember() {
+  const { edited, name, target } = onDisplay();
+  tabStore.write(KEPT, { edited: [...edited], name: name.value, target });
 }
 
 /** @param {GestureRow} row */
@@ -259,6 +268,7 @@ function bestChoice() {
       const choice = await api.languages.choose(takes, shown.leaving.signal);
       for (const [key, values] of choiceOf(among, choice))
         shown.edited.set(key, { ...shown.edited.get(key), ...values });
+      remember();
       note.textContent = choice.people;
     } catch (error) {
       note.textContent = "";
@@ -339,6 +349,7 @@ async function save() {
   try {
     if (shown.target === NEW) await saveIntoNew(shown.name.value.trim(), drafts);
     else await saveInto(shown.target, drafts);
+    tabStore.set(KEPT, null);
     byId("dialog").close();
   } catch (error) {
     refuse(
@@ -356,12 +367,16 @@ async function save() {
 /** The choice of the language: one's own, or a new one. Samples stay as they are. */
 function languageChoice() {
   const own = state.languages.filter(({ sample }) => !sample);
+  const kept = tabStore.read(KEPT);
   const name = h("input", {
     type: "text",
     id: "table-name",
-    value: PROPOSED_NAME,
+    value: kept?.name ?? PROPOSED_NAME,
     autocomplete: "off",
-    oninput: draw,
+    oninput: () => {
+      remember();
+      draw();
+    },
   });
   limit(name, LONGEST_NAME);
   const nameRow = h(
@@ -376,10 +391,12 @@ function languageChoice() {
     own.map((each) => h("option", { value: each.id }, each.name)),
     h("option", { value: NEW }, "A new language"),
   );
-  select.value = own.find(({ id }) => id === state.language)?.id ?? NEW;
+  const first = own.find(({ id }) => id === (kept?.target ?? state.language));
+  select.value = kept?.target === NEW ? NEW : (first?.id ?? NEW);
   select.onchange = async () => {
     onDisplay().target = select.value;
     nameRow.hidden = select.value !== NEW;
+    remember();
     if (select.value !== NEW) await choose(select.value);
     draw();
     read();
@@ -391,13 +408,18 @@ function languageChoice() {
     h("div", { className: "field" }, h("label", { for: "table-language" }, "Save into"), select),
     nameRow,
   );
-  return { element, name, target: select.value };
+  return { element, name, target: select.value, edited: new Map(kept?.edited) };
+}
+
+function cancel() {
+  tabStore.set(KEPT, null);
+  byId("dialog").close();
 }
 
 /** Open the table with the clips of the library. */
 export function openGestureTable() {
   const dialog = byId("dialog");
-  const { element, name, target } = languageChoice();
+  const { element, name, target, edited } = languageChoice();
   const note = h("p", { className: "dim", role: "status" });
   const list = h("ul", { className: "gesture-rows", "aria-label": "Gestures to save" });
   const best = bestChoice();
@@ -409,7 +431,7 @@ export function openGestureTable() {
     save: button,
     name,
     target,
-    edited: new Map(),
+    edited,
     refused: new Map(),
     readings: new Map(),
     reads: "",
@@ -434,7 +456,7 @@ export function openGestureTable() {
       { className: "dialog-actions" },
       note,
       h("span", { className: "spacer" }),
-      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
+      h("button", { type: "button", onclick: cancel }, "Cancel"),
       button,
     ),
   );

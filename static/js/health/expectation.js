@@ -25,11 +25,14 @@ export function testWords(testSet) {
       ? ""
       : `, ${rateText({ rate, low, high })}`;
   const apart = untestable ? `, ${untestable} cannot be tested` : "";
-  const older = testSet.waiting
-    ? ` Not by revision ${testSet.revision}: ${plural(testSet.waiting, "take")}.`
-    : "";
+  const unread = testSet.takes.filter(({ testable, result }) => testable && !result).length;
+  const older = testSet.waiting - unread;
+  const notes = [
+    unread ? ` Not read yet: ${plural(unread, "take")}.` : "",
+    older ? ` Not by revision ${testSet.revision}: ${plural(older, "take")}.` : "",
+  ].join("");
   const all = asked + untestable;
-  return `Of the test set ${right} of ${all} takes are read right${share}${apart}.${older}`;
+  return `Of the test set ${right} of ${all} takes are read right${share}${apart}.${notes}`;
 }
 
 /**

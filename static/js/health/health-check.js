@@ -58,6 +58,17 @@ export function keepChecked({ view, gestures, health }) {
     check();
 }
 
+/**
+ * Take the verdict after a change of the test set; the server keeps the check itself.
+ *
+ * @param {State} state
+ */
+export async function judgeAgain({ view, health }) {
+  if (view !== "health" || !health || !isCurrent(health) || health.status !== "done") return;
+  const report = await api.languages.check(health.id, health.revision).catch(() => null);
+  if (report && state.health === health) update({ health: { ...health, report } });
+}
+
 /** Cancel the check that runs. */
 export const cancel = () =>
   state.health && api.languages.cancelCheck(state.health.id, state.health.revision);

@@ -13,11 +13,11 @@ import { expectation } from "./expectation.js";
 import { compare } from "./finding-links.js";
 import { findingsList } from "./findings-list.js";
 import { gestureTable } from "./gesture-table.js";
-import { cancel, check, isCurrent, keepChecked } from "./health-check.js";
+import { cancel, check, isCurrent, judgeAgain, keepChecked } from "./health-check.js";
 import { loadInvitations } from "./invitations.js";
 import { languageMap, narrow } from "./language-map.js";
 import { showPair } from "./pair-page.js";
-import { failingWords, percent } from "./rates.js";
+import { percent } from "./rates.js";
 import { addTestClips, workOff } from "./test-set-clips.js";
 import { batchSection } from "./test-set-section.js";
 
@@ -41,20 +41,14 @@ const imageOf = (label) =>
   );
 
 /**
- * The check in a few words: its errors, and the gestures that the test set shows to fail.
+ * What the check and the test set say of the language, in a few words.
  *
  * @param {HealthReport} report
- * @param {TestSet | null} testSet
  */
-function verdict({ ok, warnings: findings }, testSet) {
-  const errors = findings.filter((finding) => finding.error).length;
+function verdict({ warnings: findings, verdict: { ready, words, errors } }) {
   const notes = findings.length - errors;
-  const failing = failingWords(testSet);
-  const well = ok && !failing;
-  return html`<p class="verdict ${well ? "well" : "unwell"}" role="status">
-    <span class="mark" aria-hidden="true">${well ? "\u2713" : "!"}</span>${
-      errors || !failing ? html`<b>${ok ? "No errors" : plural(errors, "error")}</b>` : nothing
-    }${failing && html`<b title="Of the test set read right">${failing}</b>`}${
+  return html`<p class="verdict ${ready ? "well" : "unwell"}" role="status">
+    <span class="mark" aria-hidden="true">${ready ? "\u2713" : "!"}</span><b>${words}</b>${
       notes ? html`<span class="dim">${plural(notes, "note")}</span>` : nothing
     }
   </p>`;
@@ -213,16 +207,15 @@ function showTest() {
 /**
  * @param {State} state
  * @param {HealthReport | null} report
- * @param {TestSet | null} testSet
  */
-function head({ gestures, health }, report, testSet) {
+function head({ gestures, health }, report) {
   const says = report && isCurrent(health) && health?.status === "done";
   return html`<div class="health-head">
     <div>
       <h1>${gestures ? `Health of ${gestures.name}` : "Health"}</h1>
       <small class="dim">${report && `Revision ${health?.shown}${triggerText(report)}`}</small>
     </div>
-    <div class="verdict-place">${says ? verdict(report, testSet) : nothing}</div>
+    <div class="verdict-place">${says ? verdict(report) : nothing}</div>
     <button type="button" @click=${showTest}>Test with clips</button>
   </div>`;
 }
@@ -241,7 +234,7 @@ function overview(state) {
   const body = gestures?.gestures.length
     ? guard([report, testSet, gestures, unfolded], parts)
     : loaded && empty();
-  return html`${head(state, report, testSet)}
+  return html`${head(state, report)}
     <div>${progress(state)}</div>
     ${expectation(state, report, testSet)}
     <div class="report ${stale}">${body || nothing}</div>
@@ -265,6 +258,7 @@ export function open(root) {
   takeFilesIn("health", addTestClips);
   follow(["pending", "clips", "gestures"], workOff);
   follow(["view", "gestures", "returns"], keepChecked);
+  follow(["testSet"], judgeAgain);
   follow(["view", "gestures", "clips", "health"], loadInvitations);
   follow(ALL, () => state.view === "health" && render(overview(state), all));
   follow(["pair", "gestures"], ({ pair, gestures }) => {

@@ -1,6 +1,6 @@
 // Rates as text.
 
-/** @import { LimitCosts, Rate, Replacement, TestSet } from "../core/types.d.ts" */
+/** @import { LimitCosts, Rate, Replacement } from "../core/types.d.ts" */
 
 /**
  * A rate in per cent, rounded half to even, as in the texts of the findings. A rate
@@ -61,14 +61,4 @@ export function effectText({ before, after, alike }) {
   const pairs = alike.map(({ gestures }) => gestures.join(" and ")).join(", ");
   const still = pairs && ` Nearly alike: ${pairs}.`;
   return `Not read right: ${percent(after)}\u00a0%, now ${percent(before)}\u00a0%.${still}`;
-}
-
-/**
- * The gestures of which the test set reads less than half right, as words; empty: none.
- *
- * @param {TestSet | null} testSet
- */
-export function failingWords(testSet) {
-  const failing = (testSet?.gestures ?? []).filter(({ right, asked }) => 2 * right < asked);
-  return failing.map(({ label, right, asked }) => `${label} ${right} of ${asked}`).join(", ");
 }

@@ -163,7 +163,10 @@ function notesOf({ fault, demonstration, pair, expected, label, nearest }) {
  */
 function outcomeOf(take) {
   if (!take.testable)
-    return html`<span class="dim">cannot be tested: the only demonstration</span>`;
+    return html`<span class="dim"
+      >cannot be tested:
+      ${take.demonstration ? "the only demonstration" : "the language lacks it"}</span
+    >`;
   if (!take.known) return html`<span class="dim">not recognised yet</span>`;
   const { pair, change } = take;
   const extra = notesOf(take).join(", ");

@@ -2,7 +2,6 @@
 // first report on a revision takes the server seconds.
 
 import * as api from "../core/api.js";
-import { plural } from "../core/format.js";
 
 /** @import { HealthReport, LanguageSummary } from "../core/types.d.ts" */
 
@@ -38,16 +37,11 @@ function promise(line) {
  */
 function write(line, report) {
   if (!report) return;
-  const { warnings: findings } = report;
+  const { verdict, warnings: findings } = report;
   line.hidden = false;
-  line.className = `health ${report.ok ? "well" : "unwell"}`;
-  const errors = findings.filter((finding) => finding.error);
-  if (errors.length)
-    line.textContent = `${plural(errors.length, "health error")}: ${errors[0].message}`;
-  else
-    line.textContent = findings.length
-      ? `No errors, ${plural(findings.length, "note")}`
-      : "No errors";
+  line.className = `health ${verdict.ready ? "well" : "unwell"}`;
+  const first = findings.find((finding) => finding.error);
+  line.textContent = verdict.words + (first ? `: ${first.message}` : "");
   line.title = findings.map((finding) => finding.message).join("\n");
 }
 

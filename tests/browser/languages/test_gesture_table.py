@@ -147,6 +147,11 @@ def test_takes_of_known_gestures_become_further_demonstrations_where_they_are_mi
     expect(row["circle t2"]).to_contain_text("It is read as \u201ccircle\u201d already.")
     expect(row["circle t2"].get_by_role("checkbox")).not_to_be_checked()
     expect(row["IMG_2222"].get_by_role("textbox")).to_have_value("line")
+    expect(row["IMG_2222"].get_by_role("checkbox")).not_to_be_checked()  # It is in the test set.
+    row["IMG_2222"].get_by_role("checkbox").check()
+    page.reload()
+    dialog = open_table(page)
+    expect(row["IMG_2222"].get_by_role("checkbox")).to_be_checked()
     assert faults(page) == []
     for each in dialog.get_by_role("listitem").all():
         text = each.inner_text()

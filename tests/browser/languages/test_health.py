@@ -451,7 +451,7 @@ def test_one_of_two_alike_gestures_gets_another_movement_and_undo_takes_it_back(
         cards.first.click()
         expect(dialog).to_be_hidden()
         expect(page.get_by_text("frame has another movement")).to_be_visible()
-        expect(page.locator(".verdict")).to_contain_text("No errors")
+        expect(page.locator(".verdict")).to_contain_text("no errors")
         expect(same).to_be_hidden()
         changed = client.get(f"/api/v1/languages/{language}").json()
         assert changed["labels"] == ["box", "frame", "line"]

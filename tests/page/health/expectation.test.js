@@ -3,7 +3,6 @@ import { test } from "node:test";
 
 import { forecastWords, testWords } from "../../../static/js/health/expectation.js";
 import { testedShare } from "../../../static/js/health/gesture-table.js";
-import { failingWords } from "../../../static/js/health/rates.js";
 
 const rate = (value) => ({ rate: value, low: value / 2, high: (1 + value) / 2, n: 12 });
 const share = {
@@ -54,14 +53,14 @@ test("a test set is told with its interval, and not before it has a recognised t
     "",
   );
   assert.equal(
-    testWords({ overall: share }),
+    testWords({ overall: share, takes: [] }),
     "Of the test set 3 of 4 takes are read right, 75 % (30 to 95).",
   );
 });
 
 test("a take that cannot be tested stays in the figure, which has no rate then", () => {
   assert.equal(
-    testWords({ overall: { ...share, untestable: 2 } }),
+    testWords({ overall: { ...share, untestable: 2 }, takes: [] }),
     "Of the test set 3 of 6 takes are read right, 2 cannot be tested.",
   );
 });
@@ -73,19 +72,11 @@ test("a gesture has the share of its own takes in the test set", () => {
   assert.equal(testedShare(null, "circle"), null);
 });
 
-test("a figure of an older revision says so", () => {
-  assert.match(
-    testWords({ overall: share, waiting: 4, revision: 22 }),
-    /Not by revision 22: 4 takes\.$/,
-  );
-});
-
-test("a gesture that the test set shows to fail is a finding", () => {
-  const gestures = [
-    { label: "square", right: 1, asked: 5 },
-    { label: "circle", right: 3, asked: 5 },
-    { label: "line", right: 0, asked: 1 },
-  ];
-  assert.equal(failingWords({ gestures }), "square 1 of 5, line 0 of 1");
-  assert.equal(failingWords(null), "");
+test("a figure of an older revision says so, and so does one of a part of the takes", () => {
+  const waiting = (takes) => testWords({ overall: share, waiting: 4, revision: 22, takes });
+  assert.match(waiting([]), /Not by revision 22: 4 takes\.$/);
+  const unread = { testable: true, result: null };
+  const lone = { testable: false, result: null };
+  const words = waiting([unread, unread, unread, lone]);
+  assert.match(words, / Not read yet: 3 takes\. Not by revision 22: 1 take\.$/);
 });

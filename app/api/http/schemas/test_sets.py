@@ -64,7 +64,7 @@ class LabelledTakeView(View):
     demonstration: bool
     """It is a demonstration of the language, which reads it without that demonstration."""
     testable: bool
-    """Whether its gesture has another demonstration; null results otherwise."""
+    """Whether the language has another demonstration of its gesture; null results otherwise."""
     result: LabelledResultView | None
     """The newest; null: none yet."""
     before: LabelledResultView | None
@@ -82,7 +82,7 @@ class RateView(View):
     pairs_right: int
     """Of these, those with the right gesture in the pair."""
     untestable: int
-    """Takes beside these that are the only demonstration of their gesture."""
+    """Takes beside these: the language has no other demonstration of their gesture."""
     rate: float | None
     low: float | None
     high: float | None

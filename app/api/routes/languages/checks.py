@@ -20,12 +20,14 @@ from app.api.services.demonstration_faults import faults_of_language
 from app.api.services.demonstration_sources import find_sources
 from app.api.services.known_takes import list_known, load_known
 from app.api.services.running_studio import Studio
+from app.api.services.test_sets import list_tested
 from app.api.workers.tasks import Check
 from app.api.workers.worker_messages import Failed, Finished
 from app.recognition import Recognizer
 from app.recognition.explanation.blame import find_blame
 from app.recognition.explanation.context import KnownTakes
 from app.recognition.health.finding import Finding
+from app.recognition.health.verdict import Verdict
 from app.store import LanguageState
 
 CANCELLED = "the check was cancelled; ask again to start it anew"
@@ -49,15 +51,19 @@ async def check_language(
 ) -> Any:
     """Return what other people will reach with a language, and what is wrong with it.
 
+    Its `verdict` also tells what the test set has shown of the gestures.
+
     The first call for a revision takes seconds, further ones none. Its progress comes as `checks`
     among the events; `DELETE` cancels it, which is answered here by 409. It ends when everybody
     who asked for it has left.
     """
     studio, state = asked.studio, await run_in_threadpool(lambda: asked.state)
     faults = await run_in_threadpool(_find_faults, studio, state)
-    # Another version of the recogniser may give another report for the same revision, and clips
-    # come and go, with the faults that they show.
-    shown = hashlib.sha256(json.dumps(faults).encode()).hexdigest()[:16]
+    tested = await run_in_threadpool(list_tested, studio, state)
+    # Another version of the recogniser may give another report for the same revision; clips come
+    # and go, with the faults that they show, and so do takes of the test set.
+    seen = json.dumps([faults, [vars(each) for each in tested]])
+    shown = hashlib.sha256(seen.encode()).hexdigest()[:16]
     tag = f'"{state.revision.revision}-{__version__}-{shown}"'
     if tag in known:
         return Response(status_code=304, headers={"ETag": tag})
@@ -68,7 +74,9 @@ async def check_language(
         raise ProblemError(422, ended.code, ended.detail)
     report = ended.result
     warnings = [*faults, *report["warnings"]]
-    return report | {"ok": report["ok"] and not faults, "warnings": warnings}
+    errors = sum(warning["error"] for warning in warnings)
+    verdict = Verdict.of(errors, studio.language(state).labels, tested)
+    return report | {"ok": not errors, "warnings": warnings, "verdict": verdict.to_dict()}
 
 
 @router.delete("/{language_id}/check", status_code=204, responses=problem_responses(404))

@@ -82,7 +82,10 @@ def test_a_demonstration_unlike_the_takes_of_the_test_set_is_named(
     for shape in ("circle", "circle", "circle", "line", "line", "line"):
         take = {"clip_id": add_recorded_clip(studio, recording_of(shape)), "expected": shape}
         client.post(f"{place}/test-set", json={"takes": [take]}).raise_for_status()
+    client.post(f"{place}/test-set/run").raise_for_status()
     report = client.get(f"{place}/check", headers={"If-None-Match": tag}).json()
+    assert report["verdict"]["words"] == "1 error, circle 0 of 3"
+    assert report["verdict"]["ready"] is False
     faults = [each for each in report["warnings"] if each["kind"] == "demonstration_fault"]
     assert [each["gestures"] for each in faults] == [["circle"]]
     assert faults[0]["message"] == (
