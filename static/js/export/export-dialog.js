@@ -9,7 +9,7 @@ import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { tuningWords } from "../languages/language-tuning.js";
 
-/** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
+/** @import { ExportContents, ExportedFile, Language, State, HealthReport } from "../core/types.d.ts" */
 
 /** @type {Record<string, { title: string, text: string, suffix?: string, command: (file: string) => string }>} */
 const FORMATS = {
@@ -167,7 +167,7 @@ function healthLine({ id, revision }) {
   const known =
     health.isCurrent(state.health) && state.health?.status === "done" && state.health.report;
   Promise.resolve(known || api.languages.check(id, revision)).then(
-    ({ warnings }) => {
+    (/** @type {HealthReport} */ { warnings }) => {
       const errors = warnings.filter(({ error }) => error).length;
       const failing = health.failingWords(state.testSet);
       line.classList.toggle("unwell", Boolean(errors || failing));
