@@ -2,25 +2,39 @@ import assert from "node:assert/strict";
 import { readdir, readFile } from "node:fs/promises";
 import { test } from "node:test";
 
-const KEPT = new URL("../../static/vendor/lit-html/", import.meta.url);
-const PACKAGE = new URL("../../node_modules/lit-html/", import.meta.url);
+const VENDOR = new URL("../../static/vendor/", import.meta.url);
+const PACKAGES = new URL("../../node_modules/", import.meta.url);
 
-/** Node's build has the same code, but can be imported where there is no document. */
-const originOf = (file) => new URL(file.endsWith(".js") ? `node/${file}` : file, PACKAGE);
+/**
+ * Where each package publishes the files that the page keeps. Node's build of lit-html has the same
+ * code, but can be imported where there is no document.
+ */
+const ORIGINS = {
+  "lit-html": (file) => (file.endsWith(".js") ? `node/${file}` : file),
+  "openapi-fetch": (file) => (file === "LICENSE" ? file : `dist/${file}`),
+};
 
-const entries = await readdir(KEPT, { recursive: true, withFileTypes: true });
+const entries = await readdir(VENDOR, { recursive: true, withFileTypes: true });
 const files = entries
   .filter((entry) => entry.isFile())
-  .map(({ parentPath, name }) => `${parentPath}/${name}`.split("/static/vendor/lit-html/")[1])
+  .map(({ parentPath, name }) => `${parentPath}/${name}`.split("/static/vendor/")[1])
   .map((file) => file.replace(/^\/+/, ""));
 
-test("the kept lit-html is that of the locked package, byte for byte", async () => {
-  assert.ok(files.includes("lit-html.js") && files.includes("LICENSE"));
-  for (const file of files) {
-    const [kept, published] = await Promise.all([
-      readFile(new URL(file, KEPT)),
-      readFile(originOf(file)),
-    ]);
-    assert.ok(kept.equals(published), file);
-  }
+test("no library is kept that is not compared with its locked package", () => {
+  const kept = new Set(files.map((file) => file.split("/")[0]));
+  assert.deepEqual([...kept].sort(), Object.keys(ORIGINS));
 });
+
+for (const [library, originOf] of Object.entries(ORIGINS))
+  test(`the kept ${library} is that of the locked package, byte for byte`, async () => {
+    const kept = files.filter((file) => file.startsWith(`${library}/`));
+    assert.ok(kept.includes(`${library}/LICENSE`));
+    for (const file of kept) {
+      const origin = `${library}/${originOf(file.slice(library.length + 1))}`;
+      const [here, published] = await Promise.all([
+        readFile(new URL(file, VENDOR)),
+        readFile(new URL(origin, PACKAGES)),
+      ]);
+      assert.ok(here.equals(published), file);
+    }
+  });

@@ -1,6 +1,6 @@
 // The WebSocket of the live view: sends frames, receives poses and recognitions.
 
-import { openSocket } from "../core/api.js";
+import { openSocket } from "../core/server.js";
 
 /** @import { Handlers, Seen } from "./live-messages.d.ts" */
 

@@ -1,9 +1,46 @@
 // Types of the page's state and of the API's answers; the schemas come from its OpenAPI
 // description.
 
-import type { components } from "./api-schema.d.ts";
+import type {
+  HttpMethod,
+  MediaType,
+  PathsWithMethod,
+  RequiredKeysOf,
+  ResponseObjectMap,
+  SuccessResponse,
+} from "openapi-typescript-helpers";
+import type { MaybeOptionalInit, Middleware } from "../../vendor/openapi-fetch/index.d.mts";
+import type { components, paths } from "./api-schema.d.ts";
 
-type Schemas = components["schemas"];
+export type Schemas = components["schemas"];
+
+/** What the server answers has all that a request may leave out. */
+type Filled<T> = T extends object ? { [K in keyof T]-?: Filled<Exclude<T[K], undefined>> } : T;
+
+/**
+ * Send a request of a method to a path that the API has. As in openapi-fetch, but a failure is
+ * thrown, and a tuple of the answer stays one.
+ */
+type Send<M extends HttpMethod> = <
+  P extends PathsWithMethod<paths, M>,
+  Init extends MaybeOptionalInit<paths[P], M>,
+>(
+  path: P,
+  ...init: RequiredKeysOf<Init> extends never ? [Init?] : [Init]
+) => Promise<{
+  data: Filled<SuccessResponse<ResponseObjectMap<paths[P][M & keyof paths[P]]>, MediaType>>;
+  response: Response;
+}>;
+
+/** The HTTP API, as its OpenAPI description has it. */
+export interface Server {
+  GET: Send<"get">;
+  POST: Send<"post">;
+  PUT: Send<"put">;
+  PATCH: Send<"patch">;
+  DELETE: Send<"delete">;
+  use: (middleware: Middleware) => void;
+}
 
 export type Clip = Schemas["ClipView"];
 export type ClipAccepted = Schemas["ClipAccepted"];
@@ -17,27 +54,27 @@ export type SampleLanguage = Schemas["SampleLanguageView"];
 export type Session = Schemas["SessionView"];
 export type Quota = Schemas["QuotaView"];
 export type AuditEntry = Schemas["AuditView"];
-export type Language = Schemas["LanguageView"];
+export type Language = Filled<Schemas["LanguageView"]>;
 export type LanguageSummary = Schemas["LanguageSummary"];
-export type Gesture = Schemas["GestureView"];
+export type Gesture = Filled<Schemas["GestureView"]>;
 export type Revision = Schemas["RevisionView"];
-export type RevisionDiff = Schemas["RevisionComparison"];
-export type GestureDiff = Schemas["GestureComparison"];
+export type RevisionDiff = Filled<Schemas["RevisionComparison"]>;
+export type GestureDiff = Filled<Schemas["GestureComparison"]>;
 export type ExportContents = Schemas["ExportView"];
 export type ExportedFile = Schemas["ExportedFile"];
-export type Grammar = Schemas["GrammarEntry"];
-export type Phrase = Schemas["PhraseEntry"];
-export type GesturesPart = Schemas["GesturesEntry"];
-export type SlotPart = Schemas["SlotEntry"];
-export type GroupPart = Schemas["GroupEntry"];
-export type SlotType = Schemas["SlotTypeEntry"];
-export type SlotValue = Schemas["SlotValueEntry"];
+export type Grammar = Filled<Schemas["GrammarEntry"]>;
+export type Phrase = Filled<Schemas["PhraseEntry"]>;
+export type GesturesPart = Filled<Schemas["GesturesEntry"]>;
+export type SlotPart = Filled<Schemas["SlotEntry"]>;
+export type GroupPart = Filled<Schemas["GroupEntry"]>;
+export type SlotType = Filled<Schemas["SlotTypeEntry"]>;
+export type SlotValue = Filled<Schemas["SlotValueEntry"]>;
 export type PhrasesAnswer = Schemas["PhrasesView"];
 export type PhraseEvent = Schemas["PhraseEventView"];
 export type Preview = Schemas["PreviewView"];
 export type Keypoint = Schemas["KeypointView"];
 export type Descriptor = Schemas["DescriptorView"];
-export type Source = Schemas["SourceView"];
+export type Source = Filled<Schemas["SourceView"]>;
 export type DemonstrationFault = Schemas["DemonstrationFaultView"];
 export type Workspace = Schemas["OpenedWorkspace"];
 export type LanguageSettings = Schemas["SettingsView"];
@@ -50,7 +87,7 @@ export type InvitedGesture = Schemas["InvitedGestureView"];
 export type InvitedTake = Schemas["InvitedTakeView"];
 export type ReceivedTake = Schemas["ReceivedTakeView"];
 export type ReceivedTakeOutlook = Schemas["ReceivedTakeOutlook"];
-export type Demonstration = Schemas["DemonstrationView"];
+export type Demonstration = Filled<Schemas["DemonstrationView"]>;
 export type WorkspaceView = Schemas["ViewRequest"];
 export type WrittenSession = Schemas["WrittenSessionView"];
 export type TakeTable = Schemas["TakeTableView"];

@@ -116,6 +116,7 @@ export function save(language, gesture, values, saved) {
         (base) => api.languages.changeGesture(base, known, furtherOf(values)),
         { from: language },
       );
+    /** @type {any} */
     const body = {
       ...rest,
       ...clip,

@@ -2,7 +2,7 @@
 
 import * as api from "../core/api.js";
 
-/** @import { Outlook, Preview } from "../core/types.d.ts" */
+/** @import { Outlook, Preview, Schemas } from "../core/types.d.ts" */
 
 const SETTLED = 120; // ms without a change: dragging a slider makes many.
 
@@ -11,7 +11,7 @@ const SETTLED = 120; // ms without a change: dragging a slider makes many.
  * then `shown(preview, estimate)` with its estimated rates too; `failed(error)` if either fails.
  *
  * @param {{ shown: (preview: Preview, estimate: Outlook | null) => void, failed: (error: Error) => void }} answers
- * @returns {(language: string, body: object) => void}
+ * @returns {(language: string, body: Schemas["PreviewRequest"]) => void}
  */
 export function previewing({ shown, failed }) {
   let timer = 0;

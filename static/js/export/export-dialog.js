@@ -9,7 +9,7 @@ import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { tuningWords } from "../languages/language-tuning.js";
 
-/** @import { ExportContents, ExportedFile, Language, State } from "../core/types.d.ts" */
+/** @import { ExportContents, ExportedFile, Language, State, HealthReport } from "../core/types.d.ts" */
 
 /** @type {Record<string, { title: string, text: string, suffix?: string, command: (file: string) => string }>} */
 const FORMATS = {
@@ -162,7 +162,7 @@ function healthLine({ id, revision }) {
   const link = h("button", { type: "button", className: "link", onclick: see }, "See health");
   const line = h("p", { className: "export-health", role: "status" }, words, " ", link);
   api.languages.check(id, revision).then(
-    ({ verdict }) => {
+    (/** @type {HealthReport} */ { verdict }) => {
       line.classList.toggle("unwell", !verdict.ready);
       words.textContent = `Health: ${verdict.words}.`;
     },

@@ -224,7 +224,11 @@ export function openTakeTable() {
     start.hidden = true;
     close.textContent = "Cancel";
     try {
-      const table = await api.languages.takeTable(language.id, id, clips, leaving.signal);
+      const table = await api.languages.takeTable(
+        language.id,
+        { id, clip_ids: clips },
+        leaving.signal,
+      );
       content.replaceChildren(...resultOf(table));
     } catch (error) {
       start.hidden = false;

@@ -108,7 +108,7 @@ async function read() {
   const asked = table;
   const { signal } = asked.leaving;
   const found = await api.languages
-    .takeTable(language.id, uniqueId(), clips, signal)
+    .takeTable(language.id, { id: uniqueId(), clip_ids: clips }, signal)
     .catch(() => null);
   if (!found || asked.reads !== reads) return;
   asked.readings = new Map(

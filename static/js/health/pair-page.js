@@ -127,8 +127,9 @@ export async function showPair(box, imageOf) {
   );
   box.querySelector("h1")?.focus();
   if (!known) return undefined;
+  const [one, other] = labels;
   const found = await attempt("Comparing the gestures", () =>
-    api.languages.contrast(language.id, ...labels, language.revision),
+    api.languages.contrast(language.id, { one, other, revision: language.revision }),
   );
   if (!found || state.pair !== pair || call !== calls) return undefined;
   const words = sentences(labels, found);

@@ -1,6 +1,6 @@
 // What an invited person's page asks the server: the gestures to show, and what became of takes.
 
-import { ApiError, BASE, problemOf, unreachable } from "../core/api.js";
+import { ApiError, BASE, problemOf, unreachable } from "../core/server.js";
 
 /** @import { Invited, InvitedTake } from "../core/types.d.ts" */
 

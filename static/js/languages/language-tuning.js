@@ -7,8 +7,9 @@ import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { edit } from "./revision-edit.js";
 
-/** @import { Language, Recognition, State } from "../core/types.d.ts" */
+/** @import { Language, Recognition, Schemas, State } from "../core/types.d.ts" */
 
+/** @type {Schemas["LanguageChange"]} */
 const UNTUNED = { profile: "full", tuning: null };
 
 /**

@@ -1,6 +1,6 @@
 // Two revisions of a language side by side, gesture by gesture.
 
-import { beside } from "../core/api.js";
+import { beside } from "../core/server.js";
 import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 

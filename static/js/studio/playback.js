@@ -1,6 +1,6 @@
 // The playback clock of the workspace, shared by the 3D view, the timeline and the keys.
 
-import { openSocket } from "../core/api.js";
+import { openSocket } from "../core/server.js";
 import { state, update } from "../core/state.js";
 
 /** @import { Position } from "../core/types.d.ts" */

@@ -138,6 +138,7 @@ async function saveGesture() {
  * @param {object} extra
  */
 export async function recogniseWith(extra = {}) {
+  /** @type {any} */
   const body = {
     ...rangeOf(),
     language_id: state.language,

@@ -1,6 +1,6 @@
 // Resumable uploads (tus 1.0.0): they survive a lost connection, a reload and a server's restart.
 
-import { ApiError, BASE, isAway, problemOf, unreachable } from "../core/api.js";
+import { ApiError, BASE, isAway, problemOf, unreachable } from "../core/server.js";
 import { browserStore } from "../core/browser-store.js";
 
 /** @import { Stand } from "../core/types.d.ts" */

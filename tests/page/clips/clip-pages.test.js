@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import "../relative-requests.js";
 import {
   countAll,
   isListed,
@@ -52,8 +53,8 @@ test("a clip beyond those that are known without gaps is not listed, and counted
 
 test("older clips that are asked for while the list loads anew are not undone by it", async (t) => {
   const lists = gate();
-  t.mock.method(globalThis, "fetch", async (address) => {
-    const { searchParams } = new URL(address, "http://studio");
+  t.mock.method(globalThis, "fetch", async ({ url }) => {
+    const { searchParams } = new URL(url);
     const page = searchParams.get("after") ? [clip(1)] : searchParams.get("status") ? [] : [3, 2];
     const clips = page.map((each) => (typeof each === "number" ? clip(each) : each));
     const older = clips.length === 2 ? { Link: "<older>" } : {};
@@ -73,8 +74,8 @@ test("older clips that are asked for while the list loads anew are not undone by
 
 test("clips that are found while the list loads anew stay known, and at the next time too", async (t) => {
   const lists = gate();
-  t.mock.method(globalThis, "fetch", async (address) => {
-    const { searchParams } = new URL(address, "http://studio");
+  t.mock.method(globalThis, "fetch", async ({ url }) => {
+    const { searchParams } = new URL(url);
     const list = !["q", "id", "status"].some((name) => searchParams.has(name));
     if (list) await lists.pass();
     const clips = list

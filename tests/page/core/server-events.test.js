@@ -1,6 +1,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import "../relative-requests.js";
+
 /** A browser's event source, opened and broken by the test. */
 class Stream extends EventTarget {
   static all = [];

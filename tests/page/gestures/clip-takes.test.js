@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
+import "../relative-requests.js";
 import { update } from "../../../static/js/core/state.js";
 import {
   forgetFailures,
@@ -19,20 +20,23 @@ async function until(holds) {
 const clips = (prefix, count) =>
   Array.from({ length: count }, (_, number) => ({ id: `${prefix}${number}`, status: "done" }));
 
-/** Load the takes of the clips, as the open table does. */
-const load = ({ wanted = () => true, found = () => {} } = {}) => loadTakesOfClips(wanted, found);
-
-/** Let what has been answered have its effect. */
+/** Let what has been asked and answered have its effect. */
 async function settle() {
   for (let turn = 0; turn < 20; turn += 1) await new Promise(setImmediate);
+}
+
+/** Load the takes of the clips, as the open table does. */
+async function load({ wanted = () => true, found = () => {} } = {}) {
+  loadTakesOfClips(wanted, found);
+  await settle();
 }
 
 /** Answers that come one at a time. */
 function answers(t) {
   const waiting = [];
-  t.mock.method(globalThis, "fetch", async (address) => {
+  t.mock.method(globalThis, "fetch", async ({ url }) => {
     await new Promise((go) => waiting.push(go));
-    return Response.json([{ start: 1, clip: String(address) }]);
+    return Response.json([{ start: 1, clip: url }]);
   });
   return {
     waiting,
@@ -48,8 +52,7 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   update({ clips: [{ id: "queued", status: "queued" }, ...clips("a", 9)] });
   let drawn = 0;
   const draw = () => (drawn += 1);
-  load({ found: draw });
-  load({ found: draw });
+  await Promise.all([load({ found: draw }), load({ found: draw })]);
   assert.equal(waiting.length, 4);
   await one();
   assert.equal(waiting.length, 4);
@@ -57,7 +60,7 @@ test("the takes of many clips are asked for a few at a time", async (t) => {
   while (waiting.length) await one();
   assert.equal(takesByClip.size, 9);
   assert.equal(drawn, 9);
-  load();
+  await load();
   assert.equal(waiting.length, 0);
 });
 
@@ -66,10 +69,9 @@ test("what is on its way is not asked for again when the table is opened again",
   update({ clips: clips("c", 2) });
   const open = () => {
     forgetFailures();
-    load();
+    return load();
   };
-  open();
-  open();
+  await Promise.all([open(), open()]);
   assert.equal(waiting.length, 2);
   while (waiting.length) await one();
 });
@@ -79,31 +81,31 @@ test("no more are asked for once nobody wants them, and the rest at the next tim
   update({ clips: clips("b", 6) });
   let open = true;
   const wanted = () => open;
-  load({ wanted });
+  await load({ wanted });
   open = false;
   while (waiting.length) await one();
   assert.equal([...takesByClip.keys()].filter((id) => id.startsWith("b")).length, 4);
   open = true;
-  load({ wanted });
+  await load({ wanted });
   assert.equal(waiting.length, 2);
   while (waiting.length) await one();
 });
 
 test("a clip whose takes the server refuses does not hold up the others", async (t) => {
   const asked = [];
-  t.mock.method(globalThis, "fetch", async (address) => {
-    asked.push(String(address));
+  t.mock.method(globalThis, "fetch", async ({ url }) => {
+    asked.push(url);
     // Cancelled is the one error without a toast, which needs a page.
     if (asked.at(-1).includes("d1")) return Response.json({ code: "cancelled" }, { status: 409 });
     return Response.json([]);
   });
   update({ clips: clips("d", 6) });
-  load();
+  await load();
   await until(() => asked.length === 6);
-  load();
+  await load();
   assert.equal(asked.length, 6, "not again while the table is open");
   forgetFailures();
-  load();
+  await load();
   await until(() => asked.length === 7);
   assert.match(asked[6], /d1/);
   await settle();
@@ -112,16 +114,16 @@ test("a clip whose takes the server refuses does not hold up the others", async 
 test("without a server nothing more is asked for, and everything once it is back", async (t) => {
   const asked = [];
   let away = true;
-  t.mock.method(globalThis, "fetch", async (address) => {
-    asked.push(String(address));
+  t.mock.method(globalThis, "fetch", async ({ url }) => {
+    asked.push(url);
     if (away) throw new TypeError("fetch failed");
     return Response.json([]);
   });
   update({ clips: clips("e", 9) });
-  load();
+  await load();
   await settle();
   assert.equal(asked.length, 4);
   away = false;
-  load();
+  await load();
   await until(() => asked.length === 4 + 9);
 });
