@@ -14,6 +14,9 @@ from app.evaluation.proportion import Share
 Answer = str | tuple[str, str] | None
 """The label recognised, the pair that was asked back, or None when rejected."""
 
+NONE = "-"
+"""Label of takes that show none of the gestures: a refusal of them is right."""
+
 REFUSED = "(none)"
 """Heading of the column for queries without a label. A gesture with the same label would only be
 printed ambiguously, not counted so."""
@@ -48,7 +51,7 @@ class ConfusionMatrix:
         Parameters
         ----------
         labels
-            All labels that occur in `shown` or in `read`.
+            All labels that occur in `shown` or in `read`; a refusal of `NONE` is read as `NONE`.
         shown, read
             Label shown and answer of each query.
 
@@ -57,7 +60,8 @@ class ConfusionMatrix:
         counts = np.zeros((len(labels), len(labels) + 1), dtype=np.int64)
         pairs = np.zeros((len(labels), 2), dtype=np.int64)
         for truth, answer in zip(shown, read, strict=True):
-            column = position[answer] if isinstance(answer, str) else len(labels)
+            found = NONE if truth == NONE and answer is None else answer
+            column = position[found] if isinstance(found, str) else len(labels)
             counts[position[truth], column] += 1
             if isinstance(answer, tuple):
                 pairs[position[truth], int(truth not in answer)] += 1

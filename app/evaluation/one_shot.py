@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from app.evaluation.confusion import Answer, ConfusionMatrix
+from app.evaluation.confusion import NONE, Answer, ConfusionMatrix
 from app.evaluation.protocols import Progress, recognize_answer
 from app.recognition import (
     Gesture,
@@ -26,7 +26,7 @@ class LabelledTake:
     source
         Origin, for people.
     label
-        Gesture that is shown.
+        Gesture that is shown; `NONE` for none of the gestures.
     person
         Person who shows it; empty when unknown.
     poses
@@ -103,7 +103,7 @@ def one_shot(
         language = Language("one take a gesture", [gestures[index] for index in templates])
         recognizer = Recognizer(language, profile)
         for index, take in enumerate(takes):
-            if take.label in language.labels and index not in templates:
+            if take.label in (*language.labels, NONE) and index not in templates:
                 asked = same if take.person == person else others
                 asked.append((take.label, recognize_answer(recognizer, take.poses)))
         if progress is not None:
@@ -147,6 +147,8 @@ def _gestures(takes: Sequence[LabelledTake]) -> tuple[dict[int, Gesture], dict[s
     """Define a gesture from every take; return also the reasons of takes that cannot be one."""
     gestures, unusable = {}, {}
     for index, take in enumerate(takes):
+        if take.label == NONE:
+            continue
         try:
             gestures[index] = Gesture.from_demonstration(take.label, take.poses)
         except GestureError as error:

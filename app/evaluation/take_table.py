@@ -7,6 +7,7 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from app.evaluation.confusion import NONE
 from app.recognition import Recognition, Recognizer, Recording, Take
 from app.recognition.text.wording import join_words
 
@@ -31,7 +32,8 @@ COLUMNS: Final[dict[str, type]] = {
 """Columns in order. ``start`` and ``end`` are seconds of the clip; ``label`` is empty for a take
 that is rejected or lies between two gestures, which ``pair`` then has as "circle or square"; all
 values of a take are empty for a clip without takes; ``expected`` is empty if no test set has the
-take; ``faults`` are sentences separated by ``; ``."""
+take, and ``-`` where it shows none of the gestures; ``faults`` are sentences separated by
+``; ``."""
 
 NO_TAKE: Final = "no take found"
 
@@ -116,6 +118,8 @@ def _to_cell(value: Any) -> str:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
-    # A spreadsheet would run a text with this beginning as a formula.
+    # A spreadsheet would run a text with this beginning as a formula, but not a lone minus.
     text = str(value)
+    if text == NONE:
+        return text
     return f"'{text}" if isinstance(value, str) and text[:1] in ("=", "+", "-", "@") else text

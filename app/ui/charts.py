@@ -18,6 +18,9 @@ from app.recognition.text.wording import humanize
 MAX_COLUMNS = 40
 """Gestures shown in the vote table; farther gestures of a larger language explain nothing."""
 
+NONE_OF_THESE = "none of these"
+"""Name of an expectation of none of the gestures."""
+
 MAX_CHART_POINTS = 400
 """Points per curve: more than the chart has pixels would only make the page slow."""
 
@@ -35,7 +38,8 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
         text = f"Between two: {one} or {other}?"
     elif label is None:
         badge, kind = "?", "expected"
-        text = f"Not recognised. Nearest is <b>{escape(recognition.nearest)}</b>"
+        told = ", as expected" if expected == "" else ""
+        text = f"Not recognised{told}. Nearest is <b>{escape(recognition.nearest)}</b>"
     elif expected is None:
         badge, kind = "\N{BULLET}", "chosen"
         text = f"Recognised as <b class='chosen'>{escape(label)}</b>"
@@ -46,7 +50,7 @@ def verdict(recognition: Recognition, expected: str | None) -> str:
         badge, kind = "\N{NOT EQUAL TO}", "expected"
         text = (
             f"Taken for <b class='chosen'>{escape(label)}</b>, "
-            f"expected <b class='expected'>{escape(expected)}</b>"
+            f"expected <b class='expected'>{escape(expected or NONE_OF_THESE)}</b>"
         )
     return _block(
         f"<div class='card verdict' role='status'><span class='badge {kind}' aria-hidden='true'>"

@@ -61,7 +61,7 @@ class WorkspaceView:
     recognition
         Recognition of the range; None before it is recognised.
     expected
-        The expected label, if known.
+        The expected label, if known; empty: none of the gestures.
     language
         The revision used for the recognition, for its gestures' images.
     salient
@@ -374,7 +374,7 @@ def compared_images(
     captions = {nearest: f"{nearest} ({role})"}
     if expected == nearest:
         captions = {nearest: f"{nearest} ({role} and expected)"}
-    elif expected is not None:
+    elif expected:
         captions = {expected: f"{expected} (expected)", **captions}
     shown = [(caption, known[label]) for label, caption in captions.items() if label in known]
     sets = dict.fromkeys(gesture.salient for _, gesture in shown)

@@ -6,8 +6,9 @@ from itertools import permutations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.evaluation.confusion import REFUSED, Answer, ConfusionMatrix
+from app.evaluation.confusion import NONE, REFUSED, Answer, ConfusionMatrix
 from app.evaluation.confusion_chart import confusion_svg
+from app.evaluation.proportion import Share
 
 LABELS = ("circle", "wedge", "<three & more>")
 pairs = st.lists(
@@ -50,6 +51,14 @@ def test_a_pair_is_neither_right_nor_rejected_nor_a_wrong_label(
     assert sum(parts) == len(answers)
     rows = [[shown for shown, _ in asked].count(label) for label in LABELS]
     assert [sum(row) for row in matrix.to_dict()["pairs"]] == rows
+
+
+def test_a_refusal_of_what_shows_none_of_the_gestures_is_right() -> None:
+    shown = [NONE, NONE, NONE, "circle"]
+    read: list[Answer] = [None, "circle", ("circle", "line"), "circle"]
+    matrix = ConfusionMatrix.of(["circle", "line", NONE], shown, read)
+    assert matrix.correct == Share(2, 4)
+    assert (matrix.refused.correct, matrix.asked_back) == (0, Share(0, 1))
 
 
 def test_text_has_a_row_for_each_gesture_and_a_column_for_refusals_only_where_there_are_any() -> (

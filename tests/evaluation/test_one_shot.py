@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.evaluation.confusion import NONE
 from app.evaluation.one_shot import LabelledTake, OneShot, one_shot, recognize_takes
 from app.recognition import Gesture, Language, OsgError
 from tests.evaluation.takes import drawn_takes
@@ -60,6 +61,16 @@ def test_a_take_that_cannot_be_a_demonstration_is_named_and_still_asked_for(
     assert list(result.unusable) == ["still.mp4"]
     assert "nothing moves" in result.unusable["still.mp4"]
     assert result.other_people.refused.correct == 2  # by each language of the other person
+
+
+def test_takes_of_none_of_the_gestures_are_asked_for_and_demonstrate_nothing(
+    swipes: list[LabelledTake],
+) -> None:
+    others = [replace(take, label=NONE) for take in swipes if take.label == "up"]
+    result = one_shot([*others, *(take for take in swipes if take.label != "up")], profile="full")
+    row = result.other_people.labels.index(NONE)
+    asked = result.same_person.counts[row].sum() + result.other_people.counts[row].sum()
+    assert asked == result.languages * len(others)
 
 
 def test_one_gesture_alone_cannot_be_confused_with_anything(swipes: list[LabelledTake]) -> None:

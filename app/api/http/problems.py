@@ -280,9 +280,10 @@ def _convert_invalid_request(error: RequestValidationError) -> ProblemError:
 def _fault(item: Mapping[str, Any]) -> Fault:
     """Convert one of pydantic's errors, without the input, which may be anything."""
     place, *steps = item["loc"]
+    told = item["msg"].removeprefix("Value error, ")
     if place != "body":
         name = str(steps[0]) if steps else str(place)
-        return Fault(pointer="", detail=item["msg"], parameter=name)
+        return Fault(pointer="", detail=told, parameter=name)
     if item["type"] == "json_invalid":
         return Fault(pointer="", detail=f"not JSON: {item['ctx']['error']}")
-    return Fault(pointer=build_pointer(*list_document_steps(tuple(steps))), detail=item["msg"])
+    return Fault(pointer=build_pointer(*list_document_steps(tuple(steps))), detail=told)

@@ -58,7 +58,7 @@ def recognize_range(
         start=meant.start,
         end=meant.end,
         profile=profile,
-        expected=wanted.expected,
+        expected=wanted.stored,
         result=json.dumps(answer, allow_nan=False),
     )
     return studio.keep_within(quota, lambda: studio.recognitions.add(record, quota))

@@ -14,6 +14,7 @@ from app.api.services.clip_takes import find_takes
 from app.api.services.running_studio import Studio
 from app.api.services.stored_recognitions import require_landmarks_of
 from app.api.workers.worker_messages import Progress
+from app.evaluation.confusion import NONE
 from app.evaluation.take_table import Row, row_of_fault, rows_of_clip
 from app.recognition import OsgError, Recognition, Take
 from app.recognition.recording.clip_range import SAME_MOMENT, find_unseen_in
@@ -130,7 +131,7 @@ def _find_expected(
         if tested.take.clip_id == clip.id
     ]
     return {
-        number: known.expected
+        number: known.expected or NONE
         for number, take in enumerate(takes, start=1)
         for known in labelled
         if _is_same(take, known)

@@ -10,6 +10,7 @@ from typing import Any
 from app import __version__, store
 from app.api.http.problems import ProblemError, problem_of
 from app.api.http.schemas import test_sets as schemas
+from app.api.http.schemas.values import NONE_EXPECTED
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
@@ -53,7 +54,7 @@ def add_labelled(
             clip_id=draft.clip_id,
             start=start,
             end=end,
-            expected=draft.expected,
+            expected=draft.stored,
             added_by=sender,
         )
         for draft in drafts
@@ -127,8 +128,11 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
     takes = [_view(tested, own) for tested in studio.labelled.of(state.record.id)]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     labels = dict.fromkeys(
-        take.expected for take in takes if take.result is not None or not take.testable
+        take.expected
+        for take in takes
+        if take.expected is not None and (take.result is not None or not take.testable)
     )
+    of_none = [result for take, result in counted if take.expected_none]
     gestures = [
         schemas.GestureRateView(
             label=label, **_rate([each for each in takes if each.expected == label])
@@ -143,6 +147,11 @@ def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSet
         takes=takes,
         overall=schemas.RateView(**_rate(takes)),
         gestures=sorted(gestures, key=lambda each: each.rate or 0.0),
+        none=schemas.NoneRateView(
+            refused=sum(result.right for result in of_none),
+            asked_back=sum(result.pair is not None for result in of_none),
+            answered=sum(result.label is not None for result in of_none),
+        ),
         better=[each for each, gain in gains.items() if gain > 0],
         worse=[each for each, gain in gains.items() if gain < 0],
         upgraded=_were_upgraded(studio, [(before, now) for _, now, before in compared]),
@@ -220,8 +229,12 @@ def _ranges(
 
 
 def _worth(take: schemas.LabelledTakeView, result: schemas.LabelledResultView) -> int:
-    """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer."""
-    return 2 * result.right or int(take.expected in (result.pair or ()))
+    """Return 2 for a right answer, 1 for a pair with the right gesture, 0 for any other answer.
+
+    Where no gesture is right, any pair is better than a label.
+    """
+    asked_back = result.pair is not None and (take.expected_none or take.expected in result.pair)
+    return 2 * result.right or int(asked_back)
 
 
 def _were_upgraded(
@@ -250,7 +263,7 @@ def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
         "right": share.correct,
         "asked": share.asked,
         "pairs": sum(result.pair is not None for _, result in counted),
-        "pairs_right": sum(_worth(take, result) == 1 for take, result in counted),
+        "pairs_right": sum(take.expected in (result.pair or ()) for take, result in counted),
         "untestable": sum(not take.testable for take in takes),
         "rate": share.value,
         "low": low,
@@ -280,7 +293,12 @@ class _OwnDemonstrations:
         )
 
     def is_testable(self, take: store.LabelledTake) -> bool:
-        """Return whether the take's gesture is known by another demonstration than the take."""
+        """Return whether the take's gesture is known by another demonstration than the take.
+
+        A take that shows none of the gestures needs none.
+        """
+        if take.expected == NONE_EXPECTED:
+            return True
         if take.expected not in self._language.labels:
             return False
         own = sum(label == take.expected for label, _ in self.find(take))
@@ -305,13 +323,19 @@ class _OwnDemonstrations:
         return record is None or WITHOUT in json.loads(record.result)
 
 
+def _is_right(take: store.LabelledTake, result: store.LabelledResult) -> bool:
+    if take.expected == NONE_EXPECTED:
+        return result.label is None and result.pair is None and result.fault is None
+    return result.label == take.expected
+
+
 def _view(tested: store.TestedTake, own: _OwnDemonstrations) -> schemas.LabelledTakeView:
     take = tested.take
     results = [
         schemas.LabelledResultView(
             **result.model_dump(exclude={"take_id", "created", "pair"}),
             pair=read_pair(result.pair),
-            right=result.label == take.expected,
+            right=_is_right(take, result),
         )
         for result in own.list_valid(tested)
     ]

@@ -2625,17 +2625,29 @@ export interface components {
          */
         LabelledTakeChange: {
             /** Expected */
-            expected: string;
+            expected?: string | null;
+            /**
+             * Expected None
+             * @description Whether none of the gestures is expected, in place of a label.
+             * @default false
+             */
+            expected_none?: boolean;
         };
         /**
          * LabelledTakeDraft
          * @description A clip, or a range of it, with the gesture that it shows.
          */
         LabelledTakeDraft: {
+            /** Expected */
+            expected?: string | null;
+            /**
+             * Expected None
+             * @description Whether none of the gestures is expected, in place of a label.
+             * @default false
+             */
+            expected_none?: boolean;
             /** Clip Id */
             clip_id: string;
-            /** Expected */
-            expected: string;
             /**
              * Start
              * @description Null, with `end`: every take of the clip, or all of it.
@@ -2649,6 +2661,17 @@ export interface components {
          * @description A take of a test set.
          */
         LabelledTakeView: {
+            /**
+             * Expected
+             * @description Null: nothing is, or none of the gestures.
+             */
+            expected: string | null;
+            /**
+             * Expected None
+             * @description Whether none of the gestures is expected.
+             * @default false
+             */
+            expected_none?: boolean;
             /** Id */
             id: string;
             /** Clip Id */
@@ -2662,8 +2685,6 @@ export interface components {
             start: number;
             /** End */
             end: number;
-            /** Expected */
-            expected: string;
             /**
              * Added By
              * @description Name of who added it; empty: not known.
@@ -3000,6 +3021,24 @@ export interface components {
              * @description The link as a QR code: an SVG document.
              */
             qr: string;
+        };
+        /**
+         * NoneRateView
+         * @description Answers to takes that show none of the gestures.
+         */
+        NoneRateView: {
+            /**
+             * Refused
+             * @description Right.
+             */
+            refused: number;
+            /** Asked Back */
+            asked_back: number;
+            /**
+             * Answered
+             * @description Wrong.
+             */
+            answered: number;
         };
         /**
          * OpenedWorkspace
@@ -3586,6 +3625,14 @@ export interface components {
          * @description What to recognise.
          */
         RecognitionRequest: {
+            /** Expected */
+            expected?: string | null;
+            /**
+             * Expected None
+             * @description Whether none of the gestures is expected, in place of a label.
+             * @default false
+             */
+            expected_none?: boolean;
             /** Clip Id */
             clip_id: string;
             /** Language Id */
@@ -3601,8 +3648,6 @@ export interface components {
             profile?: string | null;
             /** @description Null: as the language says. */
             tuning?: components["schemas"]["TuningEntry"] | null;
-            /** Expected */
-            expected?: string | null;
             /** @description Recognise with this change; the language is not edited. */
             trial?: components["schemas"]["GestureTrial"] | null;
         };
@@ -3708,6 +3753,17 @@ export interface components {
              * @description G degrees by which the demonstrations were turned to be compared; empty in profile paper.
              */
             views: number[];
+            /**
+             * Expected
+             * @description Null: nothing is, or none of the gestures.
+             */
+            expected: string | null;
+            /**
+             * Expected None
+             * @description Whether none of the gestures is expected.
+             * @default false
+             */
+            expected_none: boolean;
             /** Id */
             id: string;
             /** Clip Id */
@@ -3729,8 +3785,6 @@ export interface components {
              * @description Label and number of the demonstrations that the take is itself, which did not read it.
              */
             without: (string | number)[][];
-            /** Expected */
-            expected: string | null;
             /**
              * Created
              * Format: date-time
@@ -4134,7 +4188,7 @@ export interface components {
             margin: number | null;
             /**
              * Expected
-             * @description By the language's test set; null: not in it.
+             * @description By the language's test set; null: not in it; ``-``: none of the gestures.
              */
             expected: string | null;
             /** Faults */
@@ -4213,12 +4267,14 @@ export interface components {
             revision: number;
             /** Takes */
             takes: components["schemas"]["LabelledTakeView"][];
+            /** @description A refusal is right of a take that shows none of the gestures. */
             overall: components["schemas"]["RateView"];
             /**
              * Gestures
              * @description The lowest rate first.
              */
             gestures: components["schemas"]["GestureRateView"][];
+            none: components["schemas"]["NoneRateView"];
             /**
              * Better
              * @description Ids of takes that are answered better than before.

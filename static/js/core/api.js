@@ -283,12 +283,12 @@ export const testSets = {
   /** @param {string} language_id @param {Schemas["LabelledTakesDraft"]["takes"]} takes */
   add: (language_id, takes) =>
     answer(POST("/languages/{language_id}/test-set", { ...at({ language_id }), body: { takes } })),
-  /** @param {string} language_id @param {string} take_id @param {string} expected */
-  label: (language_id, take_id, expected) =>
+  /** @param {string} language_id @param {string} take_id @param {Schemas["LabelledTakeChange"]} body */
+  label: (language_id, take_id, body) =>
     answer(
       PATCH("/languages/{language_id}/test-set/{take_id}", {
         ...at({ language_id, take_id }),
-        body: { expected },
+        body,
       }),
     ),
   /** @param {string} language_id @param {string} take_id */

@@ -13,6 +13,7 @@ import { focusCard } from "../gestures/gesture-cards.js";
 import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
 import { written } from "../languages/robot-command.js";
+import { NONE } from "../languages/test-set.js";
 import { take } from "./demonstration-panel.js";
 import { furtherOf, knownLabel, requestOf, save } from "./draft-saving.js";
 import {
@@ -94,8 +95,9 @@ function valuesOf({ language, gesture }) {
     const { start, end } = /** @type {SelectedRange} */ (selectedRange());
     const name = state.clips.find(({ id }) => id === state.clip)?.name ?? "";
     const clip = { clip_id: state.clip ?? "", start, end, keep_transit: false };
+    const expected = byId("expected").value;
     return {
-      label: labelIfNew(byId("expected").value || labelOf(name), language, clip),
+      label: labelIfNew((expected !== NONE && expected) || labelOf(name), language, clip),
       description: "",
       command: "",
       salient: null,

@@ -1,5 +1,6 @@
 // The gestures of the language, as cards with their trajectory images.
 
+import { expectedOf, NONE } from "../languages/test-set.js";
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
 import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
@@ -172,20 +173,17 @@ let shown = { result: null, clip: null };
 function drawExpected(members, result) {
   const expected = byId("expected");
   const clip = selectedClip();
+  const labels = members.map(({ label }) => label);
   let expectedLabel = expected.value;
-  if (result && result.id !== shown.result) expectedLabel = result.expected ?? "";
-  else if (clip?.id !== shown.clip)
-    expectedLabel = labelInName(
-      clip?.name ?? "",
-      members.map(({ label }) => label),
-    );
+  if (result && result.id !== shown.result) expectedLabel = expectedOf(result) ?? "";
+  else if (clip?.id !== shown.clip) expectedLabel = labelInName(clip?.name ?? "", labels);
   // The language may be loaded after the clip: until then there was no label to propose.
   shown = { result: result?.id ?? null, clip: members.length ? clip?.id : null };
   expected.replaceChildren(
     h("option", { value: "" }, "not known"),
-    ...members.map((gesture) => h("option", { value: gesture.label }, gesture.label)),
+    ...[...labels, NONE].map((value) => h("option", { value }, value)),
   );
-  expected.value = members.some((gesture) => gesture.label === expectedLabel) ? expectedLabel : "";
+  expected.value = [...labels, NONE].includes(expectedLabel) ? expectedLabel : "";
 }
 
 /**

@@ -105,7 +105,7 @@ export function leaveWaiting({ id, name }) {
 /**
  * Leave a take out of the test; `name` is what it is called.
  *
- * @param {Pick<LabelledTake, "id" | "clip_id" | "start" | "end" | "expected">} take
+ * @param {Pick<LabelledTake, "id" | "clip_id" | "start" | "end"> & { expected: string }} take
  * @param {string} name
  */
 export async function leaveOut({ id, clip_id, start, end, expected }, name) {

@@ -1,5 +1,7 @@
 // The takes of the test set as rows, and as CSV.
 
+import { expectedOf, NONE } from "../languages/test-set.js";
+
 /** @import { TestSet } from "../core/types.d.ts" */
 
 /** @typedef {ReturnType<typeof testedOf>[number]} TestedTake */
@@ -31,6 +33,7 @@ export function testedOf(testSet) {
     .map(({ result, ...take }) => ({
       ...(result ?? UNKNOWN),
       ...take,
+      expected: expectedOf(take) ?? "",
       known: result !== null,
       change: changeOf(take.id),
     }))
@@ -64,9 +67,19 @@ const COLUMNS = [
 function field(value) {
   if (Array.isArray(value)) return field(value.join(" or "));
   const text =
-    typeof value === "string" ? value.replace(/^[=+\-@\t\r]/, "'$&") : String(value ?? "");
+    typeof value === "string" && value !== "-"
+      ? value.replace(/^[=+\-@\t\r]/, "'$&")
+      : String(value ?? "");
   return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
 }
+
+/**
+ * The value of a take in a column of the file.
+ *
+ * @param {TestedTake} take
+ * @param {keyof TestedTake} name
+ */
+const valueOf = (take, name) => (name === "expected" && take[name] === NONE ? "-" : take[name]);
 
 /**
  * The table of takes as a CSV file.
@@ -74,6 +87,6 @@ function field(value) {
  * @param {TestedTake[]} takes
  */
 export const csvOf = (takes) =>
-  [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => take[name]))]
+  [COLUMNS, ...takes.map((take) => COLUMNS.map((name) => valueOf(take, name)))]
     .map((row) => `${row.map(field).join(",")}\r\n`)
     .join("");

@@ -5,7 +5,7 @@ import { askWhich } from "../core/format.js";
 import { state } from "../core/state.js";
 import { html, ifDefined, iconOf, live } from "../templates.js";
 import { address, go, here } from "../core/views.js";
-import { labelTake } from "../languages/test-set.js";
+import { labelTake, NONE } from "../languages/test-set.js";
 import { leaveOut, leaveWaiting, means } from "./test-set-clips.js";
 
 /** @import { Upload } from "../core/types.d.ts" */
@@ -42,7 +42,7 @@ function labelSelect(name, value, choose) {
     @change=${(/** @type {any} */ { target }) => choose(target.value)}
   >
     ${value ? "" : html`<option value="">choose…</option>`}
-    ${[...labels(), ...known].map(
+    ${[...new Set([...labels(), ...known, NONE])].map(
       (label) => html`<option value=${label} .selected=${live(label === value)}>${label}</option>`,
     )}
   </select>`;

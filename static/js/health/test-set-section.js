@@ -6,7 +6,7 @@ import { plural } from "../core/format.js";
 import { currentLanguage, state, update } from "../core/state.js";
 import { guard, html, live, nothing, repeat } from "../templates.js";
 import { go } from "../core/views.js";
-import { cancelTestRun, changeWords, runTestSet } from "../languages/test-set.js";
+import { cancelTestRun, changeWords, NONE, runTestSet } from "../languages/test-set.js";
 import { csvOf, testedOf } from "./test-set-results.js";
 import {
   ASKED,
@@ -56,21 +56,22 @@ function takeFiles({ target }) {
  * @param {TestedTake[]} takes
  */
 function matrix(takes) {
-  const rows = [...new Set([...labels(), ...takes.map(({ expected }) => expected)])].filter(
-    (label) => takes.some(({ expected }) => expected === label),
+  const meant = [...new Set([...labels(), ...takes.map(({ expected }) => expected)])];
+  const rows = [...meant.filter((label) => label !== NONE), NONE].filter((label) =>
+    takes.some(({ expected }) => expected === label),
   );
   // A gesture that was neither meant nor read has nothing to tell.
   const columns = [...new Set([...rows, ...takes.map(readAs)])]
-    .filter((label) => label !== REFUSED && label !== ASKED)
+    .filter((label) => ![REFUSED, ASKED, NONE].includes(label))
     .concat(takes.some(({ pair }) => pair) ? ASKED : [], REFUSED);
   /**
    * @param {number} row
    * @param {number} column
    */
   const cell = (row, column) => {
-    const meant = takes.filter(({ expected }) => expected === rows[row]);
-    const found = meant.filter((take) => readAs(take) === columns[column]);
-    const right = rows[row] === columns[column];
+    const shown = takes.filter(({ expected }) => expected === rows[row]);
+    const found = shown.filter((take) => readAs(take) === columns[column]);
+    const right = columns[column] === (rows[row] === NONE ? REFUSED : rows[row]);
     const asked = columns[column] === ASKED;
     const open =
       found.length === 1
@@ -78,7 +79,7 @@ function matrix(takes) {
         : () => update({ cell: pairName(rows[row], columns[column]) });
     return {
       text: found.length ? `${found.length}${right ? " \u2713" : ""}` : "\u00b7",
-      amount: found.length / meant.length,
+      amount: found.length / shown.length,
       className: right ? "diagonal" : !found.length ? "" : asked ? "asked" : "wrong",
       open: found.length ? open : null,
       label: `${plural(found.length, "take")} of ${rows[row]} ${asked ? "" : "read as "}${columns[column]}`,
@@ -121,7 +122,7 @@ const pairsText = ({ pairs, pairs_right: right }) =>
  *
  * @param {TestSet} testSet
  */
-const rates = ({ gestures }) =>
+const rates = ({ gestures, none }) =>
   html`<ul class="test-rates" aria-label="Rate of each gesture">
     ${gestures.map(
       (share) =>
@@ -130,6 +131,14 @@ const rates = ({ gestures }) =>
           ${share.asked}${shareText(share)}${pairsText(share)}
         </li>`,
     )}
+    ${
+      none.refused + none.asked_back + none.answered
+        ? html`<li>
+            <b>${NONE}</b> ${none.refused} refused: right; ${none.asked_back} asked back;
+            ${none.answered} read as a gesture: wrong
+          </li>`
+        : nothing
+    }
   </ul>`;
 
 const olderClips = olderClipsButton();

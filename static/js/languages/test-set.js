@@ -9,6 +9,23 @@ import { go } from "../core/views.js";
 
 /** @import { TestSet } from "../core/types.d.ts" */
 
+export const NONE = "none of these"; // Name of what shows none of the gestures.
+
+/**
+ * What a request says of the gesture that is expected.
+ *
+ * @param {string | null} expected a label, `NONE`, or null for nothing
+ */
+export const expectation = (expected) =>
+  expected === NONE ? { expected_none: true } : { expected };
+
+/**
+ * What is expected of a take, as the page names it; null for nothing.
+ *
+ * @param {{ expected: string | null, expected_none?: boolean }} take
+ */
+export const expectedOf = ({ expected, expected_none: none }) => (none ? NONE : expected);
+
 const MOST_UNASKED = 30; // Takes that are recognised again unasked: a few seconds' work.
 
 /** @type {Promise<unknown> | null} */
@@ -81,7 +98,8 @@ export const cancelTestRun = () =>
  * @param {LabelledRange[]} takes
  */
 export async function putIntoTestSet(takes) {
-  show(await api.testSets.add(state.language ?? "", takes));
+  const drafts = takes.map(({ expected, ...range }) => ({ ...range, ...expectation(expected) }));
+  show(await api.testSets.add(state.language ?? "", drafts));
 }
 
 /**
@@ -101,7 +119,11 @@ export async function addToTestSet(takes) {
  * @param {string} expected
  */
 export async function labelTake(take, expected) {
-  show(await attempt("Labelling", () => api.testSets.label(state.language ?? "", take, expected)));
+  show(
+    await attempt("Labelling", () =>
+      api.testSets.label(state.language ?? "", take, expectation(expected)),
+    ),
+  );
   await runWithNews();
 }
 

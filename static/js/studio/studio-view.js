@@ -10,6 +10,7 @@ import { isReadable, selectedClip, selectedRange, state, update } from "../core/
 import { attempt, complain, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { newLanguage } from "../languages/language-store.js";
+import { expectation, expectedOf, NONE } from "../languages/test-set.js";
 import { buildRanges } from "./labelled-ranges.js";
 import { frameShown, keepsFrame } from "./playback.js";
 import { supportOf } from "./vote-support.js";
@@ -135,14 +136,14 @@ async function saveGesture() {
 /**
  * Recognise what is selected; `extra` overrides parts of the request.
  *
- * @param {object} extra
+ * @param {{ expected?: string | null } & Record<string, unknown>} extra
  */
-export async function recogniseWith(extra = {}) {
+export async function recogniseWith({ expected = byId("expected").value || null, ...extra } = {}) {
   /** @type {any} */
   const body = {
     ...rangeOf(),
     language_id: state.language,
-    expected: byId("expected").value || null,
+    ...expectation(expected),
     ...extra,
   };
   const result = await attempt("Recognition", () => api.recognitions.create(body));
@@ -218,9 +219,11 @@ const supportWords = (result) =>
  *
  * @param {Recognition} result
  */
-function outcomeWords({ label, pair, nearest, expected, fault }) {
+function outcomeWords(result) {
+  const { label, pair, nearest, fault } = result;
+  const expected = expectedOf(result);
   const meant =
-    expected === null || expected === label
+    expected === null || isRight(result)
       ? [expected === null ? "" : ", as expected"]
       : [", expected ", h("b", { className: "expected" }, expected)];
   if (pair) return [h("b", { className: "chosen" }, askWhich(pair)), ...meant];
@@ -228,8 +231,17 @@ function outcomeWords({ label, pair, nearest, expected, fault }) {
   return [
     fault ? `Too poor to judge: ${fault}; nearest is ` : "Not recognised; nearest is ",
     h("b", {}, nearest),
+    ...(expected === NONE ? meant : []),
   ];
 }
+
+/**
+ * Whether the answer is the expected one; a refusal is where none of the gestures was meant.
+ *
+ * @param {Recognition} result
+ */
+const isRight = ({ label, pair, expected, expected_none: none }) =>
+  none ? label === null && !pair : label !== null && label === expected;
 
 /**
  * Show what was recognised.
@@ -239,8 +251,8 @@ function outcomeWords({ label, pair, nearest, expected, fault }) {
 export function drawOutcome({ result }) {
   const box = byId("outcome");
   if (!result) return box.replaceChildren();
-  const { label, pair, expected } = result;
-  const wrong = label === null || (expected !== null && expected !== label);
+  const { label, pair } = result;
+  const wrong = expectedOf(result) === null ? label === null : !isRight(result);
   const mark = pair ? "?" : wrong ? "\u2260" : "\u2713";
   box.className = `outcome ${pair ? "asked" : wrong ? "wrong" : "right"}`;
   return box.replaceChildren(

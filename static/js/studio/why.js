@@ -9,7 +9,7 @@ import { isReadable, state, update } from "../core/state.js";
 import { attempt, toast } from "../core/toasts.js";
 import { go } from "../core/views.js";
 import { openDemonstrations } from "../gestures/demonstrations-dialog.js";
-import { addToTestSet } from "../languages/test-set.js";
+import { addToTestSet, expectedOf } from "../languages/test-set.js";
 import { alignmentsOf } from "./alignment.js";
 import { partsOf } from "./alignment-parts.js";
 import { trialBar, tryOut } from "./intervention-trial.js";
@@ -205,7 +205,7 @@ const shares = (result, why) =>
           "plays without a server",
         )
       : null,
-    result.expected === null || result.trial
+    expectedOf(result) === null || result.trial
       ? null
       : h(
           "span",
@@ -225,7 +225,9 @@ const shares = (result, why) =>
  *
  * @param {Recognition} result
  */
-async function keepAsTest({ clip_id, start, end, expected }) {
+async function keepAsTest(result) {
+  const { clip_id, start, end } = result;
+  const expected = expectedOf(result);
   if (expected === null) return;
   const kept = await attempt("Adding to the test set", async () => {
     await addToTestSet([{ clip_id, start, end, expected }]);
@@ -433,6 +435,17 @@ const askExpected = (labels) => [
 ];
 
 /**
+ * The question which gesture was meant, or what helps where none was.
+ *
+ * @param {Recognition} result
+ * @returns {(Node | string | null)[]}
+ */
+function whatWasMeant({ expected_none: none, label, gestures }) {
+  if (!none) return askExpected(gestures);
+  return label === null ? [] : [note("The dial in Health decides how many takes are refused.")];
+}
+
+/**
  * Draw the explanation beside the take, and the moments that correspond under it.
  *
  * @param {State} state
@@ -447,11 +460,10 @@ export function drawWhy({ why, result, trial }) {
     drawMoments(null);
     return box.replaceChildren();
   }
-  const asks = result.expected === null && !trying;
-  drawMoments(asks ? null : alignmentsOf(why));
-  const words = asks
-    ? [...askExpected(result.gestures), shares(result, null)]
-    : [trying, ...(why ? reasons(why) : []), shares(result, why)];
+  const asked = result.expected_none || (expectedOf(result) === null && !trying);
+  drawMoments(asked ? null : alignmentsOf(why));
+  const words = asked ? whatWasMeant(result) : [trying, ...(why ? reasons(why) : [])];
+  words.push(shares(result, asked ? null : why));
   return box.replaceChildren(h("div", { className: "why-words" }, words));
 }
 

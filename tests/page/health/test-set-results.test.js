@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { csvOf, testedOf } from "../../../static/js/health/test-set-results.js";
+import { NONE } from "../../../static/js/languages/test-set.js";
 
 const take = (id, clip, result, values = {}) => ({
   id,
@@ -62,4 +63,11 @@ test("a spreadsheet neither calculates a name nor splits it", () => {
   const [heads, row] = csvOf(testedOf({ takes, better: [], worse: [] })).split("\r\n");
   assert.equal(heads, "clip,start,end,expected,label,nearest,confidence,right,revision,id,pair");
   assert.equal(row, `"'=1+1, ""x"".mp4",0,1,circle,circle,circle,0.9,true,3,a,`);
+});
+
+test("a take that shows none of the gestures has a dash in the file", () => {
+  const takes = [take("a", "a.mp4", { label: null }, { expected: null, expected_none: true })];
+  const tested = testedOf({ takes, better: [], worse: [] });
+  assert.equal(tested[0].expected, NONE);
+  assert.match(csvOf(tested).split("\r\n")[1], /^a\.mp4,0,1,-,,circle/);
 });

@@ -8,7 +8,14 @@ from typing import Annotated
 from pydantic import ConfigDict, Field
 
 from app.api.http.schemas.gestures import GestureChange
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds
+from app.api.http.schemas.values import (
+    Body,
+    ExpectedGesture,
+    ExpectedGestureView,
+    Identifier,
+    Label,
+    Seconds,
+)
 from app.recognition import Recognition
 from app.recognition.explanation.explanation import Explanation
 from app.recognition.language.file_schema import TuningEntry
@@ -21,7 +28,7 @@ class GestureTrial(Body):
     change: GestureChange
 
 
-class RecognitionRequest(Body):
+class RecognitionRequest(ExpectedGesture):
     """What to recognise."""
 
     clip_id: Identifier
@@ -32,12 +39,11 @@ class RecognitionRequest(Body):
     """Null: the language's own."""
     tuning: TuningEntry | None = None
     """Null: as the language says."""
-    expected: Label | None = None
     trial: GestureTrial | None = None
     """Recognise with this change; the language is not edited."""
 
 
-class RecognitionView(Recognition):
+class RecognitionView(ExpectedGestureView, Recognition):
     """The full answer of a recognition, kept as a record."""
 
     model_config = ConfigDict(extra="allow")
@@ -54,7 +60,6 @@ class RecognitionView(Recognition):
     """The change it was recognised with; null: none."""
     without: list[list[str | int]] = Field(default_factory=list)
     """Label and number of the demonstrations that the take is itself, which did not read it."""
-    expected: str | None
     created: datetime
 
 

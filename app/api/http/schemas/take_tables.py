@@ -38,7 +38,7 @@ class TakeRowView(View):
     confidence: float | None
     margin: float | None
     expected: str | None
-    """By the language's test set; null: not in it."""
+    """By the language's test set; null: not in it; ``-``: none of the gestures."""
     faults: str
     language: str
     revision: int

@@ -6,16 +6,22 @@ from typing import Annotated
 
 from pydantic import Field
 
-from app.api.http.schemas.values import Body, Identifier, Label, Seconds, View
+from app.api.http.schemas.values import (
+    Body,
+    ExpectedGestureView,
+    Identifier,
+    RequiredGesture,
+    Seconds,
+    View,
+)
 from app.recognition.decision.result import Pair
 from app.store.test_sets import MOST_TAKES
 
 
-class LabelledTakeDraft(Body):
+class LabelledTakeDraft(RequiredGesture):
     """A clip, or a range of it, with the gesture that it shows."""
 
     clip_id: Identifier
-    expected: Label
     start: Seconds | None = None
     """Null, with `end`: every take of the clip, or all of it."""
     end: Seconds | None = None
@@ -27,10 +33,8 @@ class LabelledTakesDraft(Body):
     takes: Annotated[list[LabelledTakeDraft], Field(min_length=1, max_length=MOST_TAKES)]
 
 
-class LabelledTakeChange(Body):
+class LabelledTakeChange(RequiredGesture):
     """Another label for a take."""
-
-    expected: Label
 
 
 class LabelledResultView(View):
@@ -49,7 +53,7 @@ class LabelledResultView(View):
     """Why it could not be recognised, in words."""
 
 
-class LabelledTakeView(View):
+class LabelledTakeView(ExpectedGestureView):
     """A take of a test set."""
 
     id: str
@@ -58,7 +62,6 @@ class LabelledTakeView(View):
     """Name of the clip."""
     start: float
     end: float
-    expected: str
     added_by: str
     """Name of who added it; empty: not known."""
     demonstration: bool
@@ -88,6 +91,16 @@ class RateView(View):
     high: float | None
 
 
+class NoneRateView(View):
+    """Answers to takes that show none of the gestures."""
+
+    refused: int
+    """Right."""
+    asked_back: int
+    answered: int
+    """Wrong."""
+
+
 class GestureRateView(RateView):
     """Rate of one gesture."""
 
@@ -104,8 +117,10 @@ class TestSetView(View):
     """The language's newest."""
     takes: list[LabelledTakeView]
     overall: RateView
+    """A refusal is right of a take that shows none of the gestures."""
     gestures: list[GestureRateView]
     """The lowest rate first."""
+    none: NoneRateView
     better: list[str]
     """Ids of takes that are answered better than before."""
     worse: list[str]

@@ -70,7 +70,7 @@ def label_take(
 ) -> TestSetView:
     """Give a take another label."""
     state = studio.languages.get(language_id)
-    studio.labelled.label(language_id, take_id, change.expected)
+    studio.labelled.label(language_id, take_id, change.stored)
     return _changed(studio, state)
 
 

@@ -53,7 +53,7 @@ def share_analysis(recognition_id: str, studio: CurrentStudio) -> Response:
     record = studio.recognitions.get(recognition_id)
     view = view_of(studio, ViewRequest(clip_id=record.clip_id, recognition_id=record.id))
     meant = record.expected
-    why = None if meant is None else explain(load_context(record, studio), meant)
+    why = None if not meant else explain(load_context(record, studio), meant)
     disposition = attachment_as_written(f"{view.title}.html", "analysis.html")
     return Response(
         analysis_page(view, load_recognition(record), why),

@@ -71,7 +71,7 @@ def explain_recognition(
     """
     record = studio.recognitions.get(recognition_id)
     meant = expected or record.expected
-    if meant is None:
+    if not meant:
         detail = "say which gesture was meant: add ?expected=LABEL"
         raise ProblemError(422, "expected_missing", detail)
     context = load_context(record, studio)

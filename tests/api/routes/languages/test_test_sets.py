@@ -73,6 +73,43 @@ def test_takes_are_recognised_and_the_only_demonstration_of_a_gesture_cannot_be_
     assert (kept["label"], kept["expected"]) == ("line", "circle")
 
 
+def test_a_take_that_shows_none_of_the_gestures_is_right_if_it_is_refused(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    drawn = {shape: add_recorded_clip(studio, recording_of(shape)) for shape in ("corner", "line")}
+    takes = [{"clip_id": clip, "expected_none": True} for clip in drawn.values()]
+    assert labelled(client, place, *takes).status_code == 201
+    found = run(client, place)
+    assert [(take["expected"], take["expected_none"]) for take in found["takes"]] == [
+        (None, True),
+        (None, True),
+    ]
+    by_clip = {take["clip_id"]: take["result"] for take in found["takes"]}
+    assert by_clip[drawn["line"]]["label"] == "line"
+    refused = by_clip[drawn["corner"]]
+    assert (refused["label"], refused["right"]) == (None, refused["pair"] is None)
+    assert found["none"]["answered"] == 1
+    assert found["none"]["refused"] + found["none"]["asked_back"] == 1
+    assert found["overall"]["right"] == found["none"]["refused"]
+    assert (found["overall"]["asked"], found["gestures"]) == (2, [])
+    kept = client.get(f"/api/v1/recognitions/{refused['recognition_id']}").json()
+    assert (kept["expected"], kept["expected_none"]) == (None, True)
+
+    take = next(each for each in found["takes"] if each["clip_id"] == drawn["line"])
+    known = client.patch(f"{place}/{take['id']}", json={"expected": "line"}).json()
+    assert known["takes"][0 if known["takes"][0]["id"] == take["id"] else 1]["expected"] == "line"
+    for unclear in ({}, {"expected": "line", "expected_none": True}, {"expected_none": "yes"}):
+        assert_problem(client.patch(f"{place}/{take['id']}", json=unclear), 422, "request_invalid")
+
+
+def test_a_take_of_a_gesture_that_the_language_lacks_cannot_be_tested(
+    client: httpx.Client, studio: Studio, place: str
+) -> None:
+    clip = add_recorded_clip(studio, recording_of("corner"))
+    found = labelled(client, place, {"clip_id": clip, "expected": "triangle"}).json()
+    assert (found["waiting"], found["overall"]["untestable"]) == (0, 1)
+
+
 def test_a_take_that_becomes_a_demonstration_stays_and_is_read_without_it(
     client: httpx.Client, studio: Studio, language_id: str, place: str
 ) -> None:
