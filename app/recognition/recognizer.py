@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import replace
 from typing import Protocol
 
@@ -122,6 +122,23 @@ class Recognizer:
         self._reads_moving_hands = any(each is not None and each.hand_shape for each in counting)
         wanted = tuning.keypoints_repaired
         self.repairs = traits.repairs_keypoints if wanted is None else wanted
+
+    def without(self, left_out: Collection[tuple[str, int]]) -> Recognizer:
+        """Return the recogniser of the language without some demonstrations, to read these.
+
+        Parameters
+        ----------
+        left_out
+            As in `Language.without_demonstrations`.
+
+        Raises
+        ------
+        LanguageError
+            When no gesture is left.
+
+        """
+        language = self.language.without_demonstrations(left_out)
+        return Recognizer(language, self.profile, tuning=self.tuning)
 
     def recognize(self, poses: PoseSequence, unseen: Sequence[Span] = ()) -> Recognition:
         """Recognise the gesture in a take, that is, poses without salutes around them.

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections import defaultdict
 
 from app.api.http.schemas.gestures import DemonstrationFaultView, NewDemonstration, SourceView
+from app.api.http.schemas.values import NONE_EXPECTED
 from app.api.services.demonstration_faults import count_triggers_in_clip, faults_of_source
 from app.api.services.running_studio import Studio
 from app.recognition import Gesture, Language
@@ -13,6 +15,12 @@ from app.recognition.recording.clip_range import ClipRange
 from app.recognition.recording.segmentation import find_brackets
 from app.recognition.triggers.trigger import Trigger
 from app.store import DemonstrationSource, LanguageState
+
+SAME_TAKE = 0.5
+"""Share of a take that a demonstration must cover to count as the same."""
+
+LeftOut = tuple[tuple[str, int], ...]
+"""Label and number of demonstrations that the language is read without."""
 
 
 def keep_source(
@@ -69,6 +77,39 @@ def find_sources(studio: Studio, language: Language) -> dict[str, list[Demonstra
         label: [None if key is None else known.get(key) for key in row]
         for label, row in keys.items()
     }
+
+
+class OwnDemonstrations:
+    """The demonstrations of a language that are known takes as well."""
+
+    def __init__(self, studio: Studio, language: Language) -> None:
+        self._language = language
+        self._of_clip = defaultdict[str, list[tuple[str, int, DemonstrationSource]]](list)
+        for label, row in find_sources(studio, language).items():
+            for number, source in enumerate(row):
+                if source is not None:
+                    self._of_clip[source.clip_id].append((label, number, source))
+
+    def find(self, clip_id: str, start: float, end: float) -> LeftOut:
+        """Return label and number of each demonstration that covers most of a take."""
+        least = SAME_TAKE * (end - start)
+        return tuple(
+            (label, number)
+            for label, number, source in self._of_clip.get(clip_id, ())
+            if min(end, source.end) - max(start, source.start) > least
+        )
+
+    def leave_one(self, expected: str, without: LeftOut) -> bool:
+        """Return whether a gesture is known by another demonstration than those left out.
+
+        None of the gestures, `NONE_EXPECTED`, needs none.
+        """
+        if expected == NONE_EXPECTED:
+            return True
+        if expected not in self._language.labels:
+            return False
+        own = sum(label == expected for label, _ in without)
+        return own <= len(self._language.gesture(expected).further)
 
 
 def list_sources(studio: Studio, language: Language) -> list[DemonstrationSource]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from app import store
 from app.api.http.problems import ProblemError
-from app.api.services.demonstration_sources import list_sources
+from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations
 from app.api.services.running_studio import Studio
 from app.recognition import OsgError, Recognizer
 from app.recognition.explanation.context import KnownTake
@@ -15,6 +15,9 @@ from app.recognition.recording.clip_range import find_clip_range
 MOST_KNOWN_TAKES = 60
 """Most known takes by which remedies are judged, the newest first; each is recognised again with
 every remedy."""
+
+MOST_APART = 12
+"""Most languages without a demonstration that read known takes; each is made for every remedy."""
 
 
 def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | store.PracticeTake]:
@@ -30,7 +33,10 @@ def list_known(studio: Studio, language_id: str) -> list[store.LabelledTake | st
 def load_known(
     studio: Studio, language_id: str, recognizer: Recognizer, *, but: str | None = None
 ) -> Iterator[KnownTake]:
-    """Yield the known takes of a language but its demonstrations, the newest first.
+    """Yield the known takes of a language, the newest first.
+
+    One that is a demonstration is read without it; where its gesture has no other one, it is left
+    out.
 
     Parameters
     ----------
@@ -45,10 +51,9 @@ def load_known(
 
     """
     language = recognizer.language
-    shown = {source.clip_id for source in list_sources(studio, language)}
-    count = 0
+    own, count, apart = OwnDemonstrations(studio, language), 0, set[LeftOut]()
     for take in reversed(list_known(studio, language_id)):
-        if take.clip_id in {*shown, but} or take.expected not in language.labels:
+        if take.clip_id == but or take.expected not in language.labels:
             continue
         if count == MOST_KNOWN_TAKES:
             return
@@ -56,7 +61,13 @@ def load_known(
         try:
             recording = studio.recording(take.clip_id)
             found = find_clip_range(recording, take.start, end, trigger=language.trigger)
-            yield KnownTake(take.expected, recognizer.query(found.poses))
+            without = own.find(take.clip_id, found.start, found.end)
+            is_new = without and without not in apart
+            if not own.leave_one(take.expected, without) or (is_new and len(apart) == MOST_APART):
+                continue
+            if is_new:
+                apart.add(without)
+            yield KnownTake(take.expected, recognizer.query(found.poses), without)
         except (OsgError, ProblemError, store.NotFound):
             continue
         count += 1

@@ -11,7 +11,7 @@ from app import store
 from app.api.http.schemas.recognitions import GestureTrial, RecognitionRequest, RecognitionView
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.demonstration_faults import faults_of_language
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations, find_sources
 from app.api.services.gesture_edits import change_gesture_of, demonstration_at
 from app.api.services.known_takes import load_known
 from app.api.services.running_studio import Studio
@@ -23,11 +23,16 @@ from app.recognition.language.requirements import require_seen_landmarks
 from app.recognition.language.tuning_entry import entry_to_tuning
 from app.recognition.recording.clip_range import find_clip_range, find_surroundings
 
+WITHOUT = "without"
+"""Key of a stored result: the demonstrations that did not read the take."""
+
 
 def recognize_range(
     studio: Studio, wanted: RecognitionRequest, quota: store.Quota
 ) -> store.RecognitionRecord:
     """Recognise a range of a clip by the newest revision of a language, and store the answer.
+
+    A demonstration is read by the others of its gesture, if there are any.
 
     Raises
     ------
@@ -45,8 +50,15 @@ def recognize_range(
     profile = wanted.profile or language.profile
     require_landmarks_of(studio.clips.get(wanted.clip_id).clip, recording.poses, language)
     meant = find_clip_range(recording, wanted.start, wanted.end, trigger=language.trigger)
-    recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial)
+    without: LeftOut = ()
+    if wanted.trial is None:
+        own = OwnDemonstrations(studio, language)
+        found = own.find(wanted.clip_id, meant.start, meant.end)
+        without = found if all(own.leave_one(label, found) for label, _ in found) else ()
+    recognizer = make_recognizer(studio, state, profile, wanted.tuning, wanted.trial, without)
     answer = recognizer.recognize(meant.poses, meant.unseen).to_dict()
+    if without:
+        answer[WITHOUT] = without
     if wanted.tuning is not None:
         answer["tuning"] = wanted.tuning.model_dump()
     if wanted.trial is not None:

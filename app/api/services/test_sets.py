@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -14,23 +13,14 @@ from app.api.http.schemas.values import NONE_EXPECTED
 from app.api.jobs.job import Job, Report, events_about, run_task
 from app.api.services.clip_responses import shows_pictures
 from app.api.services.clip_takes import find_takes
-from app.api.services.demonstration_sources import find_sources
+from app.api.services.demonstration_sources import LeftOut, OwnDemonstrations
 from app.api.services.running_studio import Studio
-from app.api.services.stored_recognitions import read_pair, write_pair
+from app.api.services.stored_recognitions import WITHOUT, read_pair, write_pair
 from app.api.workers.tasks import TakeToRecognize, TestRun
 from app.api.workers.worker_messages import Failed, Finished, Progress, RecognizedTake
 from app.evaluation.proportion import Share
 from app.recognition.health.verdict import TestedGesture
 from app.recognition.recording.clip_range import find_clip_range
-
-SAME_TAKE = 0.5
-"""Share of a take that a demonstration must cover to count as the same."""
-
-WITHOUT = "without"
-"""Key of a stored result: the demonstrations that did not read the take."""
-
-LeftOut = tuple[tuple[str, int], ...]
-"""Label and number of demonstrations that the language is read without."""
 
 
 def add_labelled(
@@ -113,19 +103,22 @@ def list_waiting(
 
     A take that is a demonstration is read by the language without that demonstration.
     """
-    revision, own = state.revision.revision, _OwnDemonstrations(studio, state)
+    revision, own = state.revision.revision, OwnDemonstrations(studio, studio.language(state))
+    found = [
+        (tested, _find_own(own, tested.take)) for tested in studio.labelled.of(state.record.id)
+    ]
     return [
-        (tested.take, own.find(tested.take))
-        for tested in studio.labelled.of(state.record.id)
-        if own.is_testable(tested.take)
-        and all(result.revision != revision for result in own.list_valid(tested))
+        (tested.take, without)
+        for tested, without in found
+        if own.leave_one(tested.take.expected, without)
+        and all(result.revision != revision for result in _list_valid(studio, tested, without))
     ]
 
 
 def view_test_set(studio: Studio, state: store.LanguageState) -> schemas.TestSetView:
     """Return the test set of a language, as of its newest revision."""
-    own = _OwnDemonstrations(studio, state)
-    takes = [_view(tested, own) for tested in studio.labelled.of(state.record.id)]
+    own = OwnDemonstrations(studio, studio.language(state))
+    takes = [_view(studio, tested, own) for tested in studio.labelled.of(state.record.id)]
     counted = [(take, take.result) for take in takes if take.testable and take.result is not None]
     labels = dict.fromkeys(
         take.expected
@@ -271,56 +264,28 @@ def _rate(takes: Sequence[schemas.LabelledTakeView]) -> dict[str, Any]:
     }
 
 
-class _OwnDemonstrations:
-    """The demonstrations of a language that are takes of its test set as well."""
+def _find_own(own: OwnDemonstrations, take: store.LabelledTake) -> LeftOut:
+    return own.find(take.clip_id, take.start, take.end)
 
-    def __init__(self, studio: Studio, state: store.LanguageState) -> None:
-        self._studio = studio
-        self._language = studio.language(state)
-        self._of_clip = defaultdict[str, list[tuple[str, int, store.DemonstrationSource]]](list)
-        for label, row in find_sources(studio, self._language).items():
-            for number, source in enumerate(row):
-                if source is not None:
-                    self._of_clip[source.clip_id].append((label, number, source))
 
-    def find(self, take: store.LabelledTake) -> LeftOut:
-        """Return label and number of each demonstration that covers most of a take."""
-        least = SAME_TAKE * (take.end - take.start)
-        return tuple(
-            (label, number)
-            for label, number, source in self._of_clip.get(take.clip_id, ())
-            if min(take.end, source.end) - max(take.start, source.start) > least
-        )
+def _list_valid(
+    studio: Studio, tested: store.TestedTake, without: LeftOut
+) -> list[store.LabelledResult]:
+    """Return the results of a testable take that its own demonstration has not read.
 
-    def is_testable(self, take: store.LabelledTake) -> bool:
-        """Return whether the take's gesture is known by another demonstration than the take.
+    Versions before 0.4 read a demonstration by itself.
+    """
+    if not without:
+        return [*tested.results]
+    return [each for each in tested.results if _is_apart(studio, each.recognition_id)]
 
-        A take that shows none of the gestures needs none.
-        """
-        if take.expected == NONE_EXPECTED:
-            return True
-        if take.expected not in self._language.labels:
-            return False
-        own = sum(label == take.expected for label, _ in self.find(take))
-        return own <= len(self._language.gesture(take.expected).further)
 
-    def list_valid(self, tested: store.TestedTake) -> list[store.LabelledResult]:
-        """Return the results of a testable take that its own demonstration has not read.
-
-        Versions before 0.4 read a demonstration by itself.
-        """
-        if not self.is_testable(tested.take):
-            return []
-        if not self.find(tested.take):
-            return [*tested.results]
-        return [each for each in tested.results if self._is_apart(each.recognition_id)]
-
-    def _is_apart(self, recognition: str | None) -> bool:
-        try:
-            record = None if recognition is None else self._studio.recognitions.get(recognition)
-        except store.NotFound:
-            return False
-        return record is None or WITHOUT in json.loads(record.result)
+def _is_apart(studio: Studio, recognition: str | None) -> bool:
+    try:
+        record = None if recognition is None else studio.recognitions.get(recognition)
+    except store.NotFound:
+        return False
+    return record is None or WITHOUT in json.loads(record.result)
 
 
 def _is_right(take: store.LabelledTake, result: store.LabelledResult) -> bool:
@@ -329,21 +294,24 @@ def _is_right(take: store.LabelledTake, result: store.LabelledResult) -> bool:
     return result.label == take.expected
 
 
-def _view(tested: store.TestedTake, own: _OwnDemonstrations) -> schemas.LabelledTakeView:
-    take = tested.take
+def _view(
+    studio: Studio, tested: store.TestedTake, own: OwnDemonstrations
+) -> schemas.LabelledTakeView:
+    take, without = tested.take, _find_own(own, tested.take)
+    is_testable = own.leave_one(take.expected, without)
     results = [
         schemas.LabelledResultView(
             **result.model_dump(exclude={"take_id", "created", "pair"}),
             pair=read_pair(result.pair),
             right=_is_right(take, result),
         )
-        for result in own.list_valid(tested)
+        for result in (_list_valid(studio, tested, without) if is_testable else ())
     ]
     return schemas.LabelledTakeView(
         **take.model_dump(exclude={"language_id", "created"}),
         clip=tested.clip,
-        demonstration=bool(own.find(take)),
-        testable=own.is_testable(take),
+        demonstration=bool(without),
+        testable=is_testable,
         result=results[0] if results else None,
         before=results[1] if len(results) > 1 else None,
     )

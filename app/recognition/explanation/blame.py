@@ -196,8 +196,9 @@ def _judge_demonstration(
         left_out = own[medoid] if change == "show_again" else None
         language = known.recognizer.language.with_changed(changed)
         after = Recognizer(language, "full", tuning=known.recognizer.tuning)
+        gone = (gesture.label, number) if change == "leave_out" else None
         repaired, broken = (
-            sum(index != left_out for index in rows) for rows in known.try_change(after)
+            sum(index != left_out for index in rows) for rows in known.try_change(after, gone)
         )
         gains.append((repaired - broken) / (len(own) - (left_out is not None)))
         tried.append(

@@ -30,11 +30,24 @@ class KnownTake:
         The gesture's.
     query
         The trajectory that the voters compare, see `Recognizer.query`.
+    without
+        Label and number of the demonstrations that the take is itself, which do not read it.
 
     """
 
     label: str
     query: Trajectory
+    without: tuple[tuple[str, int], ...] = ()
+
+    def after_leaving_out(self, left_out: tuple[str, int]) -> KnownTake:
+        """Return the take in the language that lacks one more demonstration."""
+        label, number = left_out
+        moved = (
+            (each, at - (each == label and at > number))
+            for each, at in self.without
+            if (each, at) != left_out
+        )
+        return replace(self, without=tuple(moved))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,19 +70,35 @@ class KnownTakes:
     def readings(self) -> list[str | None]:
         """The label that each take is read as; None where it is not read as one gesture."""
         found: list[str | None] = []
+        readers: dict[tuple[tuple[str, int], ...], Recognizer] = {(): self.recognizer}
         for take in self.takes:
             try:
-                found.append(self.recognizer.recognize_trajectory(take.query).label)
+                if (reader := readers.get(take.without)) is None:
+                    reader = readers[take.without] = self.recognizer.without(take.without)
+                found.append(reader.recognize_trajectory(take.query).label)
             except OsgError:
                 found.append(None)
         return found
 
-    def try_change(self, changed: Recognizer) -> tuple[list[int], list[int]]:
+    def try_change(
+        self, changed: Recognizer, left_out: tuple[str, int] | None = None
+    ) -> tuple[list[int], list[int]]:
         """Return the indices of the takes that a change repairs, and of those that it breaks.
 
         Repaired takes are read right by the changed recogniser only, broken ones by this one only.
+
+        Parameters
+        ----------
+        changed
+            The recogniser after the change.
+        left_out
+            Label and number of the demonstration that the change leaves out, if it does.
+
         """
-        after = KnownTakes(changed, self.takes).readings
+        takes = self.takes
+        if left_out is not None:
+            takes = [take.after_leaving_out(left_out) for take in takes]
+        after = KnownTakes(changed, takes).readings
         rows = list(zip(self.takes, self.readings, after, strict=True))
         repaired = [at for at, (take, was, now) in enumerate(rows) if was != take.label == now]
         broken = [at for at, (take, was, now) in enumerate(rows) if was == take.label != now]

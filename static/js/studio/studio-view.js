@@ -195,20 +195,27 @@ export async function loadResult() {
 }
 
 /**
+ * Whether the take is the demonstration that has read it.
+ *
+ * @param {Recognition} result
+ */
+const isItself = (result) =>
+  !result.without?.length && demonstratedBy(state.gestures?.gestures ?? [], result);
+
+/**
  * The confidence, the share of the votes for the nearest gesture, and the trial.
  *
  * @param {Recognition} result
  */
 const supportWords = (result) =>
   [
-    `confidence ${percent(result.confidence)}`,
+    isItself(result) ? "" : `confidence ${percent(result.confidence)}`,
     `${percent(supportOf(result).get(result.nearest ?? "") ?? 0)} of the votes`,
     result.pair && result.votes.second_opinion === result.pair[1]
       ? "the two ways of comparing disagree"
       : "",
-    demonstratedBy(state.gestures?.gestures ?? [], result)
-      ? "tested on a demonstration of the language itself"
-      : "",
+    isItself(result) ? "read by itself: the only demonstration cannot be tested" : "",
+    result.without?.length ? "read without itself, a demonstration" : "",
     result.trial ? "on trial, not saved" : "",
   ]
     .filter(Boolean)

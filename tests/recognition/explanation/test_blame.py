@@ -99,3 +99,25 @@ def test_each_kind_of_evidence_weighs() -> None:
         assert replace(some, **more).weigh() > some.weigh()
     # A change that repairs other gestures too says no more of this demonstration.
     assert replace(some, gain=9.0).weigh() == replace(some, gain=2.0).weigh()
+
+
+def test_a_known_take_that_is_a_demonstration_is_read_by_the_others() -> None:
+    ways = recording(corners((-0.3, 0.8), (-1.2, 0.1), (-0.2, 0.1), (-1.2, 0.8)))
+    both = language_of().gesture("hook").with_demonstration(ways, "Ben")
+    recognizer = Recognizer(language_of().with_changed(both), "full")
+    take = KnownTake("hook", recognizer.query(ways))
+    itself = replace(take, without=(("hook", 1),))
+    assert KnownTakes(recognizer, [take]).readings == ["hook"]
+    assert KnownTakes(recognizer, [itself]).readings != ["hook"]
+    # As a demonstration it repairs nothing: before and after it is read by the other one.
+    alone = Recognizer(language_of(), "full")
+    assert KnownTakes(alone, [replace(take, without=())]).readings != ["hook"]
+    # Left out, it is no demonstration any more, and the ones after it have moved.
+    assert itself.after_leaving_out(("hook", 1)).without == ()
+    assert itself.after_leaving_out(("hook", 0)).without == (("hook", 0),)
+    assert itself.after_leaving_out(("circle", 0)).without == (("hook", 1),)
+    gone = alone.language.with_changed(both.without_demonstration(0))
+    repaired, broken = KnownTakes(recognizer, [itself]).try_change(
+        Recognizer(gone, "full"), ("hook", 0)
+    )
+    assert repaired == broken == []

@@ -287,10 +287,11 @@ def _list_takes(
 
 
 def _load_known(studio: Studio, state: LanguageState, language: Language) -> list[KnownTake]:
-    """Return the takes of the test set and of practice."""
+    """Return the takes of the test set and of practice that are no demonstrations."""
     if not language.gestures:
         return []
-    return list(load_known(studio, state.record.id, studio.recognizer(state, "full")))
+    known = load_known(studio, state.record.id, studio.recognizer(state, "full"))
+    return [each for each in known if not each.without]
 
 
 def _require_few(language: Language, candidates: int) -> None:

@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 
 import httpx
+import numpy as np
 import pytest
 
 from app.api.services.running_studio import Studio
@@ -255,6 +256,21 @@ def test_a_trial_recognises_with_a_changed_gesture_and_edits_nothing(
     assert why["right"]
     assert client.get(f"{LANGUAGES}/{spoken}").json()["revision"] == revision
     assert client.post(RECOGNITIONS, json=body).json()["label"] is None
+
+
+def test_a_demonstration_is_read_by_the_others_of_its_gesture(
+    client: httpx.Client, studio: Studio, language_id: str, spoken: str, circle_clip: str
+) -> None:
+    body = {"clip_id": circle_clip, "language_id": spoken}
+    assert client.post(RECOGNITIONS, json=body).json()["without"] == []  # the only one
+    circle = recording_of("circle")
+    shaken = circle.poses.xy + np.random.default_rng(1).normal(0, 0.5, circle.poses.xy.shape)
+    other = add_recorded_clip(studio, replace(circle, poses=replace(circle.poses, xy=shaken)))
+    shown = {"label": "circle", "clip_id": other}
+    client.post(f"{LANGUAGES}/{language_id}/demonstrations", json=shown).raise_for_status()
+    read = client.post(RECOGNITIONS, json=body).json()
+    assert (read["label"], read["without"]) == ("circle", [["circle", 0]])
+    assert client.get(f"{RECOGNITIONS}/{read['id']}/explanation?expected=line").status_code == 200
 
 
 def test_a_trial_of_a_gesture_that_is_not_there_is_refused(
