@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import queue
 import random
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -34,14 +36,14 @@ from app.robot import (
     TakeRejected,
     TriggerListener,
 )
-from app.robot.mavlink import peer
+from app.robot.mavlink import bridge, peer
 from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
 from app.robot.mavlink.links import VehicleLink, open_link
 from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import language_of, run_listener, spoken
-from tests.robot.mavlink.vehicle import Ardusub, sailing
+from tests.robot.mavlink.vehicle import STEP, Ardusub, SimulatedVehicle, sailing
 
 TABLE: dict[str, Any] = {
     "format": "osg-studio/vehicle-table",
@@ -112,6 +114,7 @@ class Diver:
         self.time = 0.0
         self.delay = 0.0
         self.lines: queue.Queue[str] = queue.Queue()
+        self._simulated = vehicle if isinstance(vehicle, SimulatedVehicle) else None
         if vehicle is not None:
             self.vehicle = vehicle
         link = link or open_link(address, table.vehicle.system, table.vehicle.component)
@@ -146,9 +149,38 @@ class Diver:
     def wait_for(self, *beginnings: str) -> str:
         """Return the next line that begins in one of these ways."""
         while True:
+            if self._simulated is not None:
+                self.wait_until(lambda: not self.lines.empty())
             line = self.lines.get(timeout=WAIT)
             if line.startswith(beginnings):
                 return line
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass, on the vehicle's clock."""
+        if self._simulated is None:
+            time.sleep(seconds)
+        else:
+            self._simulated.wait(seconds)
+
+    def wait_until(self, happens: Callable[[], bool]) -> None:
+        """Wait until something happens; an error after a long time."""
+        if self._simulated is None:
+            wait_until(happens)
+            return
+        by = self._simulated.now + WAIT
+        while not happens():
+            assert self._simulated.now < by
+            self._simulated.wait(STEP)
+
+    def close(self) -> None:
+        """Close the bridge, while time passes."""
+        bridge = self.bridge
+        closes = threading.Thread(target=bridge.close)
+        closes.start()
+        bridge._closing.wait()
+        while self._simulated is not None and bridge._thread.is_alive():
+            self._simulated.wait(STEP)
+        closes.join()
 
 
 def wait_until(happens: Callable[[], bool]) -> None:
@@ -161,21 +193,31 @@ def wait_until(happens: Callable[[], bool]) -> None:
 
 @contextmanager
 def diving(
-    kind: str = "udpin",
+    kind: str = "simulated",
     changes: Mapping[str, object] = TABLE,
     memory: Path | None = None,
     **settings: Any,
 ) -> Iterator[Diver]:
-    """Put a diver and a vehicle into the water, with a bridge between them."""
+    """Put a diver and a vehicle into the water, with a bridge between them.
+
+    In simulated time, or by the sockets of a kind: ``udpin`` or ``tcpin``.
+    """
     table = VehicleTable.model_validate({**TABLE, **changes})
-    with sailing(kind=kind, **settings) as vehicle:
-        scheme = {"udpin": "udpout", "tcpin": "tcp"}[kind]
-        diver = Diver(vehicle, f"{scheme}:127.0.0.1:{vehicle.port}", table, memory=memory)
-        with closing(diver.bridge):
-            yield diver
+    scheme = {"udpin": "udpout", "tcpin": "tcp"}.get(kind)
+    with ExitStack() as opened:
+        if scheme is None:
+            vehicle = SimulatedVehicle(**settings)
+            patched = opened.enter_context(pytest.MonkeyPatch.context())
+            patched.setattr(bridge, "clock", SimpleNamespace(monotonic=lambda: vehicle.now))
+            diver = Diver(vehicle, "", table, cast("VehicleLink", vehicle), memory)
+        else:
+            real = opened.enter_context(sailing(kind=kind, **settings))
+            diver = Diver(real, f"{scheme}:127.0.0.1:{real.port}", table, memory=memory)
+        opened.enter_context(closing(diver))
+        yield diver
 
 
-@pytest.mark.parametrize(("kind", "missions"), [("udpin", 100), ("tcpin", 10)])
+@pytest.mark.parametrize(("kind", "missions"), [("simulated", 100), ("udpin", 10), ("tcpin", 10)])
 def test_confirmed_missions_are_obeyed_though_a_fifth_is_lost_and_the_vehicle_restarts(
     kind: str, missions: int
 ) -> None:
@@ -187,7 +229,7 @@ def test_confirmed_missions_are_obeyed_though_a_fifth_is_lost_and_the_vehicle_re
             diver.vehicle.obeyed.clear()
             if number % 10 == 9:
                 # A restart shows by a clock that goes back, so the clock has to go on before.
-                wait_until(lambda: diver.vehicle.uptime > 1.5)
+                diver.wait_until(lambda: diver.vehicle.uptime > 1.5)
                 diver.vehicle.restarts_at_next = True
             diver.confirm(shown)
             assert diver.wait_for("done", "refused", "NOT DONE").startswith("done")
@@ -240,14 +282,14 @@ def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
 def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> None:
     with diving(is_slow=True) as diver:
         diver.confirm("deep")
-        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
         diver.show("no")
         said = diver.wait_for("cancelled", "nothing")
         assert said.startswith("cancelled: depth 5 m; DO_SET_MODE ALT_HOLD was sent ")
         asked = diver.vehicle.asked
         diver.vehicle.is_slow = False
-        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
-        time.sleep(0.3)
+        diver.wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
+        diver.wait(0.3)
         diver.show("no")
         assert diver.wait_for("cancelled", "nothing") == "nothing to cancel"
     assert diver.vehicle.asked <= asked + 1
@@ -286,22 +328,22 @@ def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
             diver.show(label)
         else:
             diver.confirm(label)
-        wait_until(lambda: diver.vehicle.asked > 0)
-        time.sleep(0.1)  # the first heartbeat after a request may be older than it
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait(0.1)  # the first heartbeat after a request may be older than it
         diver.vehicle.pilot = mavlink.SUB_MODE_STABILIZE
         assert diver.wait_for("done", "NOT DONE").startswith(
             "NOT DONE, the pilot changed the mode: "
         )
         asked = diver.vehicle.asked
-        time.sleep(0.3)
+        diver.wait(0.3)
         assert diver.vehicle.asked == asked
 
 
 @pytest.mark.withstands(row="H35")
 def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
     with diving(armed=False) as diver:
-        wait_until(lambda: diver.bridge._peer.sender is not None)
-        time.sleep(0.1)
+        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait(0.1)
         for label, words in (("stop", "hold"), ("deep", "depth 5 m")):
             diver.confirm(label)
             assert diver.wait_for("done", "NOT DONE") == f"NOT DONE, vehicle is disarmed: {words}"
@@ -310,8 +352,8 @@ def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
         assert diver.wait_for("done", "NOT DONE") == "done: lights 50 %"
         diver.show("help")
         assert diver.wait_for("done", "vehicle is") == "vehicle is disarmed: surface"
-        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_SURFACE)
-        time.sleep(0.2)
+        diver.wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_SURFACE)
+        diver.wait(0.2)
         assert diver.lines.empty()
         diver.vehicle.armed = True
         assert diver.wait_for("done", "NOT DONE") == "done: surface"
@@ -321,7 +363,7 @@ def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
 def test_a_vehicle_that_is_disarmed_ends_an_ordinary_order() -> None:
     with diving(is_slow=True) as diver:
         diver.confirm("stop")
-        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
         diver.vehicle.armed = False
         assert diver.wait_for("done", "NOT DONE") == "NOT DONE, vehicle is disarmed: hold"
 
@@ -333,7 +375,7 @@ def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bo
         diver.show("help")
         diver.wait_for("EMERGENCY")
         diver.bridge.publish(SourceEnded(diver.time, 100, 0, stopped))
-        diver.bridge.close()
+        diver.close()
         assert not diver.bridge._thread.is_alive()
         reason = "robot is stopped" if stopped else "robot has ended"
         assert diver.wait_for("NOT DONE") == f"NOT DONE, {reason}: surface"
@@ -341,7 +383,7 @@ def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bo
 
 def test_what_a_diver_must_know_of_the_robot_is_on_the_vehicles_displays() -> None:
     with diving() as diver:
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
         diver.bridge.publish(RecognitionReady(1.0))
         diver.bridge.publish(FrameRateChanged(6.0, 2.0, False))
         diver.bridge.publish(OutputFailed(7.0, "stdout", "No space left on device"))
@@ -372,7 +414,7 @@ def test_an_emergency_that_is_refused_is_told_once_and_sent_again() -> None:
         assert diver.wait_for("refused") == "refused (DENIED): surface"
         asked = diver.vehicle.asked
         while diver.vehicle.asked < asked + 3:
-            time.sleep(0.01)
+            diver.wait(0.01)
         diver.vehicle.refused = frozenset()
         assert diver.wait_for("refused", "done") == "done: surface"
     assert diver.vehicle.obeyed == ["SURFACE"]

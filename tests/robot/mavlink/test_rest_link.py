@@ -153,6 +153,7 @@ HEARTBEAT = mavlink.MAVLink_heartbeat_message(
 )
 
 
+@pytest.mark.usefixtures("closes_soon")
 @pytest.mark.parametrize(
     "changes",
     [
@@ -180,6 +181,7 @@ def test_a_message_with_bad_values_does_not_end_the_robot_or_keep_an_emergency_b
             diver.show("other")
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_an_emergency_is_sent_though_nothing_can_be_fetched_any_more() -> None:
     with closing(Mavlink2rest()) as server:
         diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))
