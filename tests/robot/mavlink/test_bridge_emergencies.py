@@ -16,8 +16,8 @@ from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import run_listener, spoken
+from tests.robot.mavlink.diver import DONE, TABLE, diving, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
-from tests.robot.mavlink.test_bridge import DONE, TABLE, diving, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 

@@ -23,7 +23,7 @@ from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, crew, diving
+from tests.robot.mavlink.diver import TABLE, crew, diving
 from tests.robot.mavlink.test_patterns import LIGHTS, answering
 from tests.robot.mavlink.vehicle import sailing
 

@@ -19,7 +19,7 @@ from app.robot import RecognitionReady, SourceEnded, StateChanged
 from app.robot.commands.answers import PULSES, Answer
 from app.robot.mavlink import patterns
 from app.robot.mavlink.table import VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, Diver, diving
+from tests.robot.mavlink.diver import TABLE, Diver, diving
 
 LIGHTS = {"answers": {"show": ["lights"]}}
 LOW, BRIGHT = 1100, 1660

@@ -25,8 +25,8 @@ from app.robot.mavlink.links import (
 )
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
+from tests.robot.mavlink.diver import TABLE, Diver, diving, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
-from tests.robot.mavlink.test_bridge import TABLE, Diver, diving, wait_until
 from tests.robot.mavlink.vehicle import Ardusub, sailing
 from tests.robot.rtp_camera import free_port
 

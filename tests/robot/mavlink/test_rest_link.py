@@ -22,8 +22,8 @@ from app.robot.mavlink.lights_and_tilt import LightsOutput, TiltOutput
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
 from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
+from tests.robot.mavlink.diver import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
-from tests.robot.mavlink.test_bridge import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 SENT = [

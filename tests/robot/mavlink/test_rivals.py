@@ -17,7 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot.mavlink.links import create_signing, open_link
 from app.robot.mavlink.peer import MOST_RIVALS, VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, Diver, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, wait_until
 from tests.robot.mavlink.test_peer import (
     QUICK,
     Socket,

@@ -24,7 +24,7 @@ from app.robot.mavlink import bridge, links
 from app.robot.mavlink.links import Reader, create_signing, open_link
 from app.robot.mavlink.table import VehicleTable
 from tests.robot.languages import spoken
-from tests.robot.mavlink.test_bridge import TABLE, Diver, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, wait_until
 from tests.robot.mavlink.test_peer import QUICK, Socket, beat, packed
 from tests.robot.mavlink.vehicle import sailing
 from tests.robot.rtp_camera import free_port

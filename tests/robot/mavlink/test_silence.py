@@ -11,7 +11,7 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from app.robot.mavlink.orders import EMERGENCY_SECONDS
-from tests.robot.mavlink.test_bridge import Diver, diving
+from tests.robot.mavlink.diver import Diver, diving
 from tests.robot.mavlink.vehicle import SimulatedVehicle
 
 OUTAGES = (5.0, 12.0, 36.0, 600.0)
