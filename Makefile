@@ -32,7 +32,7 @@ endif
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help run models test check quick coverage pytest lint page format docs bench release languages lock clean
+.PHONY: help run models test check quick coverage durations pytest lint page format docs bench release languages lock clean
 .PHONY: collection collection-ros2 collection-others
 
 help:  ## Show this list
@@ -63,6 +63,10 @@ quick: $(VENV)/.development $(PAGE_TOOLS)
 coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches the tests execute
 	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci \
 	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
+
+durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test and fixture takes, into build/durations.tsv
+	$(BIN)/python -m pytest -p tests.durations -n 2 --dist loadfile --no-loadscope-reorder \
+	  --hypothesis-profile ci -q $(TESTS)
 
 # Distributed by file, since the tests of one file share a server, a database or a recording; in the
 # order of tests/conftest.py, the long ones first. Three workers even on two cores: tests with a

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from app import __version__
@@ -45,8 +46,8 @@ def build_release(target: Path) -> list[Path]:
     with tempfile.TemporaryDirectory() as scratch:
         # The second build has another path, as on another machine.
         first, second = Path(scratch, "first"), Path(scratch, "again", "elsewhere")
-        for place in (first, second):
-            _build_once(place, bill, seconds)
+        with ThreadPoolExecutor() as pool:
+            list(pool.map(lambda place: _build_once(place, bill, seconds), (first, second)))
         for built in sorted((first / "dist").iterdir()):
             if built.read_bytes() != (second / "dist" / built.name).read_bytes():
                 raise ReleaseError(f"two builds of {built.name} differ; find out what does")

@@ -6,7 +6,6 @@ from fractions import Fraction
 from pathlib import Path
 
 import av
-import cv2
 
 
 def shortened(clip: Path, copy: Path, seconds: float) -> Path:
@@ -46,17 +45,6 @@ def in_chapters(clip: Path, *chapters: Path) -> tuple[Path, ...]:
         for target in targets:
             target.close()
     return chapters
-
-
-def film_of(clip: Path, rate: float) -> list[bytes]:
-    """Return JPEGs of a clip at another frame rate."""
-    with av.open(str(clip)) as source:
-        stream = source.streams.video[0]
-        assert stream.average_rate is not None
-        frames = [frame.to_ndarray(format="bgr24") for frame in source.decode(stream)]
-    step = float(stream.average_rate) / rate
-    kept = [frames[int(number * step)] for number in range(int(len(frames) / step))]
-    return [cv2.imencode(".jpg", frame)[1].tobytes() for frame in kept]
 
 
 def thinned(

@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 import pytest
 
+from app.api.services import invited_takes
 from app.api.services.running_studio import Studio
 from app.settings import Settings
 from tests.api.invitations import client_with, invite, token_of
@@ -19,6 +20,12 @@ from tests.recognition.damaged_clips import write_clip
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
     return Settings(data_dir=tmp_path / "data", samples_dir=tmp_path / "samples")
+
+
+@pytest.fixture
+def judged_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a server look for takes of invited divers ten times a second."""
+    monkeypatch.setattr(invited_takes, "LOOK_SECONDS", 0.1)
 
 
 @pytest.fixture

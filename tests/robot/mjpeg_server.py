@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Sequence
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 
 import cv2
@@ -36,8 +35,6 @@ class MjpegServer(CameraServer):
         Brightness of all its pictures.
     pictures
         Number of pictures after which it sends nothing more, but keeps the connection.
-    film
-        JPEGs to send instead, in order and again.
 
     """
 
@@ -48,9 +45,8 @@ class MjpegServer(CameraServer):
         pause: float = 0.02,
         brightness: int = 100,
         pictures: float = math.inf,
-        film: Sequence[bytes] = (),
     ) -> None:
-        shown, off = film or [picture(brightness)], threading.Event()
+        jpeg, off = picture(brightness), threading.Event()
 
         class Handler(BaseHTTPRequestHandler):
             def do_GET(self) -> None:
@@ -63,7 +59,6 @@ class MjpegServer(CameraServer):
                     sent = 0
                     while not off.wait(pause):
                         if sent < pictures:
-                            jpeg = shown[sent % len(shown)]
                             length = f"{len(jpeg)}\r\n\r\n"
                             self.wfile.write(f"{head}{length}".encode() + jpeg + b"\r\n")
                             sent += 1

@@ -17,6 +17,8 @@ from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem
 
+pytestmark = pytest.mark.usefixtures("judged_soon")
+
 QUESTION = "This looks like 'line'. Is it 'circle'?"
 
 

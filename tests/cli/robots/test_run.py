@@ -18,7 +18,7 @@ from app.recognition.triggers.trigger import Trigger, TriggerKind
 from tests.command_line import OsgStudio
 from tests.recognition.damaged_clips import write_clip
 from tests.robot.languages import language_of
-from tests.robot.mavlink.test_bridge import diving
+from tests.robot.mavlink.diver import diving
 from tests.robot.mavlink.vehicle import sailing
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")

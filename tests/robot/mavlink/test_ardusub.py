@@ -15,7 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot.mavlink.actions import describe_refusal
 from app.robot.mavlink.table import Mode, parse_vehicle_table
 from tests.conftest import ROOT
-from tests.robot.mavlink.test_bridge import TABLE, diving
+from tests.robot.mavlink.diver import TABLE, diving
 from tests.robot.mavlink.vehicle import MODES, needs_position
 
 PAGE = (ROOT / "docs" / "robots" / "mavlink.md").read_text(encoding="utf-8")

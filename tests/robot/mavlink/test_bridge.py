@@ -4,22 +4,15 @@ from __future__ import annotations
 
 import queue
 import random
-import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
-from typing import Any
 
-import numpy as np
 import pytest
 
 pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.recognition import Gesture, Language, takes_in
 from app.recognition.phrases.grammar import Grammar
 from app.recognition.phrases.phrase import OneOf, Phrase, Slot, SlotType
 from app.robot import (
@@ -30,152 +23,20 @@ from app.robot import (
     PhraseListener,
     RecognitionReady,
     SourceEnded,
-    TakeRecognized,
-    TakeRejected,
     TriggerListener,
 )
 from app.robot.mavlink import peer
 from app.robot.mavlink.bridge import TEXT_BYTES, MavlinkBridge, fit_text
-from app.robot.mavlink.links import VehicleLink, open_link
+from app.robot.mavlink.links import open_link
 from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import language_of, run_listener, spoken
-from tests.robot.mavlink.vehicle import Ardusub, sailing
-
-TABLE: dict[str, Any] = {
-    "format": "osg-studio/vehicle-table",
-    "version": 1,
-    "gestures": {
-        "stop": {"do": "hold"},
-        "up": {"do": "surface"},
-        "free": {"do": "mode", "mode": "STABILIZE"},
-        "bright": {"do": "lights", "percent": 50},
-        "photo": {"do": "camera"},
-        "deep": {"do": "depth", "metres": 5},
-    },
-    "emergency": {"help": "surface"},
-    "cancel": ["no"],
-    "vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 5},
-}
-DONE = {
-    "stop": ["ALT_HOLD"],
-    "up": ["SURFACE"],
-    "free": ["STABILIZE"],
-    "bright": ["servo 13 1500"],
-    "photo": ["picture"],
-    "deep": ["ALT_HOLD", "depth 5"],
-}
-DOES: dict[str, Callable[[Ardusub], bool]] = {
-    "stop": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_ALT_HOLD,
-    "up": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_SURFACE,
-    "free": lambda vehicle: vehicle.mode == mavlink.SUB_MODE_STABILIZE,
-    "bright": lambda vehicle: vehicle.pulse == 1500,
-    "photo": lambda vehicle: "picture" in vehicle.obeyed,
-    "deep": lambda vehicle: (vehicle.mode, vehicle.target) == (mavlink.SUB_MODE_ALT_HOLD, -5),
-}
-WAIT = 20.0
+from tests.robot.mavlink.diver import DOES, DONE, TABLE, WAIT, a_take, crew, diving, wait_until
+from tests.robot.mavlink.vehicle import sailing
 
 
-@cache
-def crew() -> ActiveLanguage:
-    """Return a language with the gestures of the table, and one that it does not name."""
-    demonstration = takes_in(recording_of("circle"))[0].poses
-    labels = [*DONE, "help", "no", "other"]
-    gestures = [Gesture.from_demonstration(label, demonstration) for label in labels]
-    return ActiveLanguage.from_json(Language("crew", gestures).to_json())
-
-
-@cache
-def a_take() -> TakeRecognized:
-    events = run_listener(TriggerListener(spoken("circle")), recording_of("circle"))
-    return next(event for event in events if isinstance(event, TakeRecognized))
-
-
-@cache
-def a_rejected_take() -> TakeRejected:
-    events = run_listener(TriggerListener(spoken("circle")), recording_of("line"))
-    return next(event for event in events if isinstance(event, TakeRejected))
-
-
-class Diver:
-    """Shows gestures to a bridge, one every five seconds of the source's clock."""
-
-    def __init__(
-        self,
-        vehicle: Ardusub | None,
-        address: str,
-        table: VehicleTable,
-        link: VehicleLink | None = None,
-        memory: Path | None = None,
-    ) -> None:
-        self.time = 0.0
-        self.delay = 0.0
-        self.lines: queue.Queue[str] = queue.Queue()
-        if vehicle is not None:
-            self.vehicle = vehicle
-        link = link or open_link(address, table.vehicle.system, table.vehicle.component)
-        clock: Callable[[], float] = lambda: self.time + self.delay  # noqa: E731
-        self.bridge = MavlinkBridge(table, link, crew, self.lines.put, clock, memory=memory)
-        self.bridge.publish(build_language_changed(0.0, crew()))
-
-    def show(
-        self,
-        label: str | None,
-        language: ActiveLanguage | None = None,
-        *,
-        pair: tuple[str, str] | None = None,
-        novelty: float = 0.1,
-    ) -> None:
-        """Show a gesture: recognised, rejected (None), or between two."""
-        self.time += 5.0
-        recognition = a_take().recognition.model_copy(update={"novelty": np.full(1, novelty)})
-        take: TakeRecognized | TakeRejected = replace(a_rejected_take(), pair=pair)
-        if label is not None:
-            take = replace(a_take(), label=label, recognition=recognition)
-        sha256 = (language or crew()).sha256
-        self.bridge.publish(
-            replace(take, time=self.time, start=self.time - 3, end=self.time - 1, sha256=sha256)
-        )
-
-    def confirm(self, label: str) -> None:
-        """Show a gesture twice."""
-        self.show(label)
-        self.show(label)
-
-    def wait_for(self, *beginnings: str) -> str:
-        """Return the next line that begins in one of these ways."""
-        while True:
-            line = self.lines.get(timeout=WAIT)
-            if line.startswith(beginnings):
-                return line
-
-
-def wait_until(happens: Callable[[], bool]) -> None:
-    """Wait until something happens; an error after a long time."""
-    by = time.monotonic() + WAIT
-    while not happens():
-        assert time.monotonic() < by
-        time.sleep(0.01)
-
-
-@contextmanager
-def diving(
-    kind: str = "udpin",
-    changes: Mapping[str, object] = TABLE,
-    memory: Path | None = None,
-    **settings: Any,
-) -> Iterator[Diver]:
-    """Put a diver and a vehicle into the water, with a bridge between them."""
-    table = VehicleTable.model_validate({**TABLE, **changes})
-    with sailing(kind=kind, **settings) as vehicle:
-        scheme = {"udpin": "udpout", "tcpin": "tcp"}[kind]
-        diver = Diver(vehicle, f"{scheme}:127.0.0.1:{vehicle.port}", table, memory=memory)
-        with closing(diver.bridge):
-            yield diver
-
-
-@pytest.mark.parametrize(("kind", "missions"), [("udpin", 100), ("tcpin", 10)])
+@pytest.mark.parametrize(("kind", "missions"), [("simulated", 100), ("udpin", 10), ("tcpin", 10)])
 def test_confirmed_missions_are_obeyed_though_a_fifth_is_lost_and_the_vehicle_restarts(
     kind: str, missions: int
 ) -> None:
@@ -187,7 +48,7 @@ def test_confirmed_missions_are_obeyed_though_a_fifth_is_lost_and_the_vehicle_re
             diver.vehicle.obeyed.clear()
             if number % 10 == 9:
                 # A restart shows by a clock that goes back, so the clock has to go on before.
-                wait_until(lambda: diver.vehicle.uptime > 1.5)
+                diver.wait_until(lambda: diver.vehicle.uptime > 1.5)
                 diver.vehicle.restarts_at_next = True
             diver.confirm(shown)
             assert diver.wait_for("done", "refused", "NOT DONE").startswith("done")
@@ -240,14 +101,14 @@ def test_nothing_that_was_not_confirmed_is_asked_of_the_vehicle() -> None:
 def test_a_cancel_stops_a_confirmed_command_that_is_not_carried_out_yet() -> None:
     with diving(is_slow=True) as diver:
         diver.confirm("deep")
-        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
         diver.show("no")
         said = diver.wait_for("cancelled", "nothing")
         assert said.startswith("cancelled: depth 5 m; DO_SET_MODE ALT_HOLD was sent ")
         asked = diver.vehicle.asked
         diver.vehicle.is_slow = False
-        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
-        time.sleep(0.3)
+        diver.wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_ALT_HOLD)
+        diver.wait(0.3)
         diver.show("no")
         assert diver.wait_for("cancelled", "nothing") == "nothing to cancel"
     assert diver.vehicle.asked <= asked + 1
@@ -286,22 +147,22 @@ def test_a_pilot_who_changes_the_mode_ends_the_order(label: str) -> None:
             diver.show(label)
         else:
             diver.confirm(label)
-        wait_until(lambda: diver.vehicle.asked > 0)
-        time.sleep(0.1)  # the first heartbeat after a request may be older than it
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait(0.1)  # the first heartbeat after a request may be older than it
         diver.vehicle.pilot = mavlink.SUB_MODE_STABILIZE
         assert diver.wait_for("done", "NOT DONE").startswith(
             "NOT DONE, the pilot changed the mode: "
         )
         asked = diver.vehicle.asked
-        time.sleep(0.3)
+        diver.wait(0.3)
         assert diver.vehicle.asked == asked
 
 
 @pytest.mark.withstands(row="H35")
 def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
     with diving(armed=False) as diver:
-        wait_until(lambda: diver.bridge._peer.sender is not None)
-        time.sleep(0.1)
+        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait(0.1)
         for label, words in (("stop", "hold"), ("deep", "depth 5 m")):
             diver.confirm(label)
             assert diver.wait_for("done", "NOT DONE") == f"NOT DONE, vehicle is disarmed: {words}"
@@ -310,8 +171,8 @@ def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
         assert diver.wait_for("done", "NOT DONE") == "done: lights 50 %"
         diver.show("help")
         assert diver.wait_for("done", "vehicle is") == "vehicle is disarmed: surface"
-        wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_SURFACE)
-        time.sleep(0.2)
+        diver.wait_until(lambda: diver.vehicle.mode == mavlink.SUB_MODE_SURFACE)
+        diver.wait(0.2)
         assert diver.lines.empty()
         diver.vehicle.armed = True
         assert diver.wait_for("done", "NOT DONE") == "done: surface"
@@ -321,7 +182,7 @@ def test_a_disarmed_vehicle_is_told_and_never_done() -> None:
 def test_a_vehicle_that_is_disarmed_ends_an_ordinary_order() -> None:
     with diving(is_slow=True) as diver:
         diver.confirm("stop")
-        wait_until(lambda: diver.vehicle.asked > 0)
+        diver.wait_until(lambda: diver.vehicle.asked > 0)
         diver.vehicle.armed = False
         assert diver.wait_for("done", "NOT DONE") == "NOT DONE, vehicle is disarmed: hold"
 
@@ -333,7 +194,7 @@ def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bo
         diver.show("help")
         diver.wait_for("EMERGENCY")
         diver.bridge.publish(SourceEnded(diver.time, 100, 0, stopped))
-        diver.bridge.close()
+        diver.close()
         assert not diver.bridge._thread.is_alive()
         reason = "robot is stopped" if stopped else "robot has ended"
         assert diver.wait_for("NOT DONE") == f"NOT DONE, {reason}: surface"
@@ -341,7 +202,7 @@ def test_a_robot_that_ends_lets_go_of_a_vehicle_that_does_not_answer(stopped: bo
 
 def test_what_a_diver_must_know_of_the_robot_is_on_the_vehicles_displays() -> None:
     with diving() as diver:
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
         diver.bridge.publish(RecognitionReady(1.0))
         diver.bridge.publish(FrameRateChanged(6.0, 2.0, False))
         diver.bridge.publish(OutputFailed(7.0, "stdout", "No space left on device"))
@@ -372,7 +233,7 @@ def test_an_emergency_that_is_refused_is_told_once_and_sent_again() -> None:
         assert diver.wait_for("refused") == "refused (DENIED): surface"
         asked = diver.vehicle.asked
         while diver.vehicle.asked < asked + 3:
-            time.sleep(0.01)
+            diver.wait(0.01)
         diver.vehicle.refused = frozenset()
         assert diver.wait_for("refused", "done") == "done: surface"
     assert diver.vehicle.obeyed == ["SURFACE"]

@@ -16,8 +16,8 @@ from app.robot.mavlink.table import VehicleTable
 from app.robot.runtime import build_language_changed
 from tests.api.recordings import recording_of
 from tests.robot.languages import run_listener, spoken
+from tests.robot.mavlink.diver import DONE, TABLE, diving, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
-from tests.robot.mavlink.test_bridge import DONE, TABLE, diving, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 
@@ -74,14 +74,13 @@ def test_an_ordinary_command_never_replaces_an_emergency() -> None:
     assert diver.vehicle.obeyed == ["SURFACE", "STABILIZE"]
 
 
-@pytest.mark.parametrize("link", ["udp", "tcp", "mavlink2rest"])
 @pytest.mark.parametrize(
-    ("second", "said", "obeyed"),
+    ("link", "second", "said", "obeyed"),
     [
-        ("circle", "done: hold", ["ALT_HOLD"]),
-        ("square", "done: depth 5 m", ["ALT_HOLD", "depth 5"]),
-        ("line", "is cancelled", []),
-        ("rounded square", "not understood; begin again", []),
+        ("udp", "circle", "done: hold", ["ALT_HOLD"]),
+        ("tcp", "square", "done: depth 5 m", ["ALT_HOLD", "depth 5"]),
+        ("mavlink2rest", "line", "is cancelled", []),
+        ("udp", "rounded square", "not understood; begin again", []),
     ],
 )
 def test_circle_or_square_is_asked_of_the_diver_whose_answer_is_obeyed(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import math
-import time
 from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
@@ -24,7 +23,7 @@ from app.robot.mavlink.bridge import MavlinkBridge
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.patterns import AnswerDesk
 from app.robot.mavlink.table import Answers, Vehicle, VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, crew, diving, wait_until
+from tests.robot.mavlink.diver import TABLE, crew, diving
 from tests.robot.mavlink.test_patterns import LIGHTS, answering
 from tests.robot.mavlink.vehicle import sailing
 
@@ -146,12 +145,12 @@ def test_what_a_hanging_vehicle_does_late_is_told_and_was_sent_once(ends: str) -
     changes = {"vehicle": {"repeat_seconds": 0.02, "give_up_seconds": 1}}
     sent = "hold; DO_SET_MODE ALT_HOLD was sent once"
     with diving(changes=changes) as diver:
-        wait_until(lambda: diver.bridge._desk._mode is not None)
+        diver.wait_until(lambda: diver.bridge._desk._mode is not None)
         diver.vehicle.hangs = True
-        time.sleep(0.1)
+        diver.wait(0.1)
         asked = diver.vehicle.asked
         diver.confirm("stop")
-        time.sleep(0.5)
+        diver.wait(0.5)
         if ends == "cancel":
             diver.show("no")
             assert diver.wait_for("cancelled") == f"cancelled: {sent}"
@@ -209,7 +208,7 @@ def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start
     kept, file = b"", tmp_path / "vehicle.toml.before"
     with answering(lights=1800.0, memory=file) as diver:
         diver.show(None)
-        wait_until(lambda: diver.vehicle.pulse == 1100)
+        diver.wait_until(lambda: diver.vehicle.pulse == 1100)
         kept = file.read_bytes()
     assert not file.exists()
     file.write_bytes(kept)
@@ -217,8 +216,8 @@ def test_a_robot_that_is_killed_in_a_pulse_restores_the_lights_at_its_next_start
         link = open_link(f"udpout:127.0.0.1:{vehicle.port}", 1, 1)
         lines: list[str] = []
         with closing(MavlinkBridge(table, link, crew, lines.append, memory=file)):
-            wait_until(lambda: not file.exists())
-            time.sleep(0.5)
+            diver.wait_until(lambda: not file.exists())
+            diver.wait(0.5)
             assert vehicle.pulse == (1800 if pilot is None else pilot)
 
 
@@ -239,7 +238,7 @@ def test_lights_are_not_set_on_a_motor_or_an_unknown_output(
         "vehicle": {**TABLE["vehicle"], "lights_servo": 1, "give_up_seconds": 1},
     }
     with answering(changes, function=function, servo=1) as diver:
-        time.sleep(1.2)
+        diver.wait(1.2)
         diver.show("stop")
         assert diver.wait_for("not shown") == f"not shown to the diver, {reason}: repeat"
         diver.confirm("bright")
@@ -277,7 +276,7 @@ def test_a_damaged_memory_sets_nothing(tmp_path: Path, content: bytes) -> None:
     file = tmp_path / "vehicle.toml.before"
     file.write_bytes(content)
     with answering(lights=1100.0, memory=file) as diver:
-        time.sleep(0.5)
+        diver.wait(0.5)
         assert diver.vehicle.shown == []
 
 
@@ -287,7 +286,7 @@ def test_a_memory_that_cannot_be_written_is_told_at_the_start_and_the_answer_is_
     with answering(memory=tmp_path / "no folder" / "before") as diver:
         assert "cannot be written" in diver.wait_for(str(tmp_path))
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 2)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 2)
 
 
 def test_every_limit_says_which_seconds_it_counts() -> None:

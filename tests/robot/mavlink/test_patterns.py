@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from itertools import pairwise
@@ -20,7 +19,7 @@ from app.robot import RecognitionReady, SourceEnded, StateChanged
 from app.robot.commands.answers import PULSES, Answer
 from app.robot.mavlink import patterns
 from app.robot.mavlink.table import VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, Diver, diving, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, diving
 
 LIGHTS = {"answers": {"show": ["lights"]}}
 LOW, BRIGHT = 1100, 1660
@@ -30,17 +29,17 @@ LOW, BRIGHT = 1100, 1660
 def answering(changes: Mapping[str, object] = LIGHTS, **settings: Any) -> Iterator[Diver]:
     """Put a diver into the water whose vehicle answers, and reports its lights already."""
     with diving(changes=changes, **settings) as diver:
-        wait_until(lambda: bool(diver.vehicle.reports))
+        diver.wait_until(lambda: bool(diver.vehicle.reports))
         if diver.vehicle.function is not None:
-            wait_until(lambda: diver.bridge._facts.function == diver.vehicle.function)
-        time.sleep(0.05)
+            diver.wait_until(lambda: diver.bridge._facts.function == diver.vehicle.function)
+        diver.wait(0.05)
         yield diver
 
 
 def wait_for_pattern(diver: Diver, pulses: int) -> None:
     """Wait until a pattern is over and what was before is restored."""
-    wait_until(lambda: len(diver.vehicle.shown) >= 2 * pulses)
-    wait_until(lambda: diver.bridge.has_answered)
+    diver.wait_until(lambda: len(diver.vehicle.shown) >= 2 * pulses)
+    diver.wait_until(lambda: diver.bridge.has_answered)
 
 
 SHOWINGS = {
@@ -55,10 +54,10 @@ SHOWINGS = {
 @pytest.mark.parametrize("answer", Answer, ids=lambda answer: answer.value)
 def test_each_answer_is_shown_once_within_half_a_second(answer: Answer) -> None:
     with answering() as diver:
-        began = time.monotonic()
+        began = diver.vehicle._now()
         SHOWINGS[answer](diver)
         wait_for_pattern(diver, PULSES[answer])
-        time.sleep(0.5)
+        diver.wait(0.5)
         levels = [value for _, _, value in diver.vehicle.shown]
         assert levels == [BRIGHT, LOW] * PULSES[answer]
         times = [moment for moment, _, _ in diver.vehicle.shown]
@@ -95,13 +94,13 @@ def test_a_camera_nods_and_looks_where_it_looked_before() -> None:
 def test_the_pilot_keeps_the_lights_that_he_changes_during_a_pattern() -> None:
     with answering() as diver:
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 3)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 3)
         diver.vehicle.turn_lights(1300)
-        time.sleep(1.0)
+        diver.wait(1.0)
         assert diver.vehicle.pulse == 1300
         assert len(diver.vehicle.shown) == 4
         diver.show(None)
-        time.sleep(0.5)
+        diver.wait(0.5)
         assert diver.vehicle.pulse == 1300
 
 
@@ -111,7 +110,7 @@ def test_nothing_is_shown_after_the_pilot_has_changed_the_lights(
     monkeypatch.setattr(patterns, "LATEST_SECONDS", 0.3)
     with answering() as diver:
         diver.vehicle.turn_lights(1300)
-        time.sleep(0.1)
+        diver.wait(0.1)
         diver.show("stop")
         said = diver.wait_for(patterns.NOT_SHOWN)
         assert said == "not shown to the diver, pilot has changed lights: repeat"
@@ -121,24 +120,24 @@ def test_nothing_is_shown_after_the_pilot_has_changed_the_lights(
 def test_a_pattern_ends_when_a_take_begins_and_none_begins_in_a_take() -> None:
     with answering() as diver:
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 3)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 3)
         diver.bridge.publish(StateChanged(diver.time, TakeState.recording))
-        wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_answered)
         assert [value for _, _, value in diver.vehicle.shown] == [BRIGHT, LOW, BRIGHT, LOW]
         diver.bridge.publish(RecognitionReady(diver.time))
-        time.sleep(0.4)
+        diver.wait(0.4)
         assert len(diver.vehicle.shown) == 4
         diver.bridge.publish(StateChanged(diver.time, TakeState.done))
-        wait_until(lambda: len(diver.vehicle.shown) > 4)
+        diver.wait_until(lambda: len(diver.vehicle.shown) > 4)
 
 
 def test_an_emergency_is_answered_first() -> None:
     with answering() as diver:
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 1)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 1)
         diver.show("help")
         diver.show("other")
-        wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_answered)
     levels = [value for _, _, value in diver.vehicle.shown]
     assert levels == [BRIGHT, LOW] * (len(levels) // 2)
     assert len(levels) in (2 + 2 * PULSES[Answer.done], 4 + 2 * PULSES[Answer.done])
@@ -148,7 +147,7 @@ def test_an_emergency_is_answered_first() -> None:
 def test_the_lights_are_as_before_when_the_robot_ends(stopped: bool) -> None:
     with answering() as diver:
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 3)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 3)
         diver.bridge.publish(SourceEnded(diver.time, 100, 0, stopped))
     assert diver.vehicle.pulse == LOW
     assert len(diver.vehicle.shown) == 4
@@ -158,12 +157,12 @@ def test_the_lights_are_as_before_after_a_lost_link(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(patterns, "FRESH_SECONDS", 0.2)
     with answering() as diver:
         diver.show(None)
-        wait_until(lambda: len(diver.vehicle.shown) == 3)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 3)
         diver.vehicle.loss = 1.0
-        time.sleep(0.6)
+        diver.wait(0.6)
         assert diver.vehicle.pulse == BRIGHT
         diver.vehicle.loss = 0.0
-        wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_answered)
         assert diver.vehicle.pulse == LOW
         assert len(diver.vehicle.shown) == 4
 
@@ -171,7 +170,7 @@ def test_the_lights_are_as_before_after_a_lost_link(monkeypatch: pytest.MonkeyPa
 def test_an_order_for_the_lights_is_proven_by_its_own_answer_alone() -> None:
     with answering() as diver:
         diver.show("bright")
-        wait_until(lambda: len(diver.vehicle.shown) == 1)
+        diver.wait_until(lambda: len(diver.vehicle.shown) == 1)
         diver.show("bright")
         assert diver.wait_for("done", "NOT DONE") == "done: lights 50 %"
         assert diver.vehicle.pulse == 1500
@@ -197,15 +196,15 @@ def test_lights_that_the_vehicle_refuses_to_set_are_told_once() -> None:
     refused = frozenset({int(mavlink.MAV_CMD_DO_SET_SERVO)})
     with answering(refused=refused) as diver:
         diver.show("stop")
-        wait_until(lambda: diver.bridge.has_answered)
+        diver.wait_until(lambda: diver.bridge.has_answered)
     assert diver.vehicle.shown == []
 
 
 def test_a_table_without_answers_asks_the_vehicle_for_nothing() -> None:
     with diving() as diver:
-        wait_until(lambda: diver.bridge._peer.sender is not None)
+        diver.wait_until(lambda: diver.bridge._peer.sender is not None)
         diver.show(None)
-        time.sleep(0.3)
+        diver.wait(0.3)
     assert diver.vehicle.asked == 0
     assert diver.vehicle.shown == []
 

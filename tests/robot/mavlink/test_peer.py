@@ -25,8 +25,8 @@ from app.robot.mavlink.links import (
 )
 from app.robot.mavlink.peer import VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
+from tests.robot.mavlink.diver import TABLE, Diver, diving, wait_until
 from tests.robot.mavlink.mavlink2rest import serving
-from tests.robot.mavlink.test_bridge import TABLE, Diver, diving, wait_until
 from tests.robot.mavlink.vehicle import Ardusub, sailing
 from tests.robot.rtp_camera import free_port
 
@@ -149,7 +149,7 @@ def listening_diver(changes: dict[str, Any] | None = None) -> Iterator[tuple[Div
 
 @pytest.mark.withstands(row="H35")
 @pytest.mark.parametrize(("kind", "autopilot", "name"), OTHER_KINDS, ids=lambda value: str(value))
-@pytest.mark.parametrize("link", ["udpin", "tcpin"])
+@pytest.mark.parametrize("link", ["simulated", "tcpin"])
 def test_a_vehicle_of_another_kind_gets_no_command_and_one_line(
     link: str, kind: int, autopilot: int, name: str
 ) -> None:
@@ -190,6 +190,7 @@ def test_a_vehicle_that_turns_out_to_be_of_another_kind_ends_the_order() -> None
         assert diver.wait_for("NOT DONE", "done") == "NOT DONE, no ArduSub: hold"
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_no_command_goes_out_before_a_heartbeat() -> None:
     with listening_diver(QUICK) as (diver, port), closing(Socket(port)) as stranger:
         uptime = mavlink.MAVLink_system_time_message(0, 60_000)
@@ -250,21 +251,21 @@ def of_second() -> list[Any]:
 
 
 def test_a_second_vehicle_with_the_same_ids_proves_nothing_while_the_first_is_mute() -> None:
-    with diving(changes=QUICK) as diver:
+    with diving("udpin", QUICK) as diver:
         diver.vehicle.loss = 1.0
         with closing(Socket(sender_port(diver))) as second:
             second.send_always(of_second, 0.005)
             assert diver.wait_for("two vehicles").endswith(" is ignored")
             diver.confirm("stop")
             assert diver.wait_for("done", "NOT DONE") == "NOT DONE, no answer: hold"
-        diver.bridge.close()
+        diver.close()
         assert second.commands == []
         assert not [line for line in list(diver.lines.queue) if line.startswith("two vehicles")]
 
 
 @pytest.mark.withstands(row="H35")
 def test_a_forged_acknowledgement_of_another_address_proves_nothing() -> None:
-    with diving(changes=QUICK) as diver, closing(Socket(sender_port(diver))) as forger:
+    with diving("udpin", QUICK) as diver, closing(Socket(sender_port(diver))) as forger:
         servo = mavlink.MAV_CMD_DO_SET_SERVO
         forger.send_always(lambda: [acknowledgement(servo)], 0.002)
         diver.vehicle.refused = frozenset({int(servo)})
@@ -333,6 +334,7 @@ def test_a_vehicle_of_another_kind_at_another_address_does_not_keep_orders_from_
     assert found.is_proven(began + 2)
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_a_new_connection_gets_no_command_before_a_heartbeat(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -22,8 +22,8 @@ from app.robot.mavlink.lights_and_tilt import LightsOutput, TiltOutput
 from app.robot.mavlink.links import open_link
 from app.robot.mavlink.rest_link import from_json, to_json
 from app.robot.mavlink.table import Camera, Lights, Vehicle, VehicleTable
+from tests.robot.mavlink.diver import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.mavlink2rest import as_json, as_message, serving
-from tests.robot.mavlink.test_bridge import DOES, DONE, TABLE, Diver, wait_until
 from tests.robot.mavlink.vehicle import sailing
 
 SENT = [
@@ -153,6 +153,7 @@ HEARTBEAT = mavlink.MAVLink_heartbeat_message(
 )
 
 
+@pytest.mark.usefixtures("closes_soon")
 @pytest.mark.parametrize(
     "changes",
     [
@@ -180,6 +181,7 @@ def test_a_message_with_bad_values_does_not_end_the_robot_or_keep_an_emergency_b
             diver.show("other")
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_an_emergency_is_sent_though_nothing_can_be_fetched_any_more() -> None:
     with closing(Mavlink2rest()) as server:
         diver = Diver(None, server.address, VehicleTable.model_validate(TABLE))

@@ -17,7 +17,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from app.robot.mavlink.links import create_signing, open_link
 from app.robot.mavlink.peer import MOST_RIVALS, VehiclePeer
 from app.robot.mavlink.table import Vehicle, VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, Diver, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, wait_until
 from tests.robot.mavlink.test_peer import (
     QUICK,
     Socket,
@@ -41,6 +41,7 @@ def modes_of(received: list[Any]) -> set[float]:
     return {each.param2 for each in received if each.get_type() == "COMMAND_LONG"}
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_with_two_claimants_orders_wait_and_an_emergency_goes_to_both_and_is_never_done() -> None:
     with (
         listening_diver(QUICK) as (diver, port),
@@ -91,6 +92,7 @@ def test_the_address_that_the_table_names_wins(is_first: bool) -> None:
     assert rival.commands == []
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_the_claimant_whose_link_is_signed_wins(tmp_path: Path) -> None:
     key, port = bytes(range(32)), free_port()
     table = VehicleTable.model_validate(TABLE)
@@ -163,6 +165,7 @@ def test_a_flood_of_addresses_is_no_flood_of_commands() -> None:
     assert len(found.take_notices()) == MOST_RIVALS
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_of_two_vehicles_behind_one_router_an_emergency_reaches_both() -> None:
     began = time.monotonic()
 

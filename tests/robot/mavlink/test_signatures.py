@@ -24,7 +24,7 @@ from app.robot.mavlink import bridge, links
 from app.robot.mavlink.links import Reader, create_signing, open_link
 from app.robot.mavlink.table import VehicleTable
 from tests.robot.languages import spoken
-from tests.robot.mavlink.test_bridge import TABLE, Diver, wait_until
+from tests.robot.mavlink.diver import TABLE, Diver, wait_until
 from tests.robot.mavlink.test_peer import QUICK, Socket, beat, packed
 from tests.robot.mavlink.vehicle import sailing
 from tests.robot.rtp_camera import free_port
@@ -131,6 +131,7 @@ def test_a_vehicle_that_waits_for_its_first_message_is_heard_after_a_restart(
         assert vehicle.obeyed == ["ALT_HOLD"]
 
 
+@pytest.mark.usefixtures("closes_soon")
 def test_a_vehicle_that_rejects_our_signature_is_named() -> None:
     """The vehicle is heard, signed as it should be, and answers a ground station alone."""
     accepted = mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_DO_SET_MODE, 0, 0, 0, 255, 190)

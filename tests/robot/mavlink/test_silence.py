@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
-from types import SimpleNamespace
-from typing import Any, cast
 
 import pytest
 
@@ -13,109 +10,35 @@ pytest.importorskip("pymavlink", reason="needs the extra mavlink")
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from app.robot.mavlink import bridge
-from app.robot.mavlink.actions import OUR_COMPONENT
-from app.robot.mavlink.links import VehicleLink
 from app.robot.mavlink.orders import EMERGENCY_SECONDS
-from app.robot.mavlink.table import VehicleTable
-from tests.robot.mavlink.test_bridge import TABLE, Diver
-from tests.robot.mavlink.vehicle import Ardusub
+from tests.robot.mavlink.diver import Diver, diving
+from tests.robot.mavlink.vehicle import SimulatedVehicle
 
-STEP = 0.05
 OUTAGES = (5.0, 12.0, 36.0, 600.0)
 VEHICLE = {"repeat_seconds": 0.5, "give_up_seconds": 10}
 LIGHTS = 1800.0
-ORDER = ("COMMAND_LONG", mavlink.MAV_CMD_DO_SET_MODE)
-
-
-class SimulatedVehicle(Ardusub):
-    """A vehicle without sockets, in simulated time, and the link to it, which can be lost.
-
-    Attributes
-    ----------
-    now
-        Seconds of the simulated clock.
-    linked
-        Whether anything arrives, in either direction.
-    unheard
-        Commands of orders that were sent while nothing arrived.
-
-    """
-
-    expected: tuple[Any, ...] = ()
-    dropped = 0
-    now = 0.0
-    linked = True
-
-    def _connect(self) -> None:
-        self.unheard: list[Any] = []
-        self._sent: list[Any] = []
-        self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
-        self._ends = False
-
-    def _now(self) -> float:
-        return self.now
-
-    def _send(self, message: Any) -> None:
-        message.pack(mavlink.MAVLink(None, 1, 1))
-        self._sent.append(message)
-
-    def wait(self, seconds: float) -> None:
-        """Let time pass, step by step with the bridge's thread."""
-        for number in range(round(seconds / STEP)):
-            self._done.acquire()
-            self.now += STEP
-            if self.linked and number % 2 == 0:
-                self._report()
-            self._go.release()
-
-    def receive(self, seconds: float) -> list[tuple[Any, tuple[Any, ...]]]:
-        """Return what has arrived, for the bridge."""
-        if self._ends:
-            self.now += STEP
-        else:
-            self._done.release()
-            self._go.acquire()
-        found, self._sent = self._sent, []
-        return [(message, ()) for message in found]
-
-    def send(self, message: Any, to: Any) -> None:
-        """Bring the vehicle what the bridge sends."""
-        if self.linked:
-            message.pack(mavlink.MAVLink(None, 1, OUR_COMPONENT))
-            self._hear(message)
-        elif (message.get_type(), getattr(message, "command", None)) == ORDER or (
-            getattr(message, "param2", None) == 1500
-        ):
-            self.unheard.append(message)
-
-    def close(self) -> None:
-        """End of the link; there is nothing to close."""
-
-    def end(self) -> None:
-        """Let the bridge's thread run freely."""
-        self._ends = True
-        self._go.release()
 
 
 @pytest.fixture(params=["lights", "tilt"])
-def diver(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[Diver]:
+def diver(request: pytest.FixtureRequest) -> Iterator[Diver]:
     """Return a diver whose vehicle answers by lights or tilt."""
-    vehicle = SimulatedVehicle(lights=LIGHTS)
-    monkeypatch.setattr(bridge, "clock", SimpleNamespace(monotonic=lambda: vehicle.now))
     shown = {"answers": {"show": [request.param]}, "vehicle": VEHICLE}
-    table = VehicleTable.model_validate({**TABLE, **shown})
-    made = Diver(vehicle, "", table, cast("VehicleLink", vehicle))
-    vehicle.wait(2)
-    yield made
-    vehicle.end()
-    made.bridge.close()
+    with diving(changes=shown, lights=LIGHTS) as made:
+        made.wait(2)
+        yield made
     assert not made.bridge._thread.is_alive()
 
 
 def vehicle_of(diver: Diver) -> SimulatedVehicle:
     assert isinstance(diver.vehicle, SimulatedVehicle)
     return diver.vehicle
+
+
+def pass_silence(vehicle: SimulatedVehicle, seconds: float) -> None:
+    """Let a silence pass, in long steps once every time limit is over."""
+    vehicle.linked = False
+    vehicle.wait(min(seconds, 40))
+    vehicle.wait(max(seconds - 40, 0), step=2.0)
 
 
 def take_lines(diver: Diver) -> list[str]:
@@ -145,8 +68,7 @@ def test_an_outage_in_any_state_restores_the_output_and_is_told_truly(
             diver.show(label)
     if state == "accepted":
         vehicle.wait(0.2)
-    vehicle.linked = False
-    vehicle.wait(seconds)
+    pass_silence(vehicle, seconds)
     assert len(vehicle.unheard) <= (10 if is_emergency else 1)
     vehicle.linked, vehicle.is_slow = True, False
     vehicle.wait(1.0)
@@ -171,8 +93,7 @@ def test_an_emergency_lasts_a_minute_in_which_the_vehicle_is_heard(diver: Diver)
     diver.show("help")
     for _ in range(2):
         vehicle.wait(EMERGENCY_SECONDS / 3)
-        vehicle.linked = False
-        vehicle.wait(600)
+        pass_silence(vehicle, 600)
         vehicle.linked = True
         assert diver.bridge.in_emergency
     vehicle.wait(EMERGENCY_SECONDS / 3 + 5)

@@ -21,8 +21,13 @@ os.environ.setdefault("MAVLINK20", "1")  # read when mavutil is imported
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from app.robot.mavlink.actions import OUR_COMPONENT
+
 SYSTEM, COMPONENT = 1, 1
 BEAT_SECONDS = 0.01
+STEP = 0.05
+"""Seconds of a step of simulated time, like the bridge's own."""
+
 DEPTH = 1.0
 MODES: dict[int, str] = {
     **mavutil.mode_mapping_sub,
@@ -372,6 +377,93 @@ class Ardusub:
         if self.mode != mode:
             self.mode = mode
             self.obeyed.append(MODES[mode])
+
+
+ORDER = ("COMMAND_LONG", mavlink.MAV_CMD_DO_SET_MODE)
+
+
+class SimulatedVehicle(Ardusub):
+    """A vehicle without sockets, in simulated time, and the link to it, which can be lost.
+
+    Time passes in `wait` alone. When it returns, the bridge has done all that it does until then.
+
+    Attributes
+    ----------
+    now
+        Seconds of the simulated clock.
+    linked
+        Whether anything arrives, in either direction.
+    unheard
+        Commands of orders that were sent while nothing arrived.
+
+    """
+
+    expected: tuple[Any, ...] = ()
+    dropped = 0
+    now = 0.0
+    linked = True
+
+    def _connect(self) -> None:
+        self.unheard: list[Any] = []
+        self._steps = 0
+        self._sent: list[Any] = []
+        self._waiting: list[Any] = []
+        self._ours = mavlink.MAVLink(None, SYSTEM, OUR_COMPONENT)
+        self._own = mavlink.MAVLink(None, SYSTEM, COMPONENT)
+        self._go, self._done = threading.Semaphore(0), threading.Semaphore(0)
+        self._is_over = False
+
+    def _now(self) -> float:
+        return self.now
+
+    def _send(self, message: Any) -> None:
+        if self._chance.random() >= self.loss:
+            self._sent += self._own.parse_buffer(message.pack(self._own))
+
+    def wait(self, seconds: float, step: float = STEP) -> None:
+        """Let time pass, step by step with the bridge's thread."""
+        for _ in range(math.ceil(round(seconds / step, 6))):
+            self._done.acquire()
+            if not self._is_over:
+                self._pass(step)
+                self._go.release()
+                self._done.acquire()
+            self._done.release()
+
+    def _pass(self, step: float) -> None:
+        self.now += step
+        self._steps += 1
+        self._hear_waiting()
+        if self.linked and not self.hangs and self._steps % 2 == 0:
+            self._report()
+
+    def _hear_waiting(self) -> None:
+        while self._waiting and not self.hangs:
+            message = self._waiting.pop(0)
+            if self._chance.random() >= self.loss:
+                self._hear(message)
+
+    def receive(self, seconds: float) -> list[tuple[Any, tuple[Any, ...]]]:
+        """Return what has arrived, for the bridge."""
+        self._done.release()
+        self._go.acquire()
+        found, self._sent = self._sent, []
+        return [(message, ()) for message in found]
+
+    def send(self, message: Any, to: Any) -> None:
+        """Bring the vehicle what the bridge sends."""
+        if self.linked:
+            self._waiting += self._ours.parse_buffer(message.pack(self._ours))
+        elif (message.get_type(), getattr(message, "command", None)) == ORDER or (
+            getattr(message, "param2", None) == 1500
+        ):
+            self.unheard.append(message)
+
+    def close(self) -> None:
+        """End of the link: the bridge's thread is over, and what it sent arrives."""
+        self._hear_waiting()
+        self._is_over = True
+        self._done.release()
 
 
 def needs_position(mode: str | None, version: tuple[int, int, int]) -> bool:

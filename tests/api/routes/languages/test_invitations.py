@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import timedelta
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import cv2
@@ -17,6 +20,7 @@ from pydantic import SecretStr
 from sqlalchemy import update
 
 from app.api.http.page_files import INVITATION_FILES
+from app.api.middleware import access
 from app.api.middleware.access import MOST_GUESSES
 from app.api.services.running_studio import Studio
 from app.recognition import Recording
@@ -31,12 +35,25 @@ from tests.api.languages import LANGUAGES
 from tests.api.recordings import add_recorded_clip, recording_of
 from tests.api.running import Running, assert_problem, client_of, running, until
 
+pytestmark = pytest.mark.usefixtures("judged_soon")
+
 ADMIN = "correct-horse-battery"
 MOST_BYTES = 2**20
 """Largest clip that the server of these tests takes."""
 
 
-@pytest.fixture
+HOURS = count(1)
+
+
+@pytest.fixture(autouse=True)
+def another_hour(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the server forget the wrong tokens of the test before."""
+    passed = 3600 * next(HOURS)
+    later = SimpleNamespace(monotonic=lambda: time.monotonic() + passed)
+    monkeypatch.setattr(access, "time", later)
+
+
+@pytest.fixture(scope="module")
 def server(settings: Settings) -> Iterator[Running]:
     limits = {"token": SecretStr(ADMIN), "max_clip_bytes": MOST_BYTES}
     with running(settings.model_copy(update=limits)) as server:
@@ -49,8 +66,10 @@ def tokens(settings: Settings) -> TokenFile:
 
 
 @pytest.fixture
-def editor(tokens: TokenFile) -> str:
-    return tokens.add("Ada", Role.EDIT)
+def editor(tokens: TokenFile) -> Iterator[str]:
+    yield tokens.add("Ada", Role.EDIT)
+    if any(each.name == "Ada" for each in tokens.read()):
+        tokens.remove("Ada")
 
 
 @pytest.fixture

@@ -1,0 +1,11 @@
+"""What the tests of several parts of the bridge share."""
+
+import pytest
+
+from app.robot.mavlink import bridge
+
+
+@pytest.fixture
+def closes_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a bridge over real sockets give up an order that nobody answers soon after its end."""
+    monkeypatch.setattr(bridge, "CLOSE_SECONDS", 0.2)
