@@ -6,6 +6,22 @@ import { limit } from "./text-limit.js";
 /** @import { Field } from "./types.d.ts" */
 
 /**
+ * Show an element in the dialog of the page; its heading has the id `dialog-title`.
+ *
+ * @param {Node} content
+ * @param {(() => void) | null} [closed]
+ */
+export function showDialog(content, closed = null) {
+  const dialog = byId("dialog");
+  dialog.replaceChildren(content);
+  dialog.setAttribute("aria-labelledby", "dialog-title");
+  dialog.onclose = closed;
+  dialog.showModal();
+}
+
+export const closeDialog = () => byId("dialog").close();
+
+/**
  * Ask for values in a dialog.
  *
  * `fields` are `{ name, label, value, required, hint, multiline, most }`. `submit(values)` does the
@@ -24,7 +40,6 @@ export function ask({
   submit,
   preview = null,
 }) {
-  const dialog = byId("dialog");
   const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const confirm = h("button", { type: "submit", className: "primary" }, action);
   const inputs = fields.map((field) => inputOf(field));
@@ -42,7 +57,7 @@ export function ask({
       h(
         "div",
         { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, refusal),
+        h("button", { type: "button", onclick: closeDialog }, refusal),
         confirm,
       ),
     );
@@ -60,9 +75,9 @@ export function ask({
             fields.map((field, index) => [field.name, inputs[index].value.trim()]),
           ),
         );
-        dialog.close();
+        closeDialog();
       } catch (error) {
-        if (error.code === "cancelled") return dialog.close();
+        if (error.code === "cancelled") return closeDialog();
         showProblem(error.message, inputs[0]);
       } finally {
         confirm.disabled = false;
@@ -74,10 +89,7 @@ export function ask({
       problem.hidden = false;
       input?.focus();
     };
-    dialog.replaceChildren(form);
-    dialog.setAttribute("aria-labelledby", "dialog-title");
-    dialog.onclose = () => resolve(answer);
-    dialog.showModal();
+    showDialog(form, () => resolve(answer));
     inputs[0]?.select?.();
   });
 }

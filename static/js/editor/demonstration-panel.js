@@ -3,7 +3,7 @@
 import { filmstrip } from "../clips/filmstrip.js";
 import { olderClipsButton } from "../clips/older-clips.js";
 import * as api from "../core/api.js";
-import { h, icon } from "../core/dom.js";
+import { h } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { nearestFrame } from "../clips/frame-times.js";
 import { endName, heldName, salutesIn, saluteWarning, takesLanguage } from "../clips/salutes.js";
@@ -12,6 +12,7 @@ import { attempt } from "../core/toasts.js";
 import { framesOf, movedTo, takeOf, wholeOf } from "./demonstration-range.js";
 import { change, draft, saved } from "./gesture-draft.js";
 import { figure } from "../studio/pose-picture.js";
+import { html, iconOf, ifDefined, live, nothing, optionsOf, render } from "../templates.js";
 import { chosenIn } from "./salient-keypoints.js";
 
 /** @import { Poses, Take, Timeline } from "../core/types.d.ts" */
@@ -40,101 +41,14 @@ export function take({ language, gesture, drawn, pick }) {
   /** @type {string | null | undefined} */
   let opening; // the clip being loaded; null: as stored in the language
   let frame = 0;
-  /** @type {string[]} */
-  let chosen = [];
+  /** @type {Proposal | null} */
+  let proposal = null;
   let clock = 0; // of the animation that plays
+  /** @type {HTMLElement | null} */
+  let thumbnails = null;
+  const element = h("section", { className: "panel take-panel", "aria-label": "Demonstration" });
   const picture = figure(pick);
-  const clips = h("select", { id: "editor-clip", onchange: () => choose(clips.value) });
-  const takes = h("select", {
-    id: "editor-take",
-    onchange: () => {
-      if (source?.id && takes.value !== BY_HAND)
-        change({ clip: wholeOf(source.id, source.takes, source.poses.time, Number(takes.value)) });
-    },
-  });
-  const scrub = h("input", {
-    type: "range",
-    id: "editor-frame",
-    min: 0,
-    step: 1,
-    oninput: () => go(Number(scrub.value)),
-  });
-  const clockText = h("output", { className: "num", for: "editor-frame" });
-  const playing = h("button", { type: "button", className: "quiet icon", onclick: () => play() });
-  const ends = /** @type {End[]} */ (["start", "end"]).map(edge);
-  const strip = h(
-    "div",
-    { className: "track" },
-    h("div", { className: "range" }),
-    ends.map((each) => each.handle),
-  );
-  const transit = h("input", {
-    type: "checkbox",
-    id: "editor-transit",
-    onchange: () => {
-      const { clip } = draft();
-      if (clip) change({ clip: { ...clip, keep_transit: !transit.checked } });
-    },
-  });
-  const transitText = h("small", { className: "dim" });
-  const trim = h(
-    "div",
-    { className: "trim" },
-    strip,
-    h(
-      "div",
-      { className: "ends" },
-      ends.map((each) => each.row),
-    ),
-    h(
-      "label",
-      { className: "check" },
-      transit,
-      h(
-        "span",
-        {},
-        `Leave out the hand\u2019s transit from and to the ${endName(state.gestures)}`,
-        transitText,
-      ),
-    ),
-  );
-  const note = h("p", { className: "dim" });
-  const salutes = h("p", { className: "salute-warning", role: "alert", hidden: true });
-  const faults = h("p", { className: "salute-warning", role: "status", hidden: true });
-  const played = h(
-    "div",
-    { className: "scrub" },
-    playing,
-    h("label", { className: "visually-hidden", for: "editor-frame" }, "Frame"),
-    scrub,
-    clockText,
-  );
-
-  /** @param {End} which */
-  function edge(which) {
-    const title = which === "start" ? "Start" : "End";
-    const handle = h("input", {
-      type: "range",
-      className: `handle ${which}`,
-      min: 0,
-      step: 1,
-      "aria-label": `${title} of the demonstration`,
-      title: `${title}: drag, or use the arrow keys, frame by frame`,
-    });
-    const number = h("input", { type: "number", id: `editor-${which}`, min: 0, step: 1 });
-    const seconds = h("small", { className: "dim num" });
-    handle.oninput = () => move(which, Number(handle.value));
-    number.onchange = () => {
-      if (number.value !== "") move(which, Math.round(Number(number.value)));
-    };
-    return {
-      which,
-      handle,
-      number,
-      seconds,
-      row: h("div", {}, h("label", { for: number.id }, `${title} frame`), number, seconds),
-    };
-  }
+  const older = olderClipsButton(() => redraw());
 
   /**
    * @param {End} which
@@ -186,10 +100,7 @@ export function take({ language, gesture, drawn, pick }) {
   function go(to) {
     if (!source) return;
     frame = Math.max(0, Math.min(source.poses.time.length - 1, to));
-    scrub.value = String(frame);
-    clockText.textContent = `frame ${frame}, ${moment(source.poses.time[frame])}`;
-    scrub.setAttribute("aria-valuetext", clockText.textContent);
-    picture.draw(frame, span(), chosen);
+    redraw();
   }
 
   /** Play the demonstration over and over, as fast as the camera saw it. */
@@ -208,81 +119,202 @@ export function take({ language, gesture, drawn, pick }) {
       clock = requestAnimationFrame(step);
     };
     clock = requestAnimationFrame(step);
-    return drawPlaying();
+    return redraw();
   }
 
   function pause() {
     cancelAnimationFrame(clock);
     clock = 0;
-    drawPlaying();
+    redraw();
   }
 
-  function drawPlaying() {
-    playing.replaceChildren(icon(clock ? "pause" : "play"));
-    playing.setAttribute("aria-label", clock ? "Pause" : "Play the demonstration");
-    playing.title = `${clock ? "Pause" : "Play the demonstration"} (Space)`;
+  function redraw() {
+    render(panel(), element);
+    if (source) picture.draw(frame, span(), chosenIn(proposal));
   }
 
-  function drawChoices() {
+  function panel() {
+    const { clip } = draft();
+    const note = drawn
+      ? "Imported without its demonstration: it cannot be played or trimmed, and its keypoints cannot be changed. Choose a clip that shows the gesture."
+      : "The demonstration as it is saved in the language; its clip is not in this studio. To trim or replace it, choose a clip.";
+    return html`${head()}${picture.element}${scrub()}
+      <p class="dim" ?hidden=${clip}>${clip ? "" : note}</p>
+      ${warnings()}${source?.id ? trim(source) : nothing}`;
+  }
+
+  /** @type {() => [string, string][]} */
+  function clipOptions() {
     const ready = state.clips.filter((clip) => clip.status === "done");
     // The clip of the saved demonstration.
     const own = gesture ? (saved().clip?.clip_id ?? "") : null;
-    const options = [
-      ...(own === "" ? [["", "As it is saved"]] : []),
-      ...ready.map((clip) => [clip.id, clip.id === own ? `${clip.name}, as saved` : clip.name]),
-    ];
-    clips.replaceChildren(...options.map(([value, text]) => h("option", { value }, text)));
-    clips.value = draft().clip?.clip_id ?? "";
-    const shown = source?.id ? source : null;
-    /** @type {HTMLElement} */ (takes.parentElement).hidden = !shown;
-    if (!shown) return;
-    takes.replaceChildren(
-      ...shown.takes.map((each, index) =>
-        h(
-          "option",
-          { value: index },
-          `Take ${index + 1}, ${moment(each.start)} to ${moment(each.end)}`,
-        ),
+    return [
+      .../** @type {[string, string][]} */ (own === "" ? [["", "As it is saved"]] : []),
+      ...ready.map(
+        ({ id, name }) =>
+          /** @type {[string, string]} */ ([id, id === own ? `${name}, as saved` : name]),
       ),
-      h("option", { value: BY_HAND }, "Range by hand"),
-    );
-    const taken = takeOf(draft().clip, shown.takes);
-    takes.value = taken ? String(shown.takes.indexOf(taken)) : BY_HAND;
+    ];
   }
 
-  function drawTrim() {
-    trim.hidden = !source?.id;
-    if (!source?.id) return;
-    const { time } = source.poses;
-    const frames = span();
-    ends.forEach(({ which, handle, number, seconds }, index) => {
-      for (const input of [handle, number])
-        Object.assign(input, { max: time.length - 1, value: frames[index] });
-      handle.setAttribute(
-        "aria-valuetext",
-        `frame ${frames[index]}, ${moment(time[frames[index]])}`,
-      );
-      seconds.textContent = moment(time[frames[index]]);
-      seconds.dataset.end = which;
-    });
-    /** @param {number} index */
-    const share = (index) => (100 * index) / (time.length - 1);
-    const range = /** @type {HTMLElement} */ (strip.querySelector(".range"));
-    range.style.left = `${share(frames[0])}%`;
-    range.style.width = `${share(frames[1]) - share(frames[0])}%`;
+  function takeChoice() {
+    if (!source?.id) return nothing;
+    const { id, takes, poses } = source;
+    const taken = takeOf(draft().clip, takes);
+    /** @type {[string, string][]} */
+    const options = takes.map(({ start, end }, index) => [
+      String(index),
+      `Take ${index + 1}, ${moment(start)} to ${moment(end)}`,
+    ]);
+    const value = taken ? String(takes.indexOf(taken)) : BY_HAND;
+    /** @param {string} chosen */
+    const pickTake = (chosen) => {
+      if (chosen !== BY_HAND) change({ clip: wholeOf(id, takes, poses.time, Number(chosen)) });
+    };
+    return html`<span class="choose">
+      <label class="visually-hidden" for="editor-take">Take</label>
+      <select id="editor-take" @change=${(/** @type {any} */ { target }) => pickTake(target.value)}>
+        ${optionsOf([...options, [BY_HAND, "Range by hand"]], value)}
+      </select>
+    </span>`;
+  }
+
+  const head = () =>
+    html`<div class="panel-head">
+      <h2>Demonstration</h2>
+      <span class="choose">
+        <label class="visually-hidden" for="editor-clip">Clip</label>
+        <select id="editor-clip" @change=${(/** @type {any} */ { target }) => choose(target.value)}>
+          ${optionsOf(clipOptions(), wantedClip() ?? "")}</select
+        >${older}
+      </span>
+      ${takeChoice()}
+    </div>`;
+
+  function scrub() {
+    const time = source?.poses.time;
+    const text = time && `frame ${frame}, ${moment(time[frame])}`;
+    const label = clock ? "Pause" : "Play the demonstration";
+    return html`<div class="scrub">
+      <button
+        type="button"
+        class="quiet icon"
+        aria-label=${label}
+        title="${label} (Space)"
+        @click=${play}
+      >
+        ${iconOf(clock ? "pause" : "play")}
+      </button>
+      <label class="visually-hidden" for="editor-frame">Frame</label>
+      <input
+        type="range"
+        id="editor-frame"
+        min="0"
+        step="1"
+        max=${ifDefined(time && time.length - 1)}
+        aria-valuetext=${ifDefined(text)}
+        .value=${live(String(frame))}
+        @input=${(/** @type {any} */ { target }) => go(Number(target.value))}
+      />
+      <output class="num" for="editor-frame">${text}</output>
+    </div>`;
+  }
+
+  function warnings() {
+    const [fault] = proposal?.faults ?? [];
+    const byHand = source?.id && !takeOf(draft().clip, source.takes) ? source : null;
+    const [first, last] = span().map((each) => byHand?.poses.time[each] ?? 0);
+    const warning =
+      byHand && saluteWarning(salutesIn(byHand.timeline, first, last), heldName(state.gestures));
+    return html`<p class="salute-warning" role="alert" ?hidden=${!warning}>${warning}</p>
+      <p
+        class="salute-warning"
+        role="status"
+        title=${fault ? `It ${fault.words}.` : ""}
+        ?hidden=${!fault || warning}
+      >
+        ${fault?.sentence}
+      </p>`;
+  }
+
+  /**
+   * One end of the range: its handle on the thumbnails, and its number.
+   *
+   * @param {End} which
+   * @param {number} at
+   * @param {number[]} time
+   */
+  function edge(which, at, time) {
+    const title = which === "start" ? "Start" : "End";
+    const typed = (/** @type {any} */ { target }) => {
+      if (target.value !== "") move(which, Math.round(Number(target.value)));
+    };
+    const handle = html`<input
+      type="range"
+      class="handle ${which}"
+      min="0"
+      step="1"
+      max=${time.length - 1}
+      aria-label="${title} of the demonstration"
+      title="${title}: drag, or use the arrow keys, frame by frame"
+      aria-valuetext="frame ${at}, ${moment(time[at])}"
+      .value=${live(String(at))}
+      @input=${typed}
+    />`;
+    const row = html`<div>
+      <label for="editor-${which}">${title} frame</label>
+      <input
+        type="number"
+        id="editor-${which}"
+        min="0"
+        step="1"
+        max=${time.length - 1}
+        .value=${live(String(at))}
+        @change=${typed}
+      />
+      <small class="dim num" data-end=${which}>${moment(time[at])}</small>
+    </div>`;
+    return { handle, row };
+  }
+
+  /** @param {Source} shown */
+  function trim({ takes, poses: { time } }) {
     const { clip } = draft();
-    const own = takeOf(clip, source.takes);
-    const warning = saluteWarning(
-      own ? [] : salutesIn(source.timeline, time[frames[0]], time[frames[1]]),
-      heldName(state.gestures),
-    );
-    salutes.textContent = warning;
-    salutes.hidden = !warning;
-    transit.disabled = !own;
-    transit.checked = Boolean(own) && !clip?.keep_transit;
-    transitText.textContent = own
+    const [start, end] = span();
+    const own = takeOf(clip, takes);
+    const ends = [edge("start", start, time), edge("end", end, time)];
+    /** @param {number} at */
+    const share = (at) => (100 * at) / (time.length - 1);
+    const transit = own
       ? `${moment(own.stroke_start - own.start)} before and ${moment(own.end - own.stroke_end)} after the gesture`
       : "A range chosen by hand is used as it is; choose a take to have the transit found.";
+    const keep = (/** @type {any} */ { target }) =>
+      clip && change({ clip: { ...clip, keep_transit: !target.checked } });
+    return html`<div class="trim">
+      <div class="track">
+        ${thumbnails}
+        <div
+          class="range"
+          .style=${`left: ${share(start)}%; width: ${share(end) - share(start)}%`}
+        ></div>
+        ${ends.map(({ handle }) => handle)}
+      </div>
+      <div class="ends">${ends.map(({ row }) => row)}</div>
+      <label class="check">
+        <input
+          type="checkbox"
+          id="editor-transit"
+          ?disabled=${!own}
+          .checked=${live(Boolean(own) && !clip?.keep_transit)}
+          @change=${keep}
+        />
+        <span
+          >Leave out the hand’s transit from and to the ${endName(state.gestures)}<small class="dim"
+            >${transit}</small
+          ></span
+        >
+      </label>
+    </div>`;
   }
 
   const wantedClip = () => draft().clip?.clip_id ?? null;
@@ -307,68 +339,25 @@ export function take({ language, gesture, drawn, pick }) {
   /** @param {Source} loaded */
   function show(loaded) {
     source = loaded;
-    const { id } = source;
+    thumbnails = null;
     element.classList.remove("bare");
-    const clip = state.clips.find((each) => each.id === id);
+    const clip = state.clips.find((each) => each.id === source?.id);
     picture.show(source.poses, clip ?? null);
-    scrub.max = String(source.poses.time.length - 1);
-    strip.querySelector(".filmstrip")?.remove();
-    draw({ keypoints: chosen.map((landmark) => ({ landmark, proposed: true })) });
     go(span()[0]);
-    if (clip && source.id && strip.clientWidth)
-      strip.prepend(filmstrip(clip, source.timeline, strip.clientWidth, strip.clientHeight) ?? "");
+    const track = element.querySelector(".track");
+    if (!clip || !source.id || !track) return;
+    thumbnails = filmstrip(clip, source.timeline, track.clientWidth, track.clientHeight);
+    redraw();
   }
 
-  /** @param {Proposal | null} preview */
-  function draw(preview) {
-    chosen = chosenIn(preview);
-    const [fault] = preview?.faults ?? [];
-    faults.textContent = fault?.sentence ?? "";
-    faults.title = fault ? `It ${fault.words}.` : "";
-    faults.hidden = !fault || !salutes.hidden;
-    drawChoices();
-    note.textContent = draft().clip
-      ? ""
-      : drawn
-        ? "Imported without its demonstration: it cannot be played or trimmed, and its keypoints cannot be changed. Choose a clip that shows the gesture."
-        : "The demonstration as it is saved in the language; its clip is not in this studio. To trim or replace it, choose a clip.";
-    note.hidden = Boolean(draft().clip);
-    drawTrim();
-    if (source) go(frame);
-    return open();
-  }
-  drawPlaying();
-  const element = h(
-    "section",
-    { className: "panel take-panel", "aria-label": "Demonstration" },
-    h(
-      "div",
-      { className: "panel-head" },
-      h("h2", {}, "Demonstration"),
-      h(
-        "span",
-        { className: "choose" },
-        h("label", { className: "visually-hidden", for: "editor-clip" }, "Clip"),
-        clips,
-        olderClipsButton(drawChoices),
-      ),
-      h(
-        "span",
-        { className: "choose" },
-        h("label", { className: "visually-hidden", for: "editor-take" }, "Take"),
-        takes,
-      ),
-    ),
-    picture.element,
-    played,
-    note,
-    salutes,
-    faults,
-    trim,
-  );
   return {
     element,
-    draw,
+    /** @param {Proposal | null} preview */
+    draw: (preview) => {
+      proposal = preview ?? proposal;
+      redraw();
+      return open();
+    },
     play,
     pause,
     /** @param {number} by */

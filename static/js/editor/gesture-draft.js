@@ -1,8 +1,14 @@
 // The draft of a gesture: unsaved changes with their own undo, kept by the browser.
 
+import { demonstrationOf } from "../clips/demonstration-ranges.js";
 import { browserStore } from "../core/browser-store.js";
+import { byId } from "../core/dom.js";
+import { selectedRange, state } from "../core/state.js";
+import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
+import { written } from "../languages/robot-command.js";
+import { NONE } from "../languages/test-set.js";
 
-/** @import { Gesture, SwitchName } from "../core/types.d.ts" */
+/** @import { Gesture, Language, SelectedRange, SwitchName } from "../core/types.d.ts" */
 
 /**
  * A range of a clip, as the API takes it.
@@ -34,6 +40,64 @@ let future = [];
 /** @type {string | null} */
 let typing = null; // the text field that the newest step belongs to
 let listener = () => {};
+
+/**
+ * Whether the clip of a demonstration can be shown.
+ *
+ * @param {Pick<Where, "clip_id"> | null | undefined} where
+ */
+export const isThere = (where) =>
+  where && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
+
+/**
+ * The gesture that is edited, for code that runs only where there is one.
+ *
+ * @param {{ language: Language, gesture: string | null }} about
+ */
+export function gestureOf({ language, gesture }) {
+  const found = language.gestures.find(({ label }) => label === gesture);
+  if (!found) throw new Error(`No gesture is called ${gesture}.`);
+  return found;
+}
+
+/**
+ * The values that a draft begins with.
+ *
+ * @param {{ language: Language, gesture: string | null }} about
+ * @returns {Draft}
+ */
+export function valuesOf({ language, gesture }) {
+  if (gesture === null) {
+    const { start, end } = /** @type {SelectedRange} */ (selectedRange());
+    const name = state.clips.find(({ id }) => id === state.clip)?.name ?? "";
+    const clip = { clip_id: state.clip ?? "", start, end, keep_transit: false };
+    const expected = byId("expected").value;
+    return {
+      label: labelIfNew((expected !== NONE && expected) || labelOf(name), language, clip),
+      description: "",
+      command: "",
+      salient: null,
+      direction: "auto",
+      tempo: "auto",
+      mirror: "auto",
+      hand_shape: "auto",
+      clip,
+    };
+  }
+  const shown = gestureOf({ language, gesture });
+  const { label, description, command, salient, direction, tempo, mirror, source } = shown;
+  return {
+    label,
+    description,
+    command: written(command),
+    salient: salient.length ? [...salient].sort() : null,
+    direction,
+    tempo,
+    mirror,
+    hand_shape: shown.hand_shape,
+    clip: source && isThere(source) ? demonstrationOf(source) : null,
+  };
+}
 
 /**
  * @param {unknown} one

@@ -1,19 +1,16 @@
 // The editor of a gesture. Only "Save" changes the language; until then there is a draft.
 
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { ago } from "../core/format.js";
 import { bind } from "../core/key-bindings.js";
-import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
+import { currentLanguage, follow, state } from "../core/state.js";
 import { attempt, complain, toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { go, guard } from "../core/views.js";
-import { demonstrationOf } from "../clips/demonstration-ranges.js";
 import { focusCard } from "../gestures/gesture-cards.js";
-import { labelIfNew, labelOf } from "../gestures/gesture-rows.js";
 import { choose, reloadLanguages } from "../languages/language-store.js";
-import { written } from "../languages/robot-command.js";
-import { NONE } from "../languages/test-set.js";
+import { html, render } from "../templates.js";
 import { take } from "./demonstration-panel.js";
 import { furtherOf, knownLabel, requestOf, save } from "./draft-saving.js";
 import {
@@ -24,13 +21,16 @@ import {
   discard,
   draft,
   forget,
+  gestureOf,
   isChanged,
   isKept,
+  isThere,
   placeOf,
   redo,
   saved,
   takeAlong,
   undo,
+  valuesOf,
 } from "./gesture-draft.js";
 import { switches, textProblem, texts } from "./gesture-form.js";
 import { mayLeave } from "./leave-dialog.js";
@@ -38,19 +38,39 @@ import { previewing } from "./preview-requests.js";
 import { health, image } from "./preview-results.js";
 import { keypoints, toggle } from "./salient-keypoints.js";
 
-/** @import { Gesture, Language, Outlook, Preview, SelectedRange } from "../core/types.d.ts" */
-
-/** @import { Draft, Where } from "./gesture-draft.js" */
+/** @import { Gesture, Language, Outlook, Preview } from "../core/types.d.ts" */
 
 /**
  * The gesture that is edited; `gesture` is null for a new one.
  *
- * @typedef {{ language: Language, gesture: string | null, key: string }} Subject */
+ * @typedef {{ language: Language, gesture: string | null, key: string }} Subject
+ */
 
 const GROUP = "Editing a gesture";
 
-/** @type {{ about: Subject, take: ReturnType<typeof take>, changed: () => void } | null} */
-let editor = null; // the one on display
+/**
+ * What is on display, beside the draft.
+ *
+ * @typedef {object} Editor
+ * @property {Subject} about
+ * @property {boolean} drawn whether only the drawing of the gesture is known
+ * @property {ReturnType<typeof take>} take
+ * @property {ReturnType<typeof previewing>} ask
+ * @property {{ all: boolean, refused: boolean }} listed which keypoints are listed
+ * @property {Preview | null} preview
+ * @property {string | null} drawing the newest image
+ * @property {Outlook | null} estimate
+ * @property {Outlook | null} newest the newest estimate, possibly of an earlier draft
+ * @property {Outlook | null} before the estimate of what is saved
+ * @property {number | null} kept when the draft was left that is restored, in ms
+ * @property {string} problem why it was not saved
+ */
+
+/** @type {Editor | null} */
+let editor = null;
+
+/** @type {HTMLElement} */
+let root;
 
 /** The gesture to edit: one of the language, or a new one from the selected range. */
 function subject() {
@@ -67,235 +87,184 @@ function subject() {
   return { language: gestures, gesture: null, key: `${gestures.id} new ${clip}` };
 }
 
-/**
- * Whether the clip of a demonstration can be shown.
- *
- * @param {Pick<Where, "clip_id"> | null | undefined} where
- */
-const isThere = (where) =>
-  where && state.clips.some(({ id, status }) => id === where.clip_id && status === "done");
+/** @param {Subject} about */
+const othersOf = ({ gesture }) =>
+  currentLanguage()
+    .gestures.map((each) => each.label)
+    .filter((label) => label !== (gesture ?? draft().label.trim()));
 
 /**
- * The gesture that is edited, for code that runs only where there is one.
+ * The gesture of which a new range would be a further demonstration, or null.
  *
- * @param {Pick<Subject, "language" | "gesture">} about
+ * @param {Subject} about
  */
-function gestureOf({ language, gesture }) {
-  const found = language.gestures.find(({ label }) => label === gesture);
-  if (!found) throw new Error(`No gesture is called ${gesture}.`);
-  return found;
+const furtherTo = ({ gesture }) =>
+  gesture === null ? knownLabel(currentLanguage(), draft()) : null;
+
+/** @param {Editor} shown */
+function actions({ about }) {
+  const { gesture } = about;
+  const more = furtherTo(about);
+  const idle =
+    isSaving ||
+    (gesture !== null && !isChanged()) ||
+    textProblem(draft(), othersOf(about))?.id === "editor-label";
+  const saves = gesture === null ? (more ? `Add to ${more}` : "Save gesture") : "Save";
+  return html`<div class="editor-actions">
+    <button type="button" title="Undo (Ctrl+Z)" ?disabled=${!canUndo()} @click=${undo}>Undo</button>
+    <button type="button" title="Redo (Ctrl+Shift+Z)" ?disabled=${!canRedo()} @click=${redo}>
+      Redo
+    </button>
+    <button type="button" title="Back without saving" @click=${leave}>Cancel</button>
+    <button type="submit" class="primary" data-writes ?disabled=${idle}>${saves}</button>
+  </div>`;
+}
+
+/** @param {Editor} shown */
+const restored = ({ kept }) =>
+  html`<p class="restored" role="status" ?hidden=${kept === null}>
+    A draft that was not saved, last changed ${kept && ago(kept)}, is restored.
+    <button
+      type="button"
+      title="Go back to what is saved; Undo brings the draft back"
+      @click=${discard}
+    >
+      Discard the draft
+    </button>
+  </p>`;
+
+/** @param {Editor} shown */
+function page(shown) {
+  const { about, preview, estimate, newest, before } = shown;
+  const { gesture, language } = about;
+  const stand = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
+  const outlooks = { found: estimate, newest, before, problem: preview?.problem };
+  return html`<form class="editor-page" novalidate @submit=${submit}>
+    <div class="page-head">
+      <h1>${gesture === null ? "New gesture" : `Edit ${gesture}`}</h1>
+      <span class="dim in-language">in ${language.name}</span>
+      <span class="draft-state dim" role="status">${stand}</span>
+      <span class="spacer"></span>
+      ${actions(shown)}
+    </div>
+    ${restored(shown)}
+    <p class="field-problem" role="alert" ?hidden=${!shown.problem}>${shown.problem}</p>
+    <div class="editor-grid">
+      <div class="column">${shown.take.element}${keypoints(preview, shown.listed, draw)}</div>
+      <div class="column">${image(preview, shown.drawing)}${health(language.name, outlooks)}</div>
+      <div class="column">${texts(othersOf(about))}${switches(estimate)}</div>
+    </div>
+  </form>`;
+}
+
+function draw() {
+  if (!editor) return;
+  if (!isChanged()) editor.kept = null;
+  render(page(editor), root);
+  editor.take.draw(editor.preview);
+}
+
+/** Draw the draft after a change, and request its preview. */
+function changed() {
+  if (!editor) return;
+  const { about, drawn, ask } = editor;
+  editor.problem = "";
+  draw();
+  const more = furtherTo(about);
+  const request = requestOf(about.gesture, draft(), saved(), drawn && !draft().clip);
+  ask(about.language.id, more ? { label: more, change: furtherOf(draft()) } : request);
 }
 
 /**
- * @param {Subject} about
- * @returns {Draft}
+ * @param {Preview} found
+ * @param {Outlook | null} estimate
  */
-function valuesOf({ language, gesture }) {
-  if (gesture === null) {
-    const { start, end } = /** @type {SelectedRange} */ (selectedRange());
-    const name = state.clips.find(({ id }) => id === state.clip)?.name ?? "";
-    const clip = { clip_id: state.clip ?? "", start, end, keep_transit: false };
-    const expected = byId("expected").value;
-    return {
-      label: labelIfNew((expected !== NONE && expected) || labelOf(name), language, clip),
-      description: "",
-      command: "",
-      salient: null,
-      direction: "auto",
-      tempo: "auto",
-      mirror: "auto",
-      hand_shape: "auto",
-      clip,
-    };
-  }
-  const shown = gestureOf({ language, gesture });
-  const { label, description, command, salient, direction, tempo, mirror, source } = shown;
-  return {
-    label,
-    description,
-    command: written(command),
-    salient: salient.length ? [...salient].sort() : null,
-    direction,
-    tempo,
-    mirror,
-    hand_shape: shown.hand_shape,
-    clip: source && isThere(source) ? demonstrationOf(source) : null,
-  };
+function showPreview(found, estimate) {
+  if (!editor) return;
+  const before =
+    estimate && !isChanged() && editor.about.gesture !== null ? estimate : editor.before;
+  Object.assign(editor, { preview: found, estimate, before });
+  editor.newest = estimate ?? editor.newest;
+  editor.drawing = found.image || editor.drawing;
+  draw();
 }
 
-/**
- * @param {HTMLElement} section
- * @param {Subject} about
- */
-function build(section, about) {
+/** @param {string} landmark */
+function pick(landmark) {
+  if (!toggle(landmark, editor?.preview ?? null))
+    toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
+}
+
+/** @param {Subject} about */
+function build(about) {
   const { language, gesture } = about;
-  const others = () =>
-    currentLanguage()
-      .gestures.map((each) => each.label)
-      .filter((label) => label !== (gesture ?? draft().label.trim()));
-  /** The gesture of which a new range would be a further demonstration, or null. */
-  const further = () => (gesture === null ? knownLabel(currentLanguage(), draft()) : null);
   const drawn = gesture !== null && !gestureOf(about).has_trajectory;
-  /** @type {Preview | null} */
-  let preview = null;
-  /** @type {Outlook | null} */
-  let estimate = null;
-  /** @type {Outlook | null} */
-  let before = null; // the estimate of what is saved
-  /** @param {string} landmark */
-  const pick = (landmark) => {
-    if (!toggle(landmark, preview))
-      toast("One keypoint stays", "At least one keypoint is followed; choose another one first.");
-  };
-  const parts = {
+  const place = placeOf(language.id, gesture ?? `new ${state.clip}`);
+  const kept = begin(place, valuesOf(about), changed);
+  editor = {
+    about,
+    drawn,
     take: take({ language: language.id, gesture, drawn, pick }),
-    image: image(),
-    keypoints: keypoints(() => preview),
-    health: health(language.name),
-    texts: texts(others),
-    switches: switches(),
+    ask: previewing({ shown: showPreview, failed: (error) => complain(error, "The preview") }),
+    listed: { all: false, refused: false },
+    preview: null,
+    drawing: null,
+    estimate: null,
+    newest: null,
+    before: null,
+    kept,
+    problem: "",
   };
-  /**
-   * @param {string} text
-   * @param {string} title
-   * @param {() => unknown} run
-   * @param {string} [className]
-   */
-  const button = (text, title, run, className = "") =>
-    h("button", { type: "button", className, title, onclick: run }, text);
-  const undoing = button("Undo", "Undo (Ctrl+Z)", undo);
-  const redoing = button("Redo", "Redo (Ctrl+Shift+Z)", redo);
-  const saving = h(
-    "button",
-    { type: "submit", className: "primary", ...WRITES },
-    gesture === null ? "Save gesture" : "Save",
-  );
-  const status = h("span", { className: "draft-state dim", role: "status" });
-  const restored = h("p", { className: "restored", role: "status", hidden: true });
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-
-  const ask = previewing({
-    shown: (found, estimated) => {
-      preview = found;
-      estimate = estimated;
-      if (estimated && !isChanged() && gesture !== null) before = estimated;
-      draw();
-    },
-    failed: (error) => complain(error, "The preview"),
-  });
-
-  function draw() {
-    parts.texts.draw();
-    parts.switches.draw(estimate);
-    parts.keypoints.draw(preview);
-    parts.take.draw(preview);
-    parts.image.draw(preview);
-    parts.health.draw(estimate, before, preview?.problem);
-    undoing.disabled = !canUndo();
-    redoing.disabled = !canRedo();
-    status.textContent = isChanged() ? "Draft, not saved yet" : gesture === null ? "" : "As saved";
-    restored.hidden = restored.hidden || !isChanged();
-    saving.disabled =
-      (gesture !== null && !isChanged()) || textProblem(draft(), others())?.id === "editor-label";
-    if (gesture === null) saving.textContent = further() ? `Add to ${further()}` : "Save gesture";
-  }
-
-  function changed() {
-    problem.hidden = true;
-    draw();
-    const more = further();
-    const request = requestOf(gesture, draft(), saved(), drawn && !draft().clip);
-    ask(language.id, more ? { label: more, change: furtherOf(draft()) } : request);
-  }
-
-  function abandon() {
-    forget();
-    close();
-    return go(null, { gesture: null });
-  }
-
-  /** @param {SubmitEvent} event */
-  async function submit(event) {
-    event.preventDefault();
-    const fault = textProblem(draft(), others());
-    if (fault) return showProblem(fault.text, document.getElementById(fault.id));
-    saving.disabled = true;
-    isSaving = true;
-    try {
-      const label = draft().label.trim();
-      const more = further();
-      const now = await save(about.language, gesture, draft(), saved());
-      await abandon();
-      const shown = preview?.strokes ? `: ${preview.strokes}` : `, in ${now.name}`;
-      showDone(more ? "Demonstration added" : "Gesture saved", label + shown);
-      focusCard(more || label);
-    } catch (error) {
-      if (error.code !== "cancelled") showProblem(error.message);
-      else abandon(); // The user kept somebody else's edit.
-    } finally {
-      isSaving = false;
-      saving.disabled = false;
-    }
-    return undefined;
-  }
-
-  /**
-   * @param {string} text
-   * @param {HTMLElement | null} [input]
-   */
-  function showProblem(text, input) {
-    problem.textContent = text;
-    problem.hidden = false;
-    input?.focus();
-  }
-
-  const form = h(
-    "form",
-    { className: "editor-page", noValidate: true, onsubmit: submit },
-    h(
-      "div",
-      { className: "page-head" },
-      h("h1", {}, gesture === null ? "New gesture" : `Edit ${gesture}`),
-      h("span", { className: "dim in-language" }, `in ${language.name}`),
-      status,
-      h("span", { className: "spacer" }),
-      h(
-        "div",
-        { className: "editor-actions" },
-        undoing,
-        redoing,
-        button("Cancel", "Back without saving", leave),
-        saving,
-      ),
-    ),
-    restored,
-    problem,
-    h(
-      "div",
-      { className: "editor-grid" },
-      h("div", { className: "column" }, parts.take.element, parts.keypoints.element),
-      h("div", { className: "column" }, parts.image.element, parts.health.element),
-      h("div", { className: "column" }, parts.texts.element, parts.switches.element),
-    ),
-  );
-  const kept = begin(
-    placeOf(language.id, gesture ?? `new ${state.clip}`),
-    valuesOf(about),
-    changed,
-  );
+  render("", root); // Nothing of another gesture stays, such as what is unfolded.
   // The clip of a kept draft may have been deleted.
   if (draft().clip && !isThere(draft().clip)) change({ clip: saved().clip });
-  if (kept !== null) {
-    restored.replaceChildren(
-      `A draft that was not saved, last changed ${ago(kept)}, is restored.`,
-      button("Discard the draft", "Go back to what is saved; Undo brings the draft back", discard),
-    );
-    restored.hidden = false;
-  }
-  section.replaceChildren(form);
-  editor = { about, take: parts.take, changed };
   changed();
-  if (gesture === null) parts.texts.focus();
+  if (gesture !== null) return;
+  // A proposed label is replaced by typing.
+  byId("editor-label").focus({ preventScroll: true });
+  byId("editor-label").select();
+}
+
+function abandon() {
+  forget();
+  close();
+  return leave();
+}
+
+/** @param {SubmitEvent} event */
+async function submit(event) {
+  event.preventDefault();
+  if (!editor) return;
+  const { about, preview } = editor;
+  const fault = textProblem(draft(), othersOf(about));
+  if (fault) {
+    showProblem(fault.text);
+    byId(fault.id)?.focus();
+    return;
+  }
+  isSaving = true;
+  draw();
+  try {
+    const label = draft().label.trim();
+    const more = furtherTo(about);
+    const now = await save(about.language, about.gesture, draft(), saved());
+    await abandon();
+    const shown = preview?.strokes ? `: ${preview.strokes}` : `, in ${now.name}`;
+    showDone(more ? "Demonstration added" : "Gesture saved", label + shown);
+    focusCard(more || label);
+  } catch (error) {
+    if (error.code !== "cancelled") showProblem(error.message);
+    else abandon(); // The user kept somebody else's edit.
+  } finally {
+    isSaving = false;
+    draw();
+  }
+}
+
+/** @param {string} text */
+function showProblem(text) {
+  if (editor) editor.problem = text;
+  draw();
 }
 
 let isSaving = false;
@@ -382,24 +351,22 @@ async function followRename() {
 
 const leave = () => go(null, { gesture: null });
 
-/** @param {HTMLElement} section */
-function explain(section) {
+function explain() {
   const { gestures, gesture } = state;
   const missing = gestures && gesture && !gestures.gestures.some((each) => each.label === gesture);
-  section.replaceChildren(
-    h(
-      "div",
-      { className: "editor-empty" },
-      h("h1", {}, missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"),
-      h(
-        "p",
-        { className: "dim" },
-        missing
-          ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.`
-          : "Choose a gesture of the language, or a take of a clip to make one of.",
-      ),
-      h("button", { type: "button", className: "primary", onclick: leave }, "Back to the studio"),
-    ),
+  render(
+    html`<div class="editor-empty">
+      <h1>${missing ? `There is no gesture \u201c${gesture}\u201d` : "No gesture is chosen"}</h1>
+      <p class="dim">
+        ${
+          missing
+            ? `\u201c${gestures.name}\u201d has none of that label (any more); it may have been renamed or deleted.`
+            : "Choose a gesture of the language, or a take of a clip to make one of."
+        }
+      </p>
+      <button type="button" class="primary" @click=${leave}>Back to the studio</button>
+    </div>`,
+    root,
   );
 }
 
@@ -421,6 +388,7 @@ const nothingComes = () =>
  * @param {HTMLElement} section
  */
 export function open(section) {
+  root = section;
   follow(
     [
       "view",
@@ -445,16 +413,16 @@ export function open(section) {
       if (isOrphaned()) return followRename();
       if (!about || !isKnown(about)) {
         left();
-        if (nothingComes()) explain(section);
+        if (nothingComes()) explain();
         return undefined;
       }
       if (edited?.key === about.key) return adopt(edited, about);
       left();
-      return build(section, about);
+      return build(about);
     },
   );
   // The server is back: repeat the requests that failed meanwhile.
-  follow(["returns"], () => editor?.changed());
+  follow(["returns"], () => changed());
   guard("gesture", () => (editor && isChanged() ? mayLeave() : true));
 }
 

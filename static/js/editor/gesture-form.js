@@ -1,8 +1,7 @@
 // The form of a gesture: its texts, and its switches.
 
-import { h } from "../core/dom.js";
-import { limit } from "../core/text-limit.js";
 import { read } from "../languages/robot-command.js";
+import { html, limited, live, nothing } from "../templates.js";
 import { change, draft, rest } from "./gesture-draft.js";
 
 /** @import { Outlook, SwitchName } from "../core/types.d.ts" */
@@ -10,8 +9,6 @@ import { change, draft, rest } from "./gesture-draft.js";
 /** @import { Draft } from "./gesture-draft.js" */
 
 /** @typedef {{ name: SwitchName, title: string, words: Record<Draft[SwitchName], string> }} Switch */
-
-/** @typedef {{ input: HTMLInputElement | HTMLTextAreaElement, note: HTMLElement }} Field */
 
 const MOST = { label: 80, description: 2000, command: 4000 };
 
@@ -61,82 +58,66 @@ const SWITCHES = [
 /**
  * @param {keyof typeof MOST} name
  * @param {string} label
- * @param {HTMLInputElement | HTMLTextAreaElement} input
- * @param {string} [hint]
+ * @param {{ rows: number, problem?: string | null, hint: string, spellcheck?: boolean }} about
  */
-function field(name, label, input, hint = "") {
-  const note = h("p", { className: "dim", id: `editor-${name}-note` }, hint);
-  input.id = `editor-${name}`;
-  limit(input, MOST[name]);
-  input.setAttribute("aria-describedby", note.id);
-  input.oninput = () => change({ [name]: input.value }, name);
-  input.onblur = rest;
-  return {
-    input,
-    note,
-    row: h("div", { className: "field" }, h("label", { for: input.id }, label), input, note),
-  };
+function field(name, label, { rows, problem, hint, spellcheck = true }) {
+  const value = draft()[name];
+  const typed = (/** @type {any} */ { target }) => change({ [name]: target.value }, name);
+  const id = `editor-${name}`;
+  const input =
+    rows === 1
+      ? html`<input
+          type="text"
+          autocomplete="off"
+          required
+          id=${id}
+          aria-describedby="${id}-note"
+          aria-invalid=${Boolean(problem)}
+          .value=${live(value)}
+          @input=${typed}
+          @blur=${rest}
+          ${limited(MOST[name])}
+        />`
+      : html`<textarea
+          rows=${rows}
+          spellcheck=${spellcheck}
+          id=${id}
+          aria-describedby="${id}-note"
+          aria-invalid=${Boolean(problem)}
+          .value=${live(value)}
+          @input=${typed}
+          @blur=${rest}
+          ${limited(MOST[name])}
+        ></textarea>`;
+  return html`<div class="field">
+    <label for=${id}>${label}</label>${input}
+    <p class=${problem ? "field-problem" : "dim"} id="${id}-note">${problem ?? hint}</p>
+  </div>`;
 }
 
 /**
- * Build the text fields; `draw` writes the draft into them and shows what is invalid.
+ * The text fields, and what is invalid in them.
  *
- * @param {() => string[]} taken
+ * @param {string[]} taken
  */
 export function texts(taken) {
-  const label = field(
-    "label",
-    "Label",
-    h("input", { type: "text", autocomplete: "off", required: true }),
-  );
-  const description = field(
-    "description",
-    "Description",
-    h("textarea", { rows: 2 }),
-    "What it looks like or means, for people.",
-  );
-  const command = field("command", "Command", h("textarea", { rows: 3, spellcheck: false }));
-  const fields = { label, description, command };
-
-  /**
-   * @param {Field} field
-   * @param {string | null | undefined} problem
-   * @param {string} text
-   */
-  function annotate({ input, note }, problem, text) {
-    note.textContent = problem ?? text;
-    note.className = problem ? "field-problem" : "dim";
-    input.setAttribute("aria-invalid", String(Boolean(problem)));
-  }
-
-  function draw() {
-    const values = draft();
-    for (const name of /** @type {const} */ (["label", "description", "command"]))
-      if (fields[name].input.value !== values[name]) fields[name].input.value = values[name];
-    annotate(
-      label,
-      labelProblem(values.label, taken()),
-      "The name that the recogniser returns: circle, ascend, follow me.",
-    );
-    const { problem, kind } = read(values.command);
-    annotate(command, problem, `For the robot, in words or as a JSON object; now: ${kind}.`);
-  }
-  return {
-    element: h(
-      "section",
-      { className: "panel words", "aria-label": "Texts" },
-      h("h2", {}, "Texts"),
-      label.row,
-      description.row,
-      command.row,
-    ),
-    draw,
-    // A proposed label is replaced by typing.
-    focus: () => {
-      label.input.focus({ preventScroll: true });
-      label.input.select();
-    },
-  };
+  const { problem, kind } = read(draft().command);
+  return html`<section class="panel words" aria-label="Texts">
+    <h2>Texts</h2>
+    ${field("label", "Label", {
+      rows: 1,
+      problem: labelProblem(draft().label, taken),
+      hint: "The name that the recogniser returns: circle, ascend, follow me.",
+    })}${field("description", "Description", {
+      rows: 2,
+      hint: "What it looks like or means, for people.",
+    })}${field("command", "Command", {
+      rows: 3,
+      problem,
+      hint: `For the robot, in words or as a JSON object; now: ${kind}.`,
+      spellcheck: false,
+    })}
+  </section>`;
 }
 
 /**
@@ -166,59 +147,43 @@ export function textProblem(values, taken) {
   return problem ? { id: "editor-command", text: problem } : null;
 }
 
-/** @param {Switch} choice */
-function choice({ name, title, words }) {
-  const id = `switch-${name}`;
-  const inputs = POSITIONS.map((position) =>
-    h("input", {
-      type: "radio",
-      name: id,
-      value: position,
-      id: `${id}-${position}`,
-      onchange: () => change({ [name]: position }),
-    }),
-  );
-  const options = POSITIONS.flatMap((position, index) => [
-    inputs[index],
-    h(
-      "label",
-      { for: inputs[index].id, title: words[position] },
-      position[0].toUpperCase() + position.slice(1),
-    ),
-  ]);
-  const meaning = h("p", { className: "dim" });
-  const outcome = h("p", { className: "comes-to" });
-  const element = h(
-    "fieldset",
-    { className: "switch" },
-    h("legend", {}, title),
-    h("div", { className: "segments" }, options),
-    meaning,
-    outcome,
-  );
-  /** @param {Outlook | null} found */
-  function draw(found) {
-    const position = draft()[name];
-    for (const input of inputs) input.checked = input.value === position;
-    meaning.textContent = `${words[position]}.`;
-    const settled = found?.switches[name];
-    outcome.hidden = !settled || settled.position !== position || position !== "auto";
-    outcome.textContent = settled ? `Here: ${settled.words}.` : "";
-  }
-  return { element, draw };
+/**
+ * @param {Switch} choice
+ * @param {Outlook | null} found
+ */
+function choice({ name, title, words }, found) {
+  const chosen = draft()[name];
+  const settled = chosen === "auto" ? found?.switches[name] : undefined;
+  const options = POSITIONS.map((position) => {
+    const id = `switch-${name}-${position}`;
+    return html`<input
+        type="radio"
+        name="switch-${name}"
+        value=${position}
+        id=${id}
+        .checked=${live(position === chosen)}
+        @change=${() => change({ [name]: position })}
+      /><label for=${id} title=${words[position]}
+        >${position[0].toUpperCase() + position.slice(1)}</label
+      >`;
+  });
+  return html`<fieldset class="switch">
+    <legend>${title}</legend>
+    <div class="segments">${options}</div>
+    <p class="dim">${words[chosen]}.</p>
+    ${
+      settled?.position === chosen ? html`<p class="comes-to">Here: ${settled.words}.</p>` : nothing
+    }
+  </fieldset>`;
 }
 
-/** Build the switches; `draw(estimate)` also shows what the automatic ones resolve to. */
-export function switches() {
-  const choices = SWITCHES.map(choice);
-  return {
-    element: h(
-      "section",
-      { className: "panel switches", "aria-label": "Switches" },
-      h("h2", {}, "Switches"),
-      choices.map((each) => each.element),
-    ),
-    /** @param {Outlook | null} found */
-    draw: (found) => choices.forEach((each) => each.draw(found)),
-  };
-}
+/**
+ * The switches, and what the automatic ones resolve to.
+ *
+ * @param {Outlook | null} found
+ */
+export const switches = (found) =>
+  html`<section class="panel switches" aria-label="Switches">
+    <h2>Switches</h2>
+    ${SWITCHES.map((each) => choice(each, found))}
+  </section>`;

@@ -1,6 +1,7 @@
 // Leaving with a draft that is not saved: it can be kept for later, or dropped.
 
-import { byId, h } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { elementOf, html } from "../templates.js";
 import { forget } from "./gesture-draft.js";
 
 /**
@@ -9,57 +10,28 @@ import { forget } from "./gesture-draft.js";
  * @returns {Promise<boolean>}
  */
 export function mayLeave() {
-  const dialog = byId("dialog");
+  let leaves = false;
+  const leave = () => {
+    leaves = true;
+    closeDialog();
+  };
+  const drop = () => {
+    forget();
+    leave();
+  };
+  const question = html`<div class="leaving">
+    <h2 id="dialog-title">Leave without saving?</h2>
+    <p class="dim">
+      The gesture was changed and not saved. A draft is kept in this browser and comes back when the
+      gesture is opened again.
+    </p>
+    <div class="dialog-actions">
+      <button type="button" @click=${closeDialog}>Go on editing</button>
+      <button type="button" @click=${drop}>Discard</button>
+      <button type="button" class="primary" @click=${leave}>Keep the draft</button>
+    </div>
+  </div>`;
   return new Promise((resolve) => {
-    let leaves = false;
-    /**
-     * @param {string} text
-     * @param {() => void} run
-     * @param {string} [className]
-     */
-    const pick = (text, run, className = "") =>
-      h(
-        "button",
-        {
-          type: "button",
-          className,
-          onclick: () => {
-            run();
-            dialog.close();
-          },
-        },
-        text,
-      );
-    dialog.replaceChildren(
-      h(
-        "div",
-        { className: "leaving" },
-        h("h2", { id: "dialog-title" }, "Leave without saving?"),
-        h(
-          "p",
-          { className: "dim" },
-          "The gesture was changed and not saved. A draft is kept in this browser and comes back when the gesture is opened again.",
-        ),
-        h(
-          "div",
-          { className: "dialog-actions" },
-          pick("Go on editing", () => {}),
-          pick("Discard", () => {
-            forget();
-            leaves = true;
-          }),
-          pick(
-            "Keep the draft",
-            () => {
-              leaves = true;
-            },
-            "primary",
-          ),
-        ),
-      ),
-    );
-    dialog.setAttribute("aria-labelledby", "dialog-title");
-    dialog.onclose = () => resolve(leaves);
-    dialog.showModal();
+    showDialog(elementOf(question), () => resolve(leaves));
   });
 }

@@ -1,7 +1,7 @@
 // The preview of a draft: its trajectory image, its descriptors, and the gestures near it.
 
-import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
+import { html, nothing, svg } from "../templates.js";
 
 /** @import { Descriptor, Outlook, Preview } from "../core/types.d.ts" */
 
@@ -16,82 +16,66 @@ function descriptor({ voter, unit, values }) {
   const most = Math.max(...values.map(Math.abs)) || 1;
   const bars = values.map((value, index) => {
     const size = (HEIGHT / 2) * (Math.abs(value) / most);
-    return svg("rect", {
-      x: index,
-      width: 0.7,
-      y: value < 0 ? HEIGHT / 2 : HEIGHT / 2 - size,
-      height: Math.max(0.3, size),
-    });
+    return svg`<rect
+      x=${index}
+      width="0.7"
+      y=${value < 0 ? HEIGHT / 2 : HEIGHT / 2 - size}
+      height=${Math.max(0.3, size)}
+    />`;
   });
-  return h(
-    "li",
-    { title: `${readable(voter)}: distances in ${unit}` },
-    h("span", { className: "name" }, readable(voter)),
-    values.length === 1
-      ? h("span", { className: "num" }, values[0].toFixed(3))
-      : svg(
-          "svg",
-          {
-            viewBox: `0 0 ${values.length} ${HEIGHT}`,
-            preserveAspectRatio: "none",
-            role: "img",
-            "aria-label": `${values.length} numbers, the largest ${most.toFixed(2)}`,
-          },
-          ...bars,
-        ),
-  );
+  return html`<li title="${readable(voter)}: distances in ${unit}">
+    <span class="name">${readable(voter)}</span>${
+      values.length === 1
+        ? html`<span class="num">${values[0].toFixed(3)}</span>`
+        : html`<svg
+            viewBox="0 0 ${values.length} ${HEIGHT}"
+            preserveAspectRatio="none"
+            role="img"
+            aria-label="${values.length} numbers, the largest ${most.toFixed(2)}"
+          >
+            ${bars}
+          </svg>`
+    }
+  </li>`;
 }
 
-/** Build the image and descriptors. */
-export function image() {
-  const drawing = h("img", {
-    className: "trajectory",
-    alt: "Trajectory image of the gesture, from the dot along the arrow",
-    width: 224,
-    height: 224,
-    hidden: true,
-  });
-  const nothing = h("p", {}, "Nothing to draw yet");
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
-  const list = h("ul", { className: "descriptors", "aria-label": "Descriptors" });
-  const described = h(
-    "details",
-    { hidden: true },
-    h("summary", {}, "Descriptors of the image"),
-    list,
-  );
-  const length = h("small", { className: "dim num" });
-  const strokes = h("p", { className: "strokes", hidden: true });
-  /** @param {Preview | null} preview */
-  function draw(preview) {
-    if (!preview) return;
-    problem.hidden = !preview.problem;
-    problem.textContent = preview.problem
-      ? `It cannot be saved like this: ${preview.problem}.`
-      : "";
-    drawing.classList.toggle("stale", Boolean(preview.problem));
-    length.textContent = preview.seconds === null ? "" : `${preview.seconds.toFixed(2)} s`;
-    strokes.textContent = `Strokes: ${preview.strokes}`;
-    strokes.hidden = !preview.strokes;
-    if (preview.image) {
-      Object.assign(drawing, { src: preview.image, hidden: false });
-      nothing.hidden = true;
-    }
-    described.hidden = !preview.descriptors.length;
-    list.replaceChildren(...preview.descriptors.map(descriptor));
-  }
-  return {
-    element: h(
-      "section",
-      { className: "panel image-panel", "aria-label": "Trajectory image" },
-      h("div", { className: "panel-head" }, h("h2", {}, "Trajectory image"), length),
-      h("div", { className: "image-box" }, nothing, drawing),
-      strokes,
-      problem,
-      described,
-    ),
-    draw,
-  };
+/**
+ * The image and the descriptors.
+ *
+ * @param {Preview | null} preview
+ * @param {string | null} drawing the newest image, which an incomplete draft keeps
+ */
+export function image(preview, drawing) {
+  const { problem, seconds = null, strokes, descriptors = [] } = preview ?? {};
+  return html`<section class="panel image-panel" aria-label="Trajectory image">
+    <div class="panel-head">
+      <h2>Trajectory image</h2>
+      <small class="dim num">${seconds === null ? "" : `${seconds.toFixed(2)} s`}</small>
+    </div>
+    <div class="image-box">
+      ${
+        drawing
+          ? html`<img
+              class="trajectory ${problem ? "stale" : ""}"
+              alt="Trajectory image of the gesture, from the dot along the arrow"
+              width="224"
+              height="224"
+              src=${drawing}
+            />`
+          : html`<p>Nothing to draw yet</p>`
+      }
+    </div>
+    ${strokes ? html`<p class="strokes">Strokes: ${strokes}</p>` : nothing}
+    <p class="field-problem" role="alert" ?hidden=${!problem}>
+      ${problem && `It cannot be saved like this: ${problem}.`}
+    </p>
+    <details ?hidden=${!descriptors.length}>
+      <summary>Descriptors of the image</summary>
+      <ul class="descriptors" aria-label="Descriptors">
+        ${descriptors.map(descriptor)}
+      </ul>
+    </details>
+  </section>`;
 }
 
 /** @typedef {NonNullable<Outlook["nearest"]>[number]} NearGesture */
@@ -105,70 +89,51 @@ export function image() {
 function nearRow({ label, distance, same }, before) {
   const was =
     before && before.distance.toFixed(2) !== distance.toFixed(2)
-      ? h("small", { className: "dim" }, ` (saved: ${before.distance.toFixed(2)})`)
-      : null;
-  return h(
-    "li",
-    { className: same ? "bad" : "good" },
-    h(
-      "span",
-      {
-        className: "verdict",
-        role: "img",
-        "aria-label": same ? "The robot cannot distinguish the two" : "Another movement",
-      },
-      same ? "!" : "\u2713",
-    ),
-    h("span", {}, h("b", {}, label), was),
-    h("b", { className: "num" }, distance.toFixed(2)),
-  );
+      ? html`<small class="dim"> (saved: ${before.distance.toFixed(2)})</small>`
+      : nothing;
+  return html`<li class=${same ? "bad" : "good"}>
+    <span
+      class="verdict"
+      role="img"
+      aria-label=${same ? "The robot cannot distinguish the two" : "Another movement"}
+      >${same ? "!" : "\u2713"}</span
+    >
+    <span><b>${label}</b>${was}</span>
+    <b class="num">${distance.toFixed(2)}</b>
+  </li>`;
 }
 
 /**
- * Build the list of near gestures; `draw(found, before)` compares them with the saved gesture's.
+ * @param {Outlook | null} found
+ * @param {string | null | undefined} problem
+ */
+function noteOn(found, problem) {
+  if (!found)
+    return problem ? "Nothing can be compared before the gesture is complete." : "Comparing\u2026";
+  if (found.nearest === null)
+    return "Without a demonstration nothing can be compared: choose a clip that shows the gesture.";
+  return found.nearest.length
+    ? "Distance of the nearest gestures, 1 for two typical ones. What other people reach is measured once three have shown the language."
+    : "The only gesture of a language cannot be confused with another.";
+}
+
+/**
+ * The near gestures, compared with those of the saved gesture; the newest stay while others are
+ * looked for.
  *
  * @param {string} name
+ * @param {{ found: Outlook | null, newest: Outlook | null, before: Outlook | null, problem: string | null | undefined }} outlooks
  */
-export function health(name) {
-  const list = h("ul", { className: "estimates", "aria-label": "Nearest gestures" });
-  const note = h("p", { className: "dim", role: "status" });
-  /**
-   * @param {Outlook | null} found
-   * @param {Outlook | null} before
-   * @param {string | null | undefined} problem
-   */
-  function draw(found, before, problem) {
-    list.classList.toggle("stale", !found);
-    if (!found) {
-      note.textContent = problem
-        ? "Nothing can be compared before the gesture is complete."
-        : "Comparing\u2026";
-      return;
-    }
-    const { nearest } = found;
-    note.textContent =
-      nearest === null
-        ? "Without a demonstration nothing can be compared: choose a clip that shows the gesture."
-        : nearest.length
-          ? "Distance of the nearest gestures, 1 for two typical ones. What other people reach is measured once three have shown the language."
-          : "The only gesture of a language cannot be confused with another.";
-    list.replaceChildren(
-      ...(nearest ?? []).map((near) =>
+export const health = (name, { found, newest, before, problem }) =>
+  html`<section class="panel health-panel" aria-label="Health">
+    <h2>Health of ${name} with it</h2>
+    <p class="dim" role="status">${noteOn(found, problem)}</p>
+    <ul class="estimates ${found ? "" : "stale"}" aria-label="Nearest gestures">
+      ${(newest?.nearest ?? []).map((near) =>
         nearRow(
           near,
           before?.nearest?.find(({ label }) => label === near.label),
         ),
-      ),
-    );
-  }
-  return {
-    element: h(
-      "section",
-      { className: "panel health-panel", "aria-label": "Health" },
-      h("h2", {}, `Health of ${name} with it`),
-      note,
-      list,
-    ),
-    draw,
-  };
-}
+      )}
+    </ul>
+  </section>`;

@@ -1,7 +1,7 @@
 // The choice of salient keypoints: for each a checkbox, and a bar that shows how far it moves.
 
-import { h, reconcile } from "../core/dom.js";
 import { readable } from "../core/format.js";
+import { html, live, repeat } from "../templates.js";
 import { change, draft } from "./gesture-draft.js";
 
 /** @import { DemonstrationFault, Keypoint, Preview } from "../core/types.d.ts" */
@@ -60,116 +60,83 @@ function noteOn(preview, count) {
 }
 
 /**
- * Build the list; `draw(preview)` shows what moves.
- *
- * @param {() => Preview | null} latest
+ * @param {Keypoint} keypoint
+ * @param {{ most: number, threshold: number, on: boolean, pick: () => void }} about
  */
-export function keypoints(latest) {
-  let all = false;
-  const list = h("ul", { className: "bars", "aria-label": "Keypoints" });
-  const note = h("p", { className: "dim" });
-  const problem = h(
-    "p",
-    { className: "field-problem", role: "alert", hidden: true },
-    "At least one keypoint is followed; choose another one first.",
-  );
-  const every = h("button", {
-    type: "button",
-    className: "link",
-    onclick: () => {
-      all = !all;
-      draw(latest());
-    },
-  });
-  const proposal = h(
-    "button",
-    { type: "button", onclick: () => change({ salient: null }) },
-    "As proposed",
-  );
+function row({ landmark, displacement, seen, proposed }, { most, threshold, on, pick }) {
+  const name = readable(landmark);
+  const visible = seen < 1 ? `, seen ${Math.round(100 * seen)} % of the time` : "";
+  return html`<li
+    class=${on ? "on" : ""}
+    title="${name} moves ${displacement.toFixed(2)}${visible}${proposed ? "; proposed" : ""}"
+  >
+    <label>
+      <input type="checkbox" .checked=${live(on)} @change=${pick} />
+      <span class="name">${name}</span>
+      <span class="bar-track"
+        ><i class="fill" .style=${`width: ${(100 * displacement) / most}%`}></i
+        ><i class="mark" .style=${`left: ${(100 * threshold) / most}%`}></i
+      ></span>
+      <span class="num">${displacement.toFixed(2)}</span>
+    </label>
+  </li>`;
+}
 
+/**
+ * The list of keypoints, and what moves.
+ *
+ * @param {Preview | null} preview
+ * @param {{ all: boolean, refused: boolean }} shown whether all are listed, and whether the last
+ *   one was to be left out
+ * @param {() => void} draw
+ */
+export function keypoints(preview, shown, draw) {
+  const found = preview?.keypoints ?? [];
+  const chosen = chosenIn(preview);
+  const threshold = preview?.threshold ?? 0;
+  const most = Math.max(threshold, ...found.map((each) => each.displacement)) * 1.04 || 1;
+  shown.refused &&= chosen.length < 2;
   /** @param {string} landmark */
-  function makeRow(landmark) {
-    const input = h("input", {
-      type: "checkbox",
-      onchange: () => {
-        problem.hidden = toggle(landmark, latest());
-        draw(latest());
-      },
-    });
-    return h(
-      "li",
-      {},
-      h(
-        "label",
-        {},
-        input,
-        h("span", { className: "name" }),
-        h(
-          "span",
-          { className: "bar-track" },
-          h("i", { className: "fill" }),
-          h("i", { className: "mark" }),
-        ),
-        h("span", { className: "num" }),
-      ),
-    );
-  }
-
-  /**
-   * @param {Keypoint} keypoint
-   * @param {HTMLElement | undefined} element
-   * @param {number} most
-   * @param {number} threshold
-   * @param {string[]} chosen
-   */
-  function row(keypoint, element, most, threshold, chosen) {
-    const { landmark, displacement, seen } = keypoint;
-    const on = chosen.includes(landmark);
-    const drawn = element ?? makeRow(landmark);
-    const [input, name, fill, mark, number] = /** @type {[HTMLInputElement, ...HTMLElement[]]} */ (
-      ["input", ".name", ".fill", ".mark", ".num"].map((each) => drawn.querySelector(each))
-    );
-    input.checked = on;
-    drawn.classList.toggle("on", on);
-    name.textContent = readable(landmark);
-    fill.style.width = `${(100 * displacement) / most}%`;
-    mark.style.left = `${(100 * threshold) / most}%`;
-    number.textContent = displacement.toFixed(2);
-    drawn.title = `${readable(landmark)} moves ${displacement.toFixed(2)}${seen < 1 ? `, seen ${Math.round(100 * seen)} % of the time` : ""}${keypoint.proposed ? "; proposed" : ""}`;
-    return drawn;
-  }
-
-  /** @param {Preview | null} preview */
-  function draw(preview) {
-    const found = preview?.keypoints ?? [];
-    const chosen = chosenIn(preview);
-    problem.hidden = problem.hidden || chosen.length > 1;
-    const shown = found.filter(
-      (each) => all || each.usual || each.proposed || chosen.includes(each.landmark),
-    );
-    const most =
-      Math.max(preview?.threshold ?? 0, ...found.map((each) => each.displacement)) * 1.04 || 1;
-    reconcile(
-      list,
-      shown,
-      (each) => each.landmark,
-      (each, element) => row(each, element, most, preview?.threshold ?? 0, chosen),
-    );
-    every.hidden = found.length === 0;
-    every.textContent = all ? "Fewer keypoints" : `All ${found.length} keypoints`;
-    proposal.disabled = draft().salient === null || !found.length;
-    note.textContent = noteOn(preview, found.length);
-  }
-  return {
-    element: h(
-      "section",
-      { className: "panel keypoints", "aria-label": "Salient keypoints" },
-      h("div", { className: "panel-head" }, h("h2", {}, "Salient keypoints"), proposal),
-      note,
-      list,
-      problem,
-      every,
-    ),
-    draw,
+  const pick = (landmark) => {
+    shown.refused = !toggle(landmark, preview);
+    draw();
   };
+  const turn = () => {
+    shown.all = !shown.all;
+    draw();
+  };
+  return html`<section class="panel keypoints" aria-label="Salient keypoints">
+    <div class="panel-head">
+      <h2>Salient keypoints</h2>
+      <button
+        type="button"
+        ?disabled=${draft().salient === null || !found.length}
+        @click=${() => change({ salient: null })}
+      >
+        As proposed
+      </button>
+    </div>
+    <p class="dim">${noteOn(preview, found.length)}</p>
+    <ul class="bars" aria-label="Keypoints">
+      ${repeat(
+        found.filter(
+          (each) => shown.all || each.usual || each.proposed || chosen.includes(each.landmark),
+        ),
+        ({ landmark }) => landmark,
+        (each) =>
+          row(each, {
+            most,
+            threshold,
+            on: chosen.includes(each.landmark),
+            pick: () => pick(each.landmark),
+          }),
+      )}
+    </ul>
+    <p class="field-problem" role="alert" ?hidden=${!shown.refused}>
+      At least one keypoint is followed; choose another one first.
+    </p>
+    <button type="button" class="link" ?hidden=${!found.length} @click=${turn}>
+      ${shown.all ? "Fewer keypoints" : `All ${found.length} keypoints`}
+    </button>
+  </section>`;
 }

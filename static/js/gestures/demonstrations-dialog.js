@@ -3,15 +3,17 @@
 import { olderClipsButton } from "../clips/older-clips.js";
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { currentLanguage, follow, selectedRange, state } from "../core/state.js";
-import { limit, MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
+import { MAX_DEMONSTRATIONS, MAX_DIVER_LENGTH } from "../core/text-limit.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, go, here } from "../core/views.js";
 import { openTrigger } from "../languages/language-trigger.js";
 import { edit } from "../languages/revision-edit.js";
+import { html, limited, nothing, optionsOf, render } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 
 /** @import { Clip, Demonstration, DemonstrationFault, Gesture, Source, Take } from "../core/types.d.ts" */
@@ -19,10 +21,12 @@ import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 /** @typedef {{ text: string, start: number | null, end: number | null }} Range */
 
 /**
- * The dialog on display.
+ * The dialog on display; `range` is the number of the chosen one of the `ranges` of a clip.
  *
- * @type {{ label: string, content: HTMLElement, drawn: string, adding: ReturnType<typeof addForm> } | null}
+ * @typedef {{ label: string, box: HTMLElement, clip: string, ranges: Range[], range: number, adding: boolean, older: HTMLElement }} Shown
  */
+
+/** @type {Shown | null} */
 let shown = null;
 let followed = false;
 
@@ -78,9 +82,9 @@ async function setRange(label, { clip_id }, { start, end }) {
  * @param {number} index which demonstration
  * @param {Source | null | undefined} source
  */
-export function faultNote(label, index, source) {
+function faultNote(label, index, source) {
   const [fault] = source?.faults ?? [];
-  if (!source || !fault) return null;
+  if (!source || !fault) return nothing;
   const ranged = fault.remedy === "set_range" && fault.start !== null && index === 0;
   /** @type {[string, () => void] | null} */
   const mend = ranged
@@ -91,14 +95,14 @@ export function faultNote(label, index, source) {
     : fault.remedy === "arm_trigger"
       ? ["Choose the arm trigger", openTrigger]
       : null;
-  return h(
-    "p",
-    { className: "demonstration-fault", title: `It ${fault.words}.` },
-    `${fault.sentence} `,
-    mend
-      ? h("button", { type: "button", className: "link", ...WRITES, onclick: mend[1] }, mend[0])
-      : null,
-  );
+  return html`<p class="demonstration-fault" title="It ${fault.words}.">
+    ${fault.sentence}
+    ${
+      mend
+        ? html`<button type="button" class="link" data-writes @click=${mend[1]}>${mend[0]}</button>`
+        : nothing
+    }
+  </p>`;
 }
 
 const gestureShown = () => currentLanguage().gestures.find(({ label }) => label === shown?.label);
@@ -128,7 +132,7 @@ async function remove(label, index) {
  */
 function origin(source) {
   const clip = clipOf(source);
-  if (!clip || !source) return h("span", { className: "dim" }, "its clip is not here");
+  if (!clip || !source) return html`<span class="dim">its clip is not here</span>`;
   const place = {
     clip: clip.id,
     take: null,
@@ -136,17 +140,11 @@ function origin(source) {
     end: source.end,
     recognition: null,
   };
-  return h(
-    "a",
-    {
-      href: address("studio", place),
-      onclick: here(() => {
-        byId("dialog").close();
-        go("studio", place);
-      }),
-    },
-    clip.name,
-  );
+  const open = here(() => {
+    closeDialog();
+    go("studio", place);
+  });
+  return html`<a href=${address("studio", place)} @click=${open}>${clip.name}</a>`;
 }
 
 /**
@@ -157,36 +155,27 @@ function figure(gesture, demonstration) {
   const { index, diver, seconds, thumbnail, source } = demonstration;
   const name = `Demonstration ${index + 1}`;
   const alone = gesture.demonstrations.length === 1;
-  return h(
-    "li",
-    { className: "demonstration-card" },
-    h("img", {
-      src: withMarks(thumbnail),
-      alt: isHeld(demonstration)
-        ? `${name} of ${gesture.label}, ${nameShapes(demonstration)}`
-        : `${name} of ${gesture.label}, from the dot along the arrow`,
-      width: 160,
-      height: 160,
-    }),
-    h("b", {}, diver || name),
-    h("span", { className: "num" }, seconds === null ? "only its image is known" : moment(seconds)),
-    h("span", { className: "dim" }, listFollowed(demonstration)),
-    h("span", { className: "dim" }, demonstration.strokes),
-    origin(source),
-    faultNote(gesture.label, index, source),
-    h(
-      "button",
-      {
-        type: "button",
-        ...WRITES,
-        disabled: alone,
-        title: alone ? "The only demonstration stays; delete the gesture instead" : "",
-        "aria-label": `Remove ${name.toLowerCase()}`,
-        onclick: () => remove(gesture.label, index),
-      },
-      "Remove",
-    ),
-  );
+  const alt = isHeld(demonstration)
+    ? `${name} of ${gesture.label}, ${nameShapes(demonstration)}`
+    : `${name} of ${gesture.label}, from the dot along the arrow`;
+  return html`<li class="demonstration-card">
+    <img alt=${alt} width="160" height="160" src=${withMarks(thumbnail)} />
+    <b>${diver || name}</b>
+    <span class="num">${seconds === null ? "only its image is known" : moment(seconds)}</span>
+    <span class="dim">${listFollowed(demonstration)}</span>
+    <span class="dim">${demonstration.strokes}</span>
+    ${origin(source)}${faultNote(gesture.label, index, source)}
+    <button
+      type="button"
+      data-writes
+      ?disabled=${alone}
+      title=${alone ? "The only demonstration stays; delete the gesture instead" : ""}
+      aria-label="Remove ${name.toLowerCase()}"
+      @click=${() => remove(gesture.label, index)}
+    >
+      Remove
+    </button>
+  </li>`;
 }
 
 /**
@@ -213,95 +202,119 @@ function rangesOf(clip, takes) {
 }
 
 /**
+ * Choose the clip of which a take can be added, and load its ranges.
+ *
+ * @param {Shown} dialog
+ * @param {string} clip
+ */
+async function chooseClip(dialog, clip) {
+  dialog.clip = clip;
+  const found = clip
+    ? await attempt("Loading the takes", () => api.clips.takes(clip, takesLanguage(state.gestures)))
+    : [];
+  if (!found || clip !== dialog.clip) return;
+  dialog.ranges = rangesOf(clip, found);
+  const selected = clip === state.clip ? (state.take ?? 0) : 0;
+  dialog.range = dialog.ranges[selected] ? selected : 0;
+  draw();
+}
+
+/** @param {SubmitEvent} event */
+async function add(event) {
+  event.preventDefault();
+  if (!shown) return;
+  const dialog = shown;
+  const { label, clip, ranges, range } = dialog;
+  const { start, end } = ranges[range] ?? { start: null, end: null };
+  const diver = byId("demonstration-diver");
+  const body = { label, clip_id: clip, start, end, diver: diver.value.trim() };
+  dialog.adding = true;
+  draw();
+  try {
+    await edit("Adding the demonstration", `Another demonstration of ${label}`, (language) =>
+      api.languages.addDemonstration(language, body),
+    );
+    diver.value = "";
+    showDone("Demonstration added", label);
+  } catch (error) {
+    complain(error, "Adding the demonstration");
+  } finally {
+    dialog.adding = false;
+    draw();
+  }
+}
+
+/**
  * The form that adds a take of a clip.
  *
- * @param {string} label
+ * @param {Shown} dialog
+ * @param {Clip[]} clips
  */
-function addForm(label) {
-  const clips = h("select", { id: "demonstration-clip" });
-  const takes = h("select", { id: "demonstration-take" });
-  const diver = limit(
-    h("input", { type: "text", id: "demonstration-diver", autocomplete: "off" }),
-    MAX_DIVER_LENGTH,
-  );
-  const button = h("button", { type: "submit", className: "primary", ...WRITES }, "Add");
-  /** @type {Range[]} */
-  let ranges = [];
-  const load = async () => {
-    const clip = clips.value;
-    const found = clip
-      ? await attempt("Loading the takes", () =>
-          api.clips.takes(clip, takesLanguage(state.gestures)),
-        )
-      : [];
-    if (!found || clip !== clips.value) return;
-    ranges = rangesOf(clip, found);
-    takes.replaceChildren(...ranges.map(({ text }, index) => h("option", { value: index }, text)));
-    if (clip === state.clip && ranges[state.take ?? 0]) takes.value = String(state.take ?? 0);
+function addForm(dialog, clips) {
+  const { clip, ranges, range, adding, older } = dialog;
+  const pickRange = (/** @type {any} */ { target }) => {
+    dialog.range = Number(target.value);
   };
-  clips.onchange = load;
-  let offered = "";
-  /** Offer the clips that have poses by now; the choice among them stays. */
-  const offer = () => {
-    const ready = state.clips.filter(({ status }) => status === "done");
-    const now = ready.map(({ id, name }) => `${id} ${name}`).join();
-    if (now === offered) return;
-    offered = now;
-    const wanted = clips.value || state.clip;
-    clips.replaceChildren(...ready.map(({ id, name }) => h("option", { value: id }, name)));
-    if (ready.some(({ id }) => id === wanted)) clips.value = wanted ?? "";
-    load();
-  };
-  /**
-   * @param {string} label
-   * @param {HTMLElement} input
-   */
-  const field = (label, input) =>
-    h("div", { className: "field" }, h("label", { for: input.id }, label), input);
-  const form = h(
-    "form",
-    { className: "demonstration-add", "aria-label": "Another demonstration" },
-    h("h3", {}, "Another demonstration, best by another diver"),
-    field("Clip", clips),
-    olderClipsButton(),
-    field("Range", takes),
-    field("Diver", diver),
-    button,
-  );
-  form.onsubmit = async (event) => {
-    event.preventDefault();
-    const { start, end } = ranges[Number(takes.value)] ?? { start: null, end: null };
-    const body = { label, clip_id: clips.value, start, end, diver: diver.value.trim() };
-    button.disabled = true;
-    try {
-      await edit("Adding the demonstration", `Another demonstration of ${label}`, (language) =>
-        api.languages.addDemonstration(language, body),
-      );
-      diver.value = "";
-      showDone("Demonstration added", label);
-    } catch (error) {
-      complain(error, "Adding the demonstration");
-    } finally {
-      button.disabled = false;
-    }
-  };
-  return { form, offer };
+  return html`<form class="demonstration-add" aria-label="Another demonstration" @submit=${add}>
+    <h3>Another demonstration, best by another diver</h3>
+    <div class="field">
+      <label for="demonstration-clip">Clip</label>
+      <select
+        id="demonstration-clip"
+        @change=${(/** @type {any} */ { target }) => chooseClip(dialog, target.value)}
+      >
+        ${optionsOf(
+          clips.map(({ id, name }) => [id, name]),
+          clip,
+        )}
+      </select>
+    </div>
+    ${older}
+    <div class="field">
+      <label for="demonstration-take">Range</label>
+      <select id="demonstration-take" @change=${pickRange}>
+        ${optionsOf(
+          ranges.map(({ text }, index) => [String(index), text]),
+          String(range),
+        )}
+      </select>
+    </div>
+    <div class="field">
+      <label for="demonstration-diver">Diver</label>
+      <input type="text" id="demonstration-diver" autocomplete="off" ${limited(MAX_DIVER_LENGTH)} />
+    </div>
+    <button type="submit" class="primary" data-writes ?disabled=${adding}>Add</button>
+  </form>`;
 }
 
 function draw() {
-  if (!shown?.content.isConnected) return;
+  if (!shown?.box.isConnected) return;
   const gesture = state.gestures && gestureShown();
-  if (!gesture) return byId("dialog").close();
-  const { demonstrations } = gesture;
-  // Only changed content is drawn anew, so that a focused link or button stays.
-  const now = JSON.stringify(demonstrations.map((each) => [each, clipOf(each.source)?.name]));
-  if (now !== shown.drawn) {
-    shown.drawn = now;
-    shown.content.replaceChildren(...demonstrations.map((each) => figure(gesture, each)));
+  if (!gesture) {
+    closeDialog();
+    return;
   }
-  shown.adding.form.hidden = demonstrations.length >= MAX_DEMONSTRATIONS;
-  shown.adding.offer();
-  return undefined;
+  const { demonstrations, label } = gesture;
+  const clips = state.clips.filter(({ status }) => status === "done");
+  // The chosen clip stays; at first it is the one on display.
+  const wanted = [shown.clip, state.clip].find((id) => clips.some((clip) => clip.id === id));
+  const clip = wanted ?? clips[0]?.id ?? "";
+  if (clip !== shown.clip) chooseClip(shown, clip);
+  render(
+    html`<h2 id="dialog-title">Demonstrations of ${label}</h2>
+      <p class="dim">
+        A take is compared with each of them, and the nearest counts. A gesture has
+        ${MAX_DEMONSTRATIONS} at most.
+      </p>
+      <ul class="demonstration-cards" aria-label="Demonstrations">
+        ${demonstrations.map((each) => figure(gesture, each))}
+      </ul>
+      ${demonstrations.length < MAX_DEMONSTRATIONS ? addForm(shown, clips) : nothing}
+      <div class="dialog-actions">
+        <button type="button" @click=${closeDialog}>Close</button>
+      </div>`,
+    shown.box,
+  );
 }
 
 /**
@@ -310,34 +323,13 @@ function draw() {
  * @param {string} label
  */
 export function openDemonstrations(label) {
-  const dialog = byId("dialog");
-  const content = h("ul", { className: "demonstration-cards", "aria-label": "Demonstrations" });
-  const adding = addForm(label);
-  shown = { label, content, drawn: "", adding };
-  dialog.replaceChildren(
-    h(
-      "div",
-      { className: "demonstrations-dialog" },
-      h("h2", { id: "dialog-title" }, `Demonstrations of ${label}`),
-      h(
-        "p",
-        { className: "dim" },
-        `A take is compared with each of them, and the nearest counts. A gesture has ${MAX_DEMONSTRATIONS} at most.`,
-      ),
-      content,
-      adding.form,
-      h(
-        "div",
-        { className: "dialog-actions" },
-        h("button", { type: "button", onclick: () => dialog.close() }, "Close"),
-      ),
-    ),
-  );
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  const box = h("div", { className: "demonstrations-dialog" });
+  const older = olderClipsButton();
+  shown = { label, box, clip: "", ranges: [], range: 0, adding: false, older };
+  byId("dialog").replaceChildren(box);
   if (!followed) {
     followed = true;
     follow(["gestures", "clips"], draw);
   } else draw();
+  showDialog(box);
 }

@@ -3,7 +3,7 @@
 import { expectedOf, NONE } from "../languages/test-set.js";
 import { labelInName } from "../clips/clip-label.js";
 import * as api from "../core/api.js";
-import { byId, h, iconButton, reconcile, WRITES } from "../core/dom.js";
+import { byId, h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { currentLanguage, selectedClip, state } from "../core/state.js";
 import { complain } from "../core/toasts.js";
@@ -11,6 +11,7 @@ import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
 import { edit } from "../languages/revision-edit.js";
 import { openSettings } from "../languages/settings-dialog.js";
+import { html, iconButtonOf, nothing, render, repeat } from "../templates.js";
 import { isHeld, listFollowed, nameShapes } from "./held-shape.js";
 import { openDemonstrations, shortFault, withMarks } from "./demonstrations-dialog.js";
 
@@ -41,8 +42,8 @@ async function remove(gesture) {
 function faultTag({ demonstrations }) {
   const bad = demonstrations.map(({ source }) => source).find((source) => source?.faults.length);
   return bad
-    ? h("span", { className: "tag fault", title: bad.faults[0].sentence }, shortFault(bad))
-    : null;
+    ? html`<span class="tag fault" title=${bad.faults[0].sentence}>${shortFault(bad)}</span>`
+    : nothing;
 }
 
 /**
@@ -57,59 +58,37 @@ function markOf({ label }) {
   return label === result.expected ? "expected" : null;
 }
 
-/**
- * @param {Gesture} gesture
- * @param {HTMLElement | undefined} element
- */
-function draw(gesture, element) {
+/** @param {Gesture} gesture */
+function card(gesture) {
+  const { label, description, demonstrations } = gesture;
   const mark = markOf(gesture);
   const tag = mark === "chosen" && state.result?.pair ? "one of two" : mark;
-  const signature = JSON.stringify([gesture, tag]);
-  if (element?.dataset.signature === signature) return element;
-  const image = withMarks(gesture.thumbnail);
-  const { strokes } = gesture.demonstrations[0];
-  const card = h(
-    "li",
-    { className: `card${mark ? ` ${mark}` : ""}` },
-    h("img", {
-      src: image,
-      alt: isHeld(gesture)
-        ? `Picture of ${gesture.label}, ${nameShapes(gesture)}`
-        : `Trajectory of ${gesture.label}, from the dot along the arrow`,
-      loading: "lazy",
-      width: 112,
-      height: 112,
-    }),
-    h(
-      "div",
-      { className: "card-text" },
-      h("b", { title: gesture.label }, gesture.label),
-      h("span", {}, gesture.description || listFollowed(gesture)),
-      strokes ? h("span", { title: `Strokes: ${strokes}` }, strokes) : null,
-      h(
-        "button",
-        {
-          type: "button",
-          className: "link",
-          "aria-label": `${plural(gesture.demonstrations.length, "demonstration")} of ${gesture.label}`,
-          onclick: () => openDemonstrations(gesture.label),
-        },
-        plural(gesture.demonstrations.length, "demonstration"),
-      ),
-      mark ? h("span", { className: `tag ${mark}` }, tag) : null,
-      faultTag(gesture),
-    ),
-    h(
-      "div",
-      { className: "card-buttons" },
-      iconButton("rename", `Change ${gesture.label}`, () =>
-        go("gesture", { gesture: gesture.label }),
-      ),
-      iconButton("trash", `Delete ${gesture.label}`, () => remove(gesture), WRITES),
-    ),
-  );
-  card.dataset.signature = signature;
-  return card;
+  const [{ strokes }] = demonstrations;
+  const count = plural(demonstrations.length, "demonstration");
+  const alt = isHeld(gesture)
+    ? `Picture of ${label}, ${nameShapes(gesture)}`
+    : `Trajectory of ${label}, from the dot along the arrow`;
+  return html`<li class="card ${mark ?? ""}" data-key=${label}>
+    <img alt=${alt} loading="lazy" width="112" height="112" src=${withMarks(gesture.thumbnail)} />
+    <div class="card-text">
+      <b title=${label}>${label}</b>
+      <span>${description || listFollowed(gesture)}</span>
+      ${strokes ? html`<span title="Strokes: ${strokes}">${strokes}</span>` : nothing}
+      <button
+        type="button"
+        class="link"
+        aria-label="${count} of ${label}"
+        @click=${() => openDemonstrations(label)}
+      >
+        ${count}
+      </button>
+      ${mark ? html`<span class="tag ${mark}">${tag}</span>` : nothing}${faultTag(gesture)}
+    </div>
+    <div class="card-buttons">
+      ${iconButtonOf("rename", `Change ${label}`, () => go("gesture", { gesture: label }))}
+      ${iconButtonOf("trash", `Delete ${label}`, () => remove(gesture), { writes: true })}
+    </div>
+  </li>`;
 }
 
 /**
@@ -136,13 +115,10 @@ function drawCarried(language) {
   const box = byId("carried");
   const carried = language?.gestures.length ? language : null;
   box.hidden = !carried;
-  if (!carried) return;
-  box.replaceChildren(
-    `A robot that has revision ${carried.revision} shows `,
-    h("code", {}, carried.code),
-    ". ",
-    h("button", { type: "button", className: "link", onclick: openSettings }, "Settings"),
-  );
+  const words = html`A robot that has revision ${carried?.revision} shows
+    <code>${carried?.code}</code>.
+    <button type="button" class="link" @click=${openSettings}>Settings</button>`;
+  render(words, box);
 }
 
 /** @param {State} state */
@@ -157,7 +133,10 @@ export function drawGestures(state) {
   empty.textContent = gestures
     ? "No gestures yet. Select a take of a clip and press \u201cSave as gesture\u201d: one demonstration is enough."
     : "No language yet. Make one with +, or drop a language file (.json).";
-  reconcile(byId("gestures"), members, (gesture) => gesture.label, draw);
+  render(
+    repeat(members, ({ label }) => label, card),
+    byId("gestures"),
+  );
   drawExpected(members, result);
 }
 

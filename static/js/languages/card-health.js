@@ -2,92 +2,84 @@
 // first report on a revision takes the server seconds.
 
 import * as api from "../core/api.js";
+import { follow, state } from "../core/state.js";
+import { html, nothing } from "../templates.js";
 
 /** @import { HealthReport, LanguageSummary } from "../core/types.d.ts" */
 
-/** @type {Map<string, HealthReport>} */
-const reports = new Map(); // by language and revision
-/** @type {{ card: Element, language: LanguageSummary, line: HTMLElement }[]} */
-const waiting = [];
-/** @type {WeakMap<Element, LanguageSummary>} */
-const languageOf = new WeakMap(); // by card
+/** @type {Map<string, HealthReport | null>} */
+const reports = new Map(); // by language and revision; null: there is none
+/** @type {Set<string>} */
+const seen = new Set(); // languages whose cards are on display
 let offered = true; // false once the server turned out to have no such report
 let asking = false;
+let draw = () => {};
 
 /** @param {LanguageSummary} language */
 const keyOf = ({ id, revision }) => `${id} ${revision}`;
 
 /**
- * Show that the report is pending.
+ * The line of a card: the findings in words and as a mark.
  *
- * @param {HTMLElement} line
+ * @param {LanguageSummary} language
  */
-function promise(line) {
-  line.hidden = false;
-  line.className = "health pending";
-  line.textContent = "Health is being checked";
-  line.removeAttribute("title");
-}
-
-/**
- * The line under a card: the findings in words and as a mark.
- *
- * @param {HTMLElement} line
- * @param {HealthReport | undefined} report
- */
-function write(line, report) {
-  if (!report) return;
+export function healthLine(language) {
+  const report = reports.get(keyOf(language));
+  if (!report) {
+    const pending = language.labels.length && offered && report === undefined;
+    return pending ? html`<p class="health pending">Health is being checked</p>` : nothing;
+  }
   const { verdict, warnings: findings } = report;
-  line.hidden = false;
-  line.className = `health ${verdict.ready ? "well" : "unwell"}`;
   const first = findings.find((finding) => finding.error);
-  line.textContent = verdict.words + (first ? `: ${first.message}` : "");
-  line.title = findings.map((finding) => finding.message).join("\n");
+  const title = findings.map(({ message }) => message).join("\n");
+  return html`<p class="health ${verdict.ready ? "well" : "unwell"}" title=${title}>
+    ${verdict.words}${first && `: ${first.message}`}
+  </p>`;
 }
 
+/** Request the report of a card on display that has none, and then the next. */
 async function next() {
-  const first = waiting.shift();
-  if (!first || !offered) return;
-  const { language, line } = first;
+  // Scrolling past a hundred cards must not request a hundred reports.
+  const language = state.languages.find(
+    (each) => seen.has(each.id) && each.labels.length && !reports.has(keyOf(each)),
+  );
+  if (asking || !language || !offered) return;
   asking = true;
   try {
-    if (line.isConnected && !reports.has(keyOf(language)))
-      reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
-    write(line, reports.get(keyOf(language)));
+    reports.set(keyOf(language), await api.languages.check(language.id, language.revision));
   } catch (error) {
     // A card may stay without a report; a deleted language's card is about to disappear.
-    line.hidden = true;
+    reports.set(keyOf(language), null);
     if (error.status === 404) offered = false;
   }
   asking = false;
+  draw();
   next();
 }
 
-const seen = new IntersectionObserver((entries) => {
+const watch = new IntersectionObserver((entries) => {
   for (const { isIntersecting, target } of entries) {
-    const line = /** @type {HTMLElement | null} */ (target.querySelector(".health"));
-    const at = waiting.findIndex((each) => each.card === target);
-    // Scrolling past a hundred cards must not request a hundred reports.
-    if (at >= 0) waiting.splice(at, 1);
-    const language = languageOf.get(target);
-    if (isIntersecting && line && language) waiting.push({ card: target, language, line });
+    const { language = "" } = /** @type {HTMLElement} */ (target).dataset;
+    if (isIntersecting) seen.add(language);
+    else seen.delete(language);
   }
-  if (!asking) next();
+  next();
+});
+
+// A test of the language changes the verdict on it.
+follow(["labelled"], ({ labelled }) => {
+  if (labelled)
+    for (const key of reports.keys()) if (key.startsWith(`${labelled.id} `)) reports.delete(key);
 });
 
 /**
- * Fill a card's line once the card is seen.
+ * Request the reports of the cards that are seen; `react` is called with each.
  *
- * @param {HTMLElement} card
- * @param {LanguageSummary} language
+ * @param {Iterable<Element>} cards
+ * @param {() => void} react
  */
-export function showHealth(card, language) {
-  const line = /** @type {HTMLElement} */ (card.querySelector(".health"));
-  line.hidden = true;
-  seen.unobserve(card);
-  if (reports.has(keyOf(language))) return write(line, reports.get(keyOf(language)));
-  if (!language.labels.length || !offered) return undefined;
-  promise(line);
-  languageOf.set(card, language);
-  return seen.observe(card);
+export function watchCards(cards, react) {
+  draw = react;
+  for (const card of cards) watch.observe(card);
+  next();
 }

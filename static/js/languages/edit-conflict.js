@@ -3,6 +3,7 @@
 import * as api from "../core/api.js";
 import { h } from "../core/dom.js";
 import { ago } from "../core/format.js";
+import { html, nothing, render } from "../templates.js";
 import { changedTexts, diffGestures } from "./draft-diff.js";
 
 /** @import { Gesture, Language } from "../core/types.d.ts" */
@@ -25,34 +26,26 @@ const undecided = (doing) =>
  * @param {string} title
  * @param {string[]} lines
  * @param {{ gesture: Gesture, kind: string }[]} gestures
- * @param {HTMLElement} choice
+ * @param {unknown} choice
  */
-function version(title, lines, gestures, choice) {
-  return h(
-    "section",
-    { "aria-label": title },
-    h("h3", {}, title),
-    h(
-      "ul",
-      { className: "conflict-changes" },
-      lines.map((line) => h("li", {}, line)),
-    ),
-    h(
-      "ul",
-      { className: "conflict-gestures" },
-      gestures.map(({ gesture, kind }) =>
-        h(
-          "li",
-          { className: kind },
-          h("img", { src: api.beside(gesture.thumbnail), alt: "", width: 56, height: 56 }),
-          h("span", {}, gesture.label),
-          kind === "same" ? null : h("small", {}, kind),
-        ),
-      ),
-    ),
-    choice,
-  );
-}
+const version = (title, lines, gestures, choice) =>
+  html`<section aria-label=${title}>
+    <h3>${title}</h3>
+    <ul class="conflict-changes">
+      ${lines.map((line) => html`<li>${line}</li>`)}
+    </ul>
+    <ul class="conflict-gestures">
+      ${gestures.map(
+        ({ gesture, kind }) =>
+          html`<li class=${kind}>
+            <img src=${api.beside(gesture.thumbnail)} alt="" width="56" height="56" />
+            <span>${gesture.label}</span>
+            ${kind === "same" ? nothing : html`<small>${kind}</small>`}
+          </li>`,
+      )}
+    </ul>
+    ${choice}
+  </section>`;
 
 /**
  * The changes since `from`, one line each.
@@ -87,11 +80,10 @@ export async function settleConflict({ doing, title, from, mine, change }) {
       words.map((word) => `${(after ?? before)?.label}: ${word}`),
     ),
   ];
-  const problem = h("p", { className: "field-problem", role: "alert", hidden: true });
   const dialog = h("dialog", { className: "conflict", "aria-labelledby": "conflict-title" });
-  /** @type {(text: string, run: () => void, className?: string) => HTMLElement} */
+  /** @type {(text: string, run: () => void, className?: string) => unknown} */
   const button = (text, run, className = "") =>
-    h("button", { type: "button", className, onclick: run }, text);
+    html`<button type="button" class=${className} @click=${run}>${text}</button>`;
   /** @type {{ before: number, language: Language } | "theirs" | null} */
   let outcome = null;
   /** Apply the choice; show the error and keep the dialog open if that fails. */
@@ -100,11 +92,11 @@ export async function settleConflict({ doing, title, from, mine, change }) {
       outcome = { before: theirs.revision, language: await made() };
       dialog.close();
     } catch (error) {
-      problem.textContent =
+      draw(
         error.status === 412
           ? "The language was changed once more. Close this, and save again."
-          : error.message;
-      problem.hidden = false;
+          : error.message,
+      );
     }
   };
   const onTop = () => change(theirs);
@@ -113,37 +105,38 @@ export async function settleConflict({ doing, title, from, mine, change }) {
     outcome = "theirs";
     dialog.close();
   };
-  dialog.append(
-    h("h2", { id: "conflict-title" }, "Changed in two places"),
-    h(
-      "p",
-      { className: "dim" },
-      `Somebody else, or another tab of yours, saved a change of ${from.name} while you made one, both from revision ${from.revision}. Theirs stays in the history whatever you pick.`,
-    ),
-    h(
-      "div",
-      { className: "conflict-versions" },
-      version(
-        "Theirs, saved",
-        [...deeds, ...theirWords],
-        theirGestures,
-        button("Keep theirs", keepTheirs),
-      ),
-      version(
-        "Yours, not saved yet",
-        [title, ...changedTexts(mine, from)],
-        diffGestures(mine, from),
-        button("Keep yours", pick(instead)),
-      ),
-    ),
-    problem,
-    h(
-      "div",
-      { className: "dialog-actions" },
-      button("Decide later", () => dialog.close()),
-      button("Keep both: yours on top of theirs", pick(onTop), "primary"),
-    ),
-  );
+  /** @param {string} problem */
+  const draw = (problem) =>
+    render(
+      html`<h2 id="conflict-title">Changed in two places</h2>
+        <p class="dim">
+          Somebody else, or another tab of yours, saved a change of ${from.name} while you made one,
+          both from revision ${from.revision}. Theirs stays in the history whatever you pick.
+        </p>
+        <div class="conflict-versions">
+          ${version(
+            "Theirs, saved",
+            [...deeds, ...theirWords],
+            theirGestures,
+            button("Keep theirs", keepTheirs),
+          )}${version(
+            "Yours, not saved yet",
+            [title, ...changedTexts(mine, from)],
+            diffGestures(mine, from),
+            button("Keep yours", pick(instead)),
+          )}
+        </div>
+        <p class="field-problem" role="alert" ?hidden=${!problem}>${problem}</p>
+        <div class="dialog-actions">
+          ${button("Decide later", () => dialog.close())}${button(
+            "Keep both: yours on top of theirs",
+            pick(onTop),
+            "primary",
+          )}
+        </div>`,
+      dialog,
+    );
+  draw("");
   document.body.append(dialog);
   dialog.showModal();
   await new Promise((resolve) => {

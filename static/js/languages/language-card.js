@@ -1,12 +1,12 @@
 // The card of a language in the library.
 
 import * as api from "../core/api.js";
-import { h } from "../core/dom.js";
 import { ago, dateAndTime, plural } from "../core/format.js";
 import { menu } from "../core/menu.js";
 import { state } from "../core/state.js";
 import { address, go, here } from "../core/views.js";
-import { showHealth } from "./card-health.js";
+import { guard, html, ifDefined, nothing } from "../templates.js";
+import { healthLine } from "./card-health.js";
 import { duplicate, openHistory, remove, rename } from "./language-actions.js";
 import { choose } from "./language-store.js";
 
@@ -16,30 +16,26 @@ const PICTURES = 5; // One row of a card; the others are only counted.
 
 /** @param {LanguageSummary} language */
 function pictures({ id, revision, labels }) {
-  if (!labels.length) return h("p", { className: "no-gestures dim" }, "No gestures yet");
+  if (!labels.length) return html`<p class="no-gestures dim">No gestures yet</p>`;
   const shown = labels.slice(0, labels.length > PICTURES ? PICTURES - 1 : PICTURES);
-  const more = labels.length - shown.length;
-  return h(
-    "ul",
-    { className: "thumbnails", "aria-label": "Gestures" },
-    shown.map((label) =>
-      h(
-        "li",
-        {},
-        h("img", {
-          src: api.languages.image(id, label, revision),
-          alt: label,
-          title: label,
-          loading: "lazy",
-          width: 64,
-          height: 64,
-        }),
-      ),
-    ),
-    more
-      ? h("li", { className: "rest", title: labels.slice(shown.length).join(", ") }, `+${more}`)
-      : null,
-  );
+  const rest = labels.slice(shown.length);
+  return html`<ul class="thumbnails" aria-label="Gestures">
+    ${shown.map(
+      (label) =>
+        html`<li>
+          <img
+            alt=${label}
+            title=${label}
+            loading="lazy"
+            width="64"
+            height="64"
+            src=${api.languages.image(id, label, revision)}
+          />
+        </li>`,
+    )}${
+      rest.length ? html`<li class="rest" title=${rest.join(", ")}>+${rest.length}</li>` : nothing
+    }
+  </ul>`;
 }
 
 /**
@@ -64,70 +60,40 @@ function commands(language) {
 }
 
 /**
- * Draw a card, or keep the existing one if nothing has changed.
+ * Draw a card.
  *
  * @param {LanguageSummary} language
- * @param {HTMLElement} [element]
  */
-export function drawCard(language, element) {
-  const current = language.id === state.language;
-  const signature = JSON.stringify([language, current, ago(language.updated)]);
-  if (element?.dataset.signature === signature) return element;
-  const focused = element?.contains(document.activeElement)
-    ? document.activeElement?.className
-    : null;
-  const card = element ?? h("li", { className: "language" });
-  card.dataset.signature = signature;
-  card.classList.toggle("current", current);
-  card.replaceChildren(
-    h(
-      "div",
-      { className: "language-head" },
-      h(
-        "h2",
-        {},
-        h(
-          "a",
-          {
-            href: address("studio", {
-              language: language.id,
-              recognition: null,
-              panel: null,
-              older: null,
-              newer: null,
-            }),
-            className: "language-name",
-            "aria-current": current ? "true" : null,
-            onclick: here(() => work(language)),
-          },
-          language.name,
-        ),
-      ),
-      current ? h("span", { className: "tag chosen" }, "in use") : null,
-      language.sample ? h("span", { className: "tag" }, "sample") : null,
-      commands(language),
-    ),
-    pictures(language),
-    h(
-      "p",
-      { className: "language-meta" },
-      [plural(language.labels.length, "gesture"), language.author].filter(Boolean).join(" \u00b7 "),
-    ),
-    h("p", { className: "health", hidden: true }),
-    h(
-      "button",
-      {
-        type: "button",
-        className: "last-change",
-        title: `${dateAndTime(language.updated)}: show the history`,
-        onclick: () => openHistory(language),
-      },
-      h("span", {}, language.change),
-      h("time", { dateTime: language.updated }, ago(language.updated)),
-    ),
-  );
-  if (focused)
-    /** @type {HTMLElement | undefined} */ (card.getElementsByClassName(focused)[0])?.focus();
-  showHealth(card, language);
-  return card;
+export function card(language) {
+  const { id, labels, author, updated, change, sample } = language;
+  const current = id === state.language;
+  const place = { language: id, recognition: null, panel: null, older: null, newer: null };
+  const facts = [plural(labels.length, "gesture"), author].filter(Boolean).join(" \u00b7 ");
+  return html`<li class="language ${current ? "current" : ""}" data-language=${id}>
+    <div class="language-head">
+      <h2>
+        <a
+          href=${address("studio", place)}
+          class="language-name"
+          aria-current=${ifDefined(current ? "true" : undefined)}
+          @click=${here(() => work(language))}
+          >${language.name}</a
+        >
+      </h2>
+      ${current ? html`<span class="tag chosen">in use</span>` : nothing}${
+        sample ? html`<span class="tag">sample</span>` : nothing
+      }${guard([JSON.stringify(language)], () => commands(language))}
+    </div>
+    ${pictures(language)}
+    <p class="language-meta">${facts}</p>
+    ${healthLine(language)}
+    <button
+      type="button"
+      class="last-change"
+      title="${dateAndTime(updated)}: show the history"
+      @click=${() => openHistory(language)}
+    >
+      <span>${change}</span><time datetime=${updated}>${ago(updated)}</time>
+    </button>
+  </li>`;
 }

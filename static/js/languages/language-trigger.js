@@ -2,11 +2,13 @@
 
 import { takesLanguage } from "../clips/salutes.js";
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { byId, h } from "../core/dom.js";
 import { moment } from "../core/format.js";
 import { currentLanguage, selectedClip, selectedRange, update } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
+import { asOptions, html, live, nothing, optionsOf, render } from "../templates.js";
 import { edit } from "./revision-edit.js";
 
 /** @import { State, TriggerDraft } from "../core/types.d.ts" */
@@ -111,7 +113,7 @@ async function save(draft) {
       "Change of the trigger",
       (language) => api.languages.setTrigger(language, draft),
     );
-    byId("dialog").close();
+    closeDialog();
     update({ take: null, start: null, end: null, recognition: null });
     showDone("Trigger saved", `Takes ${words}`);
   } catch (error) {
@@ -126,94 +128,84 @@ async function save(draft) {
  * @param {() => void} changed
  */
 function labelChoice({ labels = [], draft }, changed) {
-  /** @param {"start_label" | "stop_label"} end */
-  const choose = (end) => {
-    const same = end === "stop_label" ? [h("option", { value: "" }, "the same")] : [];
-    const select = h(
-      "select",
-      {
-        "aria-label":
-          end === "start_label" ? "Gesture that begins a take" : "Gesture that ends a take",
-      },
-      same,
-      labels.map((label) => h("option", { value: label, selected: label === draft?.[end] }, label)),
-    );
-    select.onchange = () => {
-      if (draft) draft[end] = select.value;
-      changed();
-    };
-    return select;
-  };
-  return h(
-    "span",
-    { className: "trigger-gestures" },
-    "begins ",
-    choose("start_label"),
-    " ends ",
-    choose("stop_label"),
-  );
+  /**
+   * @param {"start_label" | "stop_label"} end
+   * @param {string} title
+   * @param {[string, string][]} same
+   */
+  const choose = (end, title, same) =>
+    html`<select
+      aria-label=${title}
+      @change=${(/** @type {any} */ { target }) => {
+        if (draft) draft[end] = target.value;
+        changed();
+      }}
+    >
+      ${optionsOf([...same, ...asOptions(labels)], draft?.[end] ?? "")}
+    </select>`;
+  return html`<span class="trigger-gestures"
+    >begins ${choose("start_label", "Gesture that begins a take", [])} ends
+    ${choose("stop_label", "Gesture that ends a take", [["", "the same"]])}</span
+  >`;
 }
+
+/**
+ * @param {Choice} choice
+ * @param {boolean} checked
+ * @param {() => void} choose
+ */
+const row = (choice, checked, choose) =>
+  html`<label>
+    <input
+      type="radio"
+      name="trigger"
+      value=${choice.name}
+      ?disabled=${!choice.draft}
+      .checked=${live(checked)}
+      @change=${choose}
+    />
+    <span
+      ><b>${choice.text}</b><small class="dim">${choice.more}</small>${
+        choice.labels?.length ? labelChoice(choice, choose) : nothing
+      }</span
+    >
+  </label>`;
 
 /** Open the dialog that sets the trigger of the language on display. */
 export function openTrigger() {
-  const dialog = byId("dialog");
   const language = currentLanguage();
   const offered = choices();
-  const submit = h("button", { type: "submit", className: "primary", ...WRITES }, "Save");
-  submit.disabled = true;
-  const present = language.trigger?.kind ?? "salute";
-  /** @type {Choice | null} */
-  let chosen = null;
-  const rows = offered.map((choice) => {
-    const input = h("input", { type: "radio", name: "trigger", value: choice.name });
-    input.disabled = !choice.draft;
-    // A pose can be chosen again: it is then taken from the range on display.
-    input.checked = choice.name === present && choice.name !== "pose";
-    const choose = () => {
-      input.checked = true;
-      chosen = choice;
-      submit.disabled = false;
-    };
-    input.onchange = choose;
-    return h(
-      "label",
-      {},
-      input,
-      h(
-        "span",
-        {},
-        h("b", {}, choice.text),
-        h("small", { className: "dim" }, choice.more),
-        choice.labels?.length ? labelChoice(choice, choose) : null,
-      ),
-    );
-  });
-  const form = h(
-    "form",
-    { method: "dialog", className: "settings-dialog", noValidate: true },
-    h("h2", { id: "dialog-title" }, "What begins and ends a gesture"),
-    h(
-      "p",
-      { className: "dim" },
-      `Now takes lie ${language.trigger_words}. The robot does the same.`,
-    ),
-    h("fieldset", { className: "settings-profiles" }, h("legend", {}, "Trigger"), rows),
-    h(
-      "div",
-      { className: "dialog-actions" },
-      h("span", { className: "spacer" }),
-      h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-      submit,
-    ),
+  // A pose can be chosen again: it is then taken from the range on display.
+  const present = offered.find(
+    ({ name }) => name === (language.trigger?.kind ?? "salute") && name !== "pose",
   );
-  form.onsubmit = (event) => {
-    event.preventDefault();
-    if (chosen?.draft) save(chosen.draft);
+  const form = h("form", { method: "dialog", className: "settings-dialog", noValidate: true });
+  /** @param {Choice | null} chosen */
+  const draw = (chosen) => {
+    form.onsubmit = (event) => {
+      event.preventDefault();
+      if (chosen?.draft) save(chosen.draft);
+    };
+    const rows = offered.map((choice) =>
+      row(choice, choice === (chosen ?? present), () => draw(choice)),
+    );
+    render(
+      html`<h2 id="dialog-title">What begins and ends a gesture</h2>
+        <p class="dim">Now takes lie ${language.trigger_words}. The robot does the same.</p>
+        <fieldset class="settings-profiles">
+          <legend>Trigger</legend>
+          ${rows}
+        </fieldset>
+        <div class="dialog-actions">
+          <span class="spacer"></span>
+          <button type="button" @click=${closeDialog}>Cancel</button>
+          <button type="submit" class="primary" data-writes ?disabled=${!chosen}>Save</button>
+        </div>`,
+      form,
+    );
   };
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  draw(null);
+  showDialog(form);
 }
 
 /**
@@ -224,19 +216,15 @@ export function openTrigger() {
 export function drawTrigger({ gestures }) {
   const box = byId("trigger");
   box.hidden = !gestures;
-  if (!gestures) return box.replaceChildren();
-  return box.replaceChildren(
-    h("span", { className: "dim" }, `Takes lie ${gestures.trigger_words}. `),
-    h(
-      "button",
-      {
-        type: "button",
-        className: "link",
-        ...WRITES,
-        onclick: openTrigger,
-        "aria-label": "Change what begins and ends a take",
-      },
-      "Change",
-    ),
-  );
+  const words = html`<span class="dim">Takes lie ${gestures?.trigger_words}. </span
+    ><button
+      type="button"
+      class="link"
+      data-writes
+      aria-label="Change what begins and ends a take"
+      @click=${openTrigger}
+    >
+      Change
+    </button>`;
+  render(gestures ? words : nothing, box);
 }

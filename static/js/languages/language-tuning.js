@@ -1,10 +1,11 @@
 // The tuning of the language on display: where its recognition differs from the profile.
 
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { byId } from "../core/dom.js";
 import { currentLanguage } from "../core/state.js";
 import { complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
+import { html, nothing, render } from "../templates.js";
 import { edit } from "./revision-edit.js";
 
 /** @import { Language, Recognition, Schemas, State } from "../core/types.d.ts" */
@@ -65,19 +66,10 @@ async function reset() {
 export function drawTuning({ gestures }) {
   const box = byId("tuning");
   box.hidden = !differs(gestures);
-  if (box.hidden) return box.replaceChildren();
-  return box.replaceChildren(
-    h(
-      "span",
-      {},
-      h("b", {}, "Recognised "),
-      tuningWords(currentLanguage()),
-      ", here and on the robot.",
-    ),
-    h(
-      "button",
-      { type: "button", className: "link", ...WRITES, onclick: reset },
-      "As the profile full does",
-    ),
-  );
+  const words = () =>
+    html`<span><b>Recognised </b>${tuningWords(currentLanguage())}, here and on the robot.</span>
+      <button type="button" class="link" data-writes @click=${reset}>
+        As the profile full does
+      </button>`;
+  render(box.hidden ? nothing : words(), box);
 }

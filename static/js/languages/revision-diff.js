@@ -1,67 +1,62 @@
 // Two revisions of a language side by side, gesture by gesture.
 
 import { beside } from "../core/server.js";
-import { h } from "../core/dom.js";
 import { plural } from "../core/format.js";
+import { html, nothing } from "../templates.js";
 
 /** @import { Gesture, GestureDiff, Revision, RevisionDiff } from "../core/types.d.ts" */
 
 const SIGNS = { added: "+", removed: "\u2212", changed: "\u2260", same: "=" };
 
+/** @param {Gesture | null} gesture */
+const picture = (gesture) =>
+  gesture
+    ? html`<figure>
+        <img
+          alt="Trajectory of ${gesture.label}"
+          loading="lazy"
+          width="112"
+          height="112"
+          src=${beside(gesture.thumbnail)}
+        />
+        <figcaption>${gesture.label}</figcaption>
+      </figure>`
+    : html`<figure class="absent">
+        <span>not there</span>
+        <figcaption>${"\u00a0"}</figcaption>
+      </figure>`;
+
 /**
- * @param {Gesture | null} gesture
- * @param {string} absent
+ * @param {string} look
+ * @param {string[]} words
  */
-function picture(gesture, absent) {
-  return gesture
-    ? h(
-        "figure",
-        {},
-        h("img", {
-          src: beside(gesture.thumbnail),
-          alt: `Trajectory of ${gesture.label}`,
-          loading: "lazy",
-          width: 112,
-          height: 112,
-        }),
-        h("figcaption", {}, gesture.label),
-      )
-    : h("figure", { className: "absent" }, h("span", {}, absent), h("figcaption", {}, "\u00a0"));
-}
+const list = (look, words) =>
+  words.length
+    ? html`<ul class=${look}>
+        ${words.map((word) => html`<li>${word}</li>`)}
+      </ul>`
+    : nothing;
 
 /** @param {GestureDiff} gesture */
-function row({ kind, before, after, words }) {
-  return h(
-    "li",
-    { className: `compared ${kind}` },
-    picture(before, "not there"),
-    picture(after, "not there"),
-    h(
-      "div",
-      { className: "compared-text" },
-      h("span", { className: "kind" }, h("span", { "aria-hidden": "true" }, SIGNS[kind]), kind),
-      h("b", {}, (after ?? before)?.label),
-      words.length
-        ? h(
-            "ul",
-            {},
-            words.map((word) => h("li", {}, word)),
-          )
-        : null,
-    ),
-  );
-}
+const row = ({ kind, before, after, words }) =>
+  html`<li class="compared ${kind}">
+    ${picture(before)}${picture(after)}
+    <div class="compared-text">
+      <span class="kind"><span aria-hidden="true">${SIGNS[kind]}</span>${kind}</span>
+      <b>${(after ?? before)?.label}</b>
+      ${list("", words)}
+    </div>
+  </li>`;
 
 /** @param {Revision | null} revision */
 const heading = (revision) => (revision ? `Revision ${revision.revision}` : "Nothing");
 
 /**
- * Draw the answer of `GET /languages/{id}/comparison`.
+ * The answer of `GET /languages/{id}/comparison`.
  *
- * @param {HTMLElement} box
  * @param {RevisionDiff} diff
  */
-export function drawComparison(box, { older, newer, words, gestures }) {
+export function comparison({ older, newer, words, gestures }) {
   const changed = gestures.filter((each) => each.kind !== "same");
   const same = gestures.filter((each) => each.kind === "same");
   /** @param {string} kind */
@@ -70,37 +65,27 @@ export function drawComparison(box, { older, newer, words, gestures }) {
     .map((kind) => (count(kind) ? `${count(kind)} ${kind}` : null))
     .filter(Boolean)
     .join(", ");
-  box.replaceChildren(
-    h(
-      "p",
-      { className: "diff-summary" },
-      counts ? `Gestures: ${counts}.` : "The gestures are the same.",
-    ),
-    words.length
-      ? h(
-          "ul",
-          { className: "comparison-words" },
-          words.map((word) => h("li", {}, word)),
-        )
-      : "",
-    changed.length
-      ? h(
-          "div",
-          { className: "comparison-heads", "aria-hidden": "true" },
-          h("span", {}, heading(older)),
-          h("span", {}, heading(newer)),
-        )
-      : "",
-    changed.length
-      ? h("ul", { className: "compared-list", "aria-label": "What changed" }, changed.map(row))
-      : "",
-    same.length
-      ? h(
-          "details",
-          { className: "unchanged" },
-          h("summary", {}, `${plural(same.length, "gesture")} unchanged`),
-          h("ul", { className: "compared-list" }, same.map(row)),
-        )
-      : "",
-  );
+  return html`<p class="diff-summary">
+      ${counts ? `Gestures: ${counts}.` : "The gestures are the same."}
+    </p>
+    ${list("comparison-words", words)}${
+      changed.length
+        ? html`<div class="comparison-heads" aria-hidden="true">
+              <span>${heading(older)}</span>
+              <span>${heading(newer)}</span>
+            </div>
+            <ul class="compared-list" aria-label="What changed">
+              ${changed.map(row)}
+            </ul>`
+        : nothing
+    }${
+      same.length
+        ? html`<details class="unchanged">
+            <summary>${plural(same.length, "gesture")} unchanged</summary>
+            <ul class="compared-list">
+              ${same.map(row)}
+            </ul>
+          </details>`
+        : nothing
+    }`;
 }

@@ -1,21 +1,23 @@
 // A language's history: its revisions with names, and two of them side by side.
 
 import * as api from "../core/api.js";
-import { h, icon, reconcile, WRITES } from "../core/dom.js";
 import { ago, dateAndTime } from "../core/format.js";
 import { currentLanguage, follow, state, update } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { address, here } from "../core/views.js";
-import { drawComparison } from "./revision-diff.js";
+import { html, iconOf, nothing, optionsOf, render, repeat } from "../templates.js";
+import { comparison } from "./revision-diff.js";
 import { edit } from "./revision-edit.js";
 
-/** @import { Revision, State } from "../core/types.d.ts" */
+/** @import { Revision, RevisionDiff, State } from "../core/types.d.ts" */
 
 /** @type {Revision[]} */
 let revisions = []; // of `of`, newest first
 /** @type {string | null} */
 let of = null;
+/** @type {{ key: string, diff: RevisionDiff | null }} */
+let compared = { key: "", diff: null };
 
 const shown = () =>
   state.view === "languages" &&
@@ -44,71 +46,89 @@ async function goBack({ revision }) {
   }
 }
 
-/**
- * @param {Revision} row
- * @param {HTMLElement | undefined} element
- */
-function drawRevision(row, element) {
+/** @param {Revision} row */
+function item(row) {
   const newest = row === revisions[0];
   const chosen = row.revision === state.newer;
-  const signature = JSON.stringify([row, newest, chosen, ago(row.created)]);
-  if (element?.dataset.signature === signature) return element;
-  const item = element ?? h("li", { className: "revision" });
-  const focused = element?.contains(document.activeElement);
-  item.dataset.signature = signature;
-  item.classList.toggle("chosen", chosen);
-  const what = h(
-    "button",
-    {
-      type: "button",
-      className: "revision-open",
-      "aria-pressed": String(chosen),
-      onclick: () => select(row.revision),
-    },
-    h("span", { className: "revision-number" }, `${row.revision}`),
-    h(
-      "span",
-      { className: "revision-text" },
-      h("b", {}, row.change),
-      h(
-        "span",
-        { className: "dim", title: dateAndTime(row.created) },
-        [newest ? "newest" : null, ago(row.created), row.author].filter(Boolean).join(" \u00b7 "),
-      ),
-    ),
-  );
-  item.replaceChildren(
-    what,
-    newest
-      ? ""
-      : h(
-          "button",
-          {
-            type: "button",
-            className: "quiet",
-            ...WRITES,
-            "aria-label": `Go back to revision ${row.revision}`,
-            onclick: () => goBack(row),
-          },
-          "Go back",
-        ),
-  );
-  if (focused) what.focus();
-  return item;
+  const facts = [newest ? "newest" : null, ago(row.created), row.author].filter(Boolean);
+  return html`<li class="revision ${chosen ? "chosen" : ""}">
+    <button
+      type="button"
+      class="revision-open"
+      aria-pressed=${chosen}
+      @click=${() => select(row.revision)}
+    >
+      <span class="revision-number">${row.revision}</span>
+      <span class="revision-text"
+        ><b>${row.change}</b
+        ><span class="dim" title=${dateAndTime(row.created)}>${facts.join(" \u00b7 ")}</span></span
+      >
+    </button>
+    ${
+      newest
+        ? nothing
+        : html`<button
+            type="button"
+            class="quiet"
+            data-writes
+            aria-label="Go back to revision ${row.revision}"
+            @click=${() => goBack(row)}
+          >
+            Go back
+          </button>`
+    }
+  </li>`;
 }
 
 /**
- * @param {HTMLSelectElement} picker
+ * The choice of one of the two revisions that are compared.
+ *
+ * @param {"older" | "newer"} which
  * @param {(number | null)[]} numbers
- * @param {number | null} value
  */
-function options(picker, numbers, value) {
-  picker.replaceChildren(
-    ...numbers.map((number) =>
-      h("option", { value: number ?? "" }, number === null ? "nothing" : `revision ${number}`),
-    ),
-  );
-  picker.value = String(value ?? "");
+function picker(which, numbers) {
+  const pick = (/** @type {any} */ { target: { value } }) =>
+    update({ [which]: value ? Number(value) : null });
+  /** @type {[string, string][]} */
+  const options = numbers.map((number) => [
+    String(number ?? ""),
+    number === null ? "nothing" : `revision ${number}`,
+  ]);
+  return html`<label for=${which}>${which === "older" ? "from" : "to"}</label
+    ><select id=${which} @change=${pick}>
+      ${optionsOf(options, String(state[which] ?? ""))}
+    </select>`;
+}
+
+function page() {
+  const closed = { panel: null, older: null, newer: null };
+  const numbers = revisions.map((row) => row.revision);
+  return html`<div class="page-head">
+      <a
+        href=${address("languages", closed)}
+        class="button quiet back"
+        @click=${here(() => update(closed))}
+        >${iconOf("chevron")}All languages</a
+      >
+      <h1>${currentLanguage().name}</h1>
+    </div>
+    <div class="history-columns">
+      <section aria-label="History">
+        <h2>History</h2>
+        <ol class="revisions" aria-label="Revisions">
+          ${repeat(revisions, ({ revision }) => revision, item)}
+        </ol>
+      </section>
+      <section aria-label="Comparison">
+        <div class="compare-head">
+          <h2>Compare</h2>
+          ${picker("older", [...numbers, null])}${picker("newer", numbers)}
+        </div>
+        <div class="comparison" aria-live="polite">
+          ${compared.diff ? comparison(compared.diff) : nothing}
+        </div>
+      </section>
+    </div>`;
 }
 
 /** Load the history of the language on display when it is another, or has a new revision. */
@@ -135,78 +155,29 @@ function areKnown({ newer, older }) {
   return newer !== null && numbers.includes(newer) && numbers.includes(older);
 }
 
+/** @param {HTMLElement} panel */
+async function draw(panel) {
+  render(page(), panel);
+  const key = `${of} ${state.older} ${state.newer}`;
+  if (key === compared.key) return;
+  compared.key = key;
+  const diff = await attempt("Comparing", () =>
+    api.languages.compare(of ?? "", state.older, state.newer ?? 0),
+  );
+  if (!diff || compared.key !== key) return;
+  compared = { key, diff };
+  render(page(), panel);
+}
+
 /**
  * Build the panel and keep it in step.
  *
  * @param {HTMLElement} panel
  */
 export function openHistoryPanel(panel) {
-  const list = h("ol", { className: "revisions", "aria-label": "Revisions" });
-  const title = h("h1", {});
-  const older = h("select", {
-    id: "older",
-    onchange: () => update({ older: older.value ? Number(older.value) : null }),
-  });
-  const newer = h("select", {
-    id: "newer",
-    onchange: () => update({ newer: Number(newer.value) }),
-  });
-  const result = h("div", { className: "comparison", "aria-live": "polite" });
-  panel.append(
-    h(
-      "div",
-      { className: "page-head" },
-      h(
-        "a",
-        {
-          href: address("languages", { panel: null, older: null, newer: null }),
-          className: "button quiet back",
-          onclick: here(() => update({ panel: null, older: null, newer: null })),
-        },
-        icon("chevron"),
-        "All languages",
-      ),
-      title,
-    ),
-    h(
-      "div",
-      { className: "history-columns" },
-      h("section", { "aria-label": "History" }, h("h2", {}, "History"), list),
-      h(
-        "section",
-        { "aria-label": "Comparison" },
-        h(
-          "div",
-          { className: "compare-head" },
-          h("h2", {}, "Compare"),
-          h("label", { for: "older" }, "from"),
-          older,
-          h("label", { for: "newer" }, "to"),
-          newer,
-        ),
-        result,
-      ),
-    ),
-  );
-
-  let drawn = "";
-  const draw = async () => {
-    title.textContent = currentLanguage().name;
-    reconcile(list, revisions, (row) => row.revision, drawRevision);
-    const numbers = revisions.map((row) => row.revision);
-    options(newer, numbers, state.newer);
-    options(older, [...numbers, null], state.older);
-    const wanted = `${of} ${state.older} ${state.newer}`;
-    if (wanted === drawn) return;
-    drawn = wanted;
-    const comparison = await attempt("Comparing", () =>
-      api.languages.compare(of ?? "", state.older, state.newer ?? 0),
-    );
-    if (comparison && drawn === wanted) drawComparison(result, comparison);
-  };
   follow(["view", "panel", "gestures", "older", "newer"], async () => {
     if (!shown()) return;
     await load();
-    if (shown() && of === currentLanguage().id) draw();
+    if (shown() && of === currentLanguage().id) draw(panel);
   });
 }

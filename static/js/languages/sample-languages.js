@@ -1,10 +1,10 @@
 // The sample languages that are not in the library, each a button that adds it.
 
 import * as api from "../core/api.js";
-import { h, WRITES } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { html, nothing } from "../templates.js";
 import { addSampleLanguage } from "./language-actions.js";
 
 /** @import { SampleLanguage } from "../core/types.d.ts" */
@@ -17,36 +17,37 @@ const present = (sample) =>
   state.languages.some((language) => language.sample && language.name === sample.title);
 
 /** @param {SampleLanguage} sample */
-function offer(sample) {
-  const button = h(
-    "button",
-    { type: "button", className: "sample-language", ...WRITES },
-    h("b", {}, sample.title),
-    h(
-      "span",
-      { className: "dim" },
-      `${plural(sample.labels.length, "gesture")}: ${sample.labels.join(", ")}`,
-    ),
-  );
-  button.onclick = async () => {
-    button.disabled = true;
-    await addSampleLanguage(sample);
-    button.disabled = false;
-  };
-  return h("li", {}, button);
+const offer = (sample) =>
+  html`<li>
+    <button
+      type="button"
+      class="sample-language"
+      data-writes
+      @click=${async (/** @type {any} */ { currentTarget: button }) => {
+        button.disabled = true;
+        await addSampleLanguage(sample);
+        button.disabled = false;
+      }}
+    >
+      <b>${sample.title}</b>
+      <span class="dim"
+        >${plural(sample.labels.length, "gesture")}: ${sample.labels.join(", ")}</span
+      >
+    </button>
+  </li>`;
+
+export async function loadSampleLanguages() {
+  samples ??= await attempt("Loading the samples", api.samples.languages);
 }
 
-/**
- * Draw the buttons, or nothing where all samples are in the library.
- *
- * @param {HTMLElement} box
- */
-export async function drawSampleLanguages(box) {
-  samples ??= await attempt("Loading the samples", api.samples.languages);
+/** Draw the buttons, or nothing where all samples are in the library. */
+export function sampleLanguages() {
   const missing = (samples ?? []).filter((sample) => !present(sample));
-  box.hidden = !missing.length;
-  box.replaceChildren(
-    h("h2", {}, "Sample languages"),
-    h("ul", { className: "sample-languages" }, missing.map(offer)),
-  );
+  if (!missing.length) return nothing;
+  return html`<section class="samples-offer" aria-label="Sample languages">
+    <h2>Sample languages</h2>
+    <ul class="sample-languages">
+      ${missing.map(offer)}
+    </ul>
+  </section>`;
 }

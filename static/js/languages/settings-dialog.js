@@ -1,18 +1,20 @@
 // The settings of the language on display: its profile and voters' weights beside the defaults.
 
 import * as api from "../core/api.js";
-import { byId, h, WRITES } from "../core/dom.js";
+import { closeDialog, showDialog } from "../core/dialogs.js";
+import { h } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
 import { currentLanguage, state } from "../core/state.js";
 import { attempt, complain } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
+import { html, live, optionsOf, render } from "../templates.js";
 import { edit } from "./revision-edit.js";
 
 /** @import { Language, LanguageSettings, Tuning } from "../core/types.d.ts" */
 
 /** @typedef {{ profile: Language["profile"], weights: Record<string, number>, simplification: number, repaired: boolean | null }} Chosen */
 
-/** @typedef {(focused?: string | null) => void} Draw */
+/** @typedef {(change: Partial<Chosen>) => void} Put */
 
 const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
@@ -72,115 +74,142 @@ export function countChanges(chosen, settings) {
  * @param {string} voter
  * @param {Chosen} chosen
  * @param {LanguageSettings} settings
- * @param {Draw} draw
+ * @param {Put} put
  */
-function weightRow(voter, chosen, settings, draw) {
+function weightRow(voter, chosen, settings, put) {
   const factor = chosen.weights[voter] ?? 1;
-  const select = h(
-    "select",
-    { "aria-label": `Weight factor of ${readable(voter)}` },
-    [...new Set([...FACTORS, factor])]
-      .sort((one, other) => one - other)
-      .map((each) => h("option", { value: each }, factorText(each))),
-  );
-  select.value = String(factor);
-  select.onchange = () => {
-    chosen.weights[voter] = Number(select.value);
-    draw(select.getAttribute("aria-label"));
-  };
   const saved = chosen.profile === settings.profile ? settings.weights[voter] : undefined;
-  return h(
-    "tr",
-    { className: factor === 1 ? "" : "changed" },
-    h("th", { scope: "row" }, readable(voter)),
-    h("td", { className: "num" }, saved === undefined ? "\u2013" : percent(saved)),
-    h("td", {}, select),
-    h("td", {}, factor === 1 ? "" : "changed"),
-  );
+  /** @type {[string, string][]} */
+  const options = [...new Set([...FACTORS, factor])]
+    .sort((one, other) => one - other)
+    .map((each) => [String(each), factorText(each)]);
+  const weigh = (/** @type {any} */ { target }) =>
+    put({ weights: { ...chosen.weights, [voter]: Number(target.value) } });
+  return html`<tr class=${factor === 1 ? "" : "changed"}>
+    <th scope="row">${readable(voter)}</th>
+    <td class="num">${saved === undefined ? "\u2013" : percent(saved)}</td>
+    <td>
+      <select aria-label="Weight factor of ${readable(voter)}" @change=${weigh}>
+        ${optionsOf(options, String(factor))}
+      </select>
+    </td>
+    <td>${factor === 1 ? "" : "changed"}</td>
+  </tr>`;
 }
 
 /**
  * @param {Chosen} chosen
  * @param {LanguageSettings} settings
- * @param {Draw} draw
+ * @param {Put} put
  */
-function profileChoice(chosen, settings, draw) {
-  return h(
-    "fieldset",
-    { className: "settings-profiles" },
-    h("legend", {}, "Profile"),
-    settings.profiles.map(({ name, voters }) => {
-      const input = h("input", { type: "radio", name: "profile", value: name });
-      input.checked = name === chosen.profile;
-      input.onchange = () => {
-        Object.assign(chosen, { profile: name, weights: {} }); // Weights are for its voters.
-        draw();
-        byId("dialog").querySelector("input[name=profile]:checked")?.focus();
-      };
-      return h(
-        "label",
-        {},
-        input,
-        h(
-          "span",
-          {},
-          h("b", {}, name),
-          ` ${plural(voters.length, "voter")}${name === settings.default_profile ? ", the default" : ""}`,
-          h("small", { className: "dim" }, PROFILE_WORDS[name]),
-        ),
-      );
-    }),
-  );
+const profileChoice = (chosen, settings, put) =>
+  html`<fieldset class="settings-profiles">
+    <legend>Profile</legend>
+    ${settings.profiles.map(
+      ({ name, voters }) =>
+        html`<label>
+          <input
+            type="radio"
+            name="profile"
+            value=${name}
+            .checked=${live(name === chosen.profile)}
+            @change=${() => put({ profile: name, weights: {} })}
+          />
+          <span
+            ><b>${name}</b> ${plural(voters.length, "voter")}${
+              name === settings.default_profile ? ", the default" : ""
+            }<small class="dim">${PROFILE_WORDS[name]}</small></span
+          >
+        </label>`,
+    )}
+  </fieldset>`;
+
+/** @type {[string, string][]} */
+const REPAIRS = [
+  ["", "As the profile does"],
+  ["true", "Repaired"],
+  ["false", "As the pose model saw them"],
+];
+
+/**
+ * @param {Chosen} chosen
+ * @param {LanguageSettings} settings
+ * @param {Put} put
+ */
+function otherFields(chosen, settings, put) {
+  const { simplification, most_simplification: most } = settings;
+  const draws = (/** @type {any} */ { target: { valueAsNumber: value } }) =>
+    put({
+      simplification: Number.isFinite(value) ? Math.min(most, Math.max(0, value)) : simplification,
+    });
+  const repairs = (/** @type {any} */ { target: { value } }) =>
+    put({ repaired: value === "" ? null : value === "true" });
+  return html`<div class="field">
+      <label for="settings-simplification"
+        >Simplification of trajectory images, pixels (default ${simplification})</label
+      >
+      <input
+        type="number"
+        id="settings-simplification"
+        min="0"
+        max=${most}
+        step="0.5"
+        .value=${live(String(chosen.simplification))}
+        @change=${draws}
+      />
+    </div>
+    <div class="field">
+      <label for="settings-repair">Bad keypoints</label>
+      <select id="settings-repair" @change=${repairs}>
+        ${optionsOf(REPAIRS, String(chosen.repaired ?? ""))}
+      </select>
+    </div>`;
 }
 
 /**
  * @param {Chosen} chosen
  * @param {LanguageSettings} settings
- * @param {Draw} draw
+ * @param {Put} put
  */
-function otherFields(chosen, settings, draw) {
-  const drawn = h("input", {
-    type: "number",
-    id: "settings-simplification",
-    min: 0,
-    max: settings.most_simplification,
-    step: 0.5,
-    value: chosen.simplification,
-  });
-  drawn.onchange = () => {
-    const value = drawn.valueAsNumber;
-    chosen.simplification = Number.isFinite(value)
-      ? Math.min(settings.most_simplification, Math.max(0, value))
-      : settings.simplification;
-    draw();
-  };
-  const repaired = h(
-    "select",
-    { id: "settings-repair" },
-    [
-      ["", "As the profile does"],
-      ["true", "Repaired"],
-      ["false", "As the pose model saw them"],
-    ].map(([value, text]) => h("option", { value }, text)),
-  );
-  repaired.value = chosen.repaired === null ? "" : String(chosen.repaired);
-  repaired.onchange = () => {
-    chosen.repaired = repaired.value === "" ? null : repaired.value === "true";
-    draw();
-  };
-  return [
-    h(
-      "div",
-      { className: "field" },
-      h(
-        "label",
-        { for: drawn.id },
-        `Simplification of trajectory images, pixels (default ${settings.simplification})`,
-      ),
-      drawn,
-    ),
-    h("div", { className: "field" }, h("label", { for: repaired.id }, "Bad keypoints"), repaired),
-  ];
+function fields(chosen, settings, put) {
+  const profile = settings.profiles.find(({ name }) => name === chosen.profile);
+  const changes = countChanges(chosen, settings);
+  const reset = chosenIn({ ...settings, profile: settings.default_profile, tuning: null });
+  const same = JSON.stringify(chosen) === JSON.stringify(chosenIn(settings));
+  return html`<h2 id="dialog-title">How this language is recognised</h2>
+    <p class="dim" role="status">
+      ${
+        changes
+          ? `${plural(changes, "setting")} ${changes > 1 ? "differ" : "differs"} from the default.`
+          : "Everything is as by default."
+      }
+      The robot does the same.
+    </p>
+    ${profileChoice(chosen, settings, put)}
+    <div class="settings-voters" tabindex="0" role="group" aria-label="Voters">
+      <table>
+        <thead>
+          <tr>
+            <th scope="col">Voter</th>
+            <th scope="col">Weight now</th>
+            <th scope="col">Factor</th>
+            <td></td>
+          </tr>
+        </thead>
+        <tbody>
+          ${profile?.voters.map((voter) => weightRow(voter, chosen, settings, put))}
+        </tbody>
+      </table>
+    </div>
+    <div class="settings-others">${otherFields(chosen, settings, put)}</div>
+    <div class="dialog-actions">
+      <button type="button" ?disabled=${!changes} @click=${() => put(reset)}>
+        Reset to the default
+      </button>
+      <span class="spacer"></span>
+      <button type="button" @click=${closeDialog}>Cancel</button>
+      <button type="submit" class="primary" data-writes ?disabled=${same}>Save</button>
+    </div>`;
 }
 
 /**
@@ -193,7 +222,7 @@ async function save(chosen, settings) {
     await edit("Saving the settings", "Change of the settings", (language) =>
       api.languages.change(language, change),
     );
-    byId("dialog").close();
+    closeDialog();
     showDone("Settings saved", currentLanguage().name);
   } catch (error) {
     complain(error, "Saving the settings");
@@ -205,85 +234,16 @@ export async function openSettings() {
   const language = state.language ?? "";
   const settings = await attempt("Loading the settings", () => api.languages.settings(language));
   if (!settings) return;
-  const dialog = byId("dialog");
-  const before = JSON.stringify(chosenIn(settings));
   const chosen = chosenIn(settings);
   const form = h("form", { method: "dialog", className: "settings-dialog", noValidate: true });
-  const draw = (/** @type {string | null} */ focused = null) => {
-    const profile = settings.profiles.find(({ name }) => name === chosen.profile);
-    const changes = countChanges(chosen, settings);
-    const reset = h("button", { type: "button", disabled: !changes }, "Reset to the default");
-    reset.onclick = () => {
-      Object.assign(
-        chosen,
-        chosenIn({ ...settings, profile: settings.default_profile, tuning: null }),
-      );
-      draw();
-    };
-    form.replaceChildren(
-      h("h2", { id: "dialog-title" }, "How this language is recognised"),
-      h(
-        "p",
-        { className: "dim", role: "status" },
-        changes
-          ? `${plural(changes, "setting")} ${changes > 1 ? "differ" : "differs"} from the default.`
-          : "Everything is as by default.",
-        " The robot does the same.",
-      ),
-      profileChoice(chosen, settings, draw),
-      h(
-        "div",
-        { className: "settings-voters", tabIndex: 0, role: "group", "aria-label": "Voters" },
-        h(
-          "table",
-          {},
-          h(
-            "thead",
-            {},
-            h(
-              "tr",
-              {},
-              ["Voter", "Weight now", "Factor", ""].map((text) =>
-                text ? h("th", { scope: "col" }, text) : h("td", {}),
-              ),
-            ),
-          ),
-          h(
-            "tbody",
-            {},
-            (profile?.voters ?? []).map((voter) => weightRow(voter, chosen, settings, draw)),
-          ),
-        ),
-      ),
-      h("div", { className: "settings-others" }, otherFields(chosen, settings, draw)),
-      h(
-        "div",
-        { className: "dialog-actions" },
-        reset,
-        h("span", { className: "spacer" }),
-        h("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-        h(
-          "button",
-          {
-            type: "submit",
-            className: "primary",
-            ...WRITES,
-            disabled: JSON.stringify(chosen) === before,
-          },
-          "Save",
-        ),
-      ),
-    );
-    if (focused)
-      /** @type {HTMLElement | null} */ (form.querySelector(`[aria-label="${focused}"]`))?.focus();
+  /** @type {Put} */
+  const put = (change) => {
+    render(fields(Object.assign(chosen, change), settings, put), form);
   };
   form.onsubmit = (event) => {
     event.preventDefault();
     save(chosen, settings);
   };
-  draw();
-  dialog.replaceChildren(form);
-  dialog.setAttribute("aria-labelledby", "dialog-title");
-  dialog.onclose = null;
-  dialog.showModal();
+  put({});
+  showDialog(form);
 }

@@ -1,7 +1,16 @@
 // Fields of the phrases' form. Each saves when it loses the focus or Enter is pressed.
 
-import { byId, h, icon, WRITES } from "../core/dom.js";
-import { limit } from "../core/text-limit.js";
+import {
+  html,
+  ifDefined,
+  iconButtonOf,
+  iconOf,
+  limited,
+  live,
+  noChange,
+  optionsOf,
+  render,
+} from "../templates.js";
 
 /**
  * A labelled text field; `commit(text)` saves the typed text, and resolves to false if that failed.
@@ -17,110 +26,128 @@ import { limit } from "../core/text-limit.js";
  * @property {string} [placeholder]
  */
 
-/** @typedef {TextField & { min: number, max: number, step?: number | "any" }} NumberField */
+/** @typedef {{ id: string, label: string, value: string, min: number, max: number, step?: number | "any", commit: (text: string) => unknown }} NumberField */
+
+/** @typedef {HTMLInputElement | HTMLTextAreaElement} Input */
 
 let drawing = false;
 
 /**
- * The unsaved text of a field and the position of its caret; null without any.
- *
- * @param {Element | null} field
- */
-function unsavedIn(field) {
-  const nothing = { typing: null, caret: null };
-  if (!(field instanceof HTMLInputElement || field instanceof HTMLTextAreaElement)) return nothing;
-  if (field.type === "checkbox" || field.value === field.defaultValue) return nothing;
-  return { typing: field.value, caret: field.selectionStart };
-}
-
-/**
- * Replace the content of `root`, keeping the focus, the caret and unsaved input.
+ * Draw a form anew; what is typed and not saved stays, also where its field goes.
  *
  * @param {HTMLElement} root
- * @param {...(Node | null)} content
+ * @param {unknown} content
  */
-export function redraw(root, ...content) {
-  const active = root.contains(document.activeElement) ? document.activeElement : null;
-  const { typing, caret } = unsavedIn(active);
+export function redraw(root, content) {
   drawing = true;
-  root.replaceChildren(...content.filter((each) => each !== null));
+  render(content, root);
   drawing = false;
-  const again = active?.id ? byId(active.id) : null;
-  if (!again) return;
-  if (typing !== null) again.value = typing;
-  again.focus();
-  if (caret !== null && again.type !== "number") again.setSelectionRange(caret, caret);
 }
 
 /**
- * Make a text field.
+ * The text of a field, unless another one is being typed in it.
  *
- * @param {TextField & Record<string, unknown>} field
+ * @param {string} id
+ * @param {string} value
  */
-export function textField({
-  id,
-  label,
-  value,
-  commit,
-  multiline = false,
-  hidden = false,
-  most = Number.POSITIVE_INFINITY,
-  ...more
-}) {
-  const input = h(multiline ? "textarea" : "input", {
+function textOf(id, value) {
+  const field = /** @type {Input | null} */ (document.activeElement);
+  return live(field?.id === id && field.value !== field.defaultValue ? noChange : value);
+}
+
+/**
+ * Save what was typed in a field.
+ *
+ * @param {Input} input
+ * @param {TextField["commit"]} commit
+ */
+async function leave(input, commit) {
+  if (drawing || input.value === input.defaultValue) return;
+  const before = input.defaultValue;
+  input.defaultValue = input.value; // a second blur has nothing more to save
+  if ((await commit(input.value)) === false && input.isConnected) {
+    input.defaultValue = before;
+    input.value = before;
+  }
+}
+
+/**
+ * @param {KeyboardEvent & { target: any }} event
+ * @param {TextField["commit"]} commit
+ */
+function press(event, commit) {
+  const { key, target } = event;
+  if (key === "Enter" && target.localName === "input") leave(target, commit);
+  if (key !== "Escape" || target.value === target.defaultValue) return;
+  target.value = target.defaultValue;
+  event.stopPropagation();
+}
+
+/**
+ * @param {string} id
+ * @param {string} label
+ * @param {boolean} hidden
+ * @param {unknown} input
+ */
+const line = (id, label, hidden, input) =>
+  html`<div class="field-line">
+    <label for=${id} class=${hidden ? "visually-hidden" : ""}>${label}</label>${input}
+  </div>`;
+
+/** @param {TextField} field */
+export function textField({ id, label, value, commit, multiline, hidden = false, ...more }) {
+  const { most = Number.POSITIVE_INFINITY, placeholder } = more;
+  const left = (/** @type {any} */ { target }) => leave(target, commit);
+  const pressed = (/** @type {any} */ event) => press(event, commit);
+  const input = multiline
+    ? html`<textarea
+        id=${id}
+        data-writes
+        autocomplete="off"
+        rows=${Math.min(8, Math.max(2, value.split("\n").length))}
+        placeholder=${ifDefined(placeholder)}
+        .value=${textOf(id, value)}
+        .defaultValue=${live(value)}
+        @blur=${left}
+        @keydown=${pressed}
+        ${limited(most)}
+      ></textarea>`
+    : html`<input
+        type="text"
+        id=${id}
+        data-writes
+        autocomplete="off"
+        placeholder=${ifDefined(placeholder)}
+        .value=${textOf(id, value)}
+        .defaultValue=${live(value)}
+        @blur=${left}
+        @keydown=${pressed}
+        ${limited(most)}
+      />`;
+  return line(id, label, hidden, input);
+}
+
+/** @param {NumberField} field */
+export const numberField = ({ id, label, value, min, max, step = 1, commit }) =>
+  line(
     id,
-    ...WRITES,
-    defaultValue: value,
-    autocomplete: "off",
-    ...(multiline
-      ? { rows: Math.min(8, Math.max(2, value.split("\n").length)) }
-      : { type: "text" }),
-    ...more,
-  });
-  limit(input, most);
-  const leave = async () => {
-    if (drawing || input.value === input.defaultValue) return;
-    const before = input.defaultValue;
-    input.defaultValue = input.value; // a second blur has nothing more to save
-    if ((await commit(input.value)) === false && input.isConnected) {
-      input.defaultValue = before;
-      input.value = before;
-    }
-  };
-  input.onblur = leave;
-  input.onkeydown = (event) => {
-    if (event.key === "Enter" && !multiline) leave();
-    if (event.key === "Escape" && input.value !== input.defaultValue) {
-      input.value = input.defaultValue;
-      event.stopPropagation();
-    }
-  };
-  return h(
-    "div",
-    { className: "field-line" },
-    h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label),
-    input,
+    label,
+    false,
+    html`<input
+      type="number"
+      id=${id}
+      data-writes
+      autocomplete="off"
+      inputmode=${step === 1 ? "numeric" : "decimal"}
+      min=${min}
+      max=${max}
+      step=${step}
+      .value=${textOf(id, value)}
+      .defaultValue=${live(value)}
+      @blur=${(/** @type {any} */ { target }) => leave(target, commit)}
+      @keydown=${(/** @type {any} */ event) => press(event, commit)}
+    />`,
   );
-}
-
-/** @type {(field: NumberField) => HTMLElement} */
-export const numberField = ({ min, max, step = 1, ...rest }) =>
-  textField({
-    ...rest,
-    type: "number",
-    min,
-    max,
-    step,
-    inputMode: step === 1 ? "numeric" : "decimal",
-  });
-
-/**
- * Options whose text is their value.
- *
- * @param {string[]} values
- * @returns {[string, string][]}
- */
-export const asOptions = (values) => values.map((each) => [each, each]);
 
 /**
  * A labelled choice among `options`, each `[value, text]`.
@@ -128,35 +155,34 @@ export const asOptions = (values) => values.map((each) => [each, each]);
  * @template {string} V
  * @param {{ id: string, label: string, value: V, options: [V, string][], commit: (value: V) => unknown, hidden?: boolean }} field
  */
-export function choice({ id, label, value, options, commit, hidden = false }) {
-  const select = h(
-    "select",
-    { id, ...WRITES, onchange: () => commit(/** @type {V} */ (select.value)) },
-    options.map(([key, text]) => h("option", { value: key }, text)),
+export const choice = ({ id, label, value, options, commit, hidden = false }) =>
+  line(
+    id,
+    label,
+    hidden,
+    html`<select
+      id=${id}
+      data-writes
+      @change=${(/** @type {any} */ { target }) => commit(target.value)}
+    >
+      ${optionsOf(options, value)}
+    </select>`,
   );
-  select.value = value;
-  return h(
-    "div",
-    { className: "field-line" },
-    h("label", { for: id, className: hidden ? "visually-hidden" : "" }, label),
-    select,
-  );
-}
 
 /** @param {{ id: string, label: string, checked: boolean, commit: (on: boolean) => unknown }} field */
-export function checkbox({ id, label, checked, commit }) {
-  const input = h("input", {
-    type: "checkbox",
-    ...WRITES,
-    id,
-    checked,
-    onchange: () => commit(input.checked),
-  });
-  return h("label", { className: "tick" }, input, label);
-}
+export const checkbox = ({ id, label, checked, commit }) =>
+  html`<label class="tick"
+    ><input
+      type="checkbox"
+      data-writes
+      id=${id}
+      .checked=${live(checked)}
+      @change=${(/** @type {any} */ { target }) => commit(target.checked)}
+    />${label}</label
+  >`;
 
 /**
- * A small button that shows only an icon; `disabled` if it would have no effect.
+ * A small button of the form that shows only an icon; `disabled` if it would have no effect.
  *
  * @param {string} id
  * @param {string} name
@@ -164,19 +190,18 @@ export function checkbox({ id, label, checked, commit }) {
  * @param {() => unknown} run
  * @param {boolean} [disabled]
  */
-export function tool(id, name, label, run, disabled = false) {
-  return h(
-    "button",
-    {
-      type: "button",
-      className: "quiet icon",
-      ...WRITES,
-      id,
-      title: label,
-      "aria-label": label,
-      onclick: run,
-      disabled,
-    },
-    icon(name),
-  );
-}
+export const tool = (id, name, label, run, disabled) =>
+  iconButtonOf(name, label, run, { writes: true, id, disabled });
+
+/**
+ * A button with a plus that adds something.
+ *
+ * @param {string} id
+ * @param {string} text
+ * @param {() => unknown} run
+ * @param {string} [look]
+ */
+export const addButton = (id, text, run, look = "") =>
+  html`<button type="button" class=${look} id=${id} data-writes @click=${run}>
+    ${iconOf("plus")}${text}
+  </button>`;

@@ -1,7 +1,7 @@
 // The panel of a message's frame: gestures that open, close and cancel it, and the longest pause.
 
-import { h } from "../core/dom.js";
-import { asOptions, choice, numberField } from "./form-fields.js";
+import { asOptions, html } from "../templates.js";
+import { choice, numberField } from "./form-fields.js";
 import { grammar, labels, save } from "./grammar-store.js";
 
 /** @import { Role } from "./grammar-edits.js" */
@@ -33,22 +33,14 @@ function role(name) {
 /** Draw the panel. */
 export function framePanel() {
   const { timeout, most_phrases: most } = grammar();
-  return h(
-    "section",
-    { className: "panel", "aria-labelledby": "frame-title" },
-    h("h2", { id: "frame-title" }, "Around a message"),
-    h(
-      "p",
-      { className: "dim" },
-      "An opening and a closing gesture prevent false alarms: gestures outside a message are ignored. A message may hold several phrases, each with its own opening gesture.",
-    ),
-    h(
-      "div",
-      { className: "frame-fields" },
-      role("start"),
-      role("end"),
-      role("cancel"),
-      numberField({
+  return html`<section class="panel" aria-labelledby="frame-title">
+    <h2 id="frame-title">Around a message</h2>
+    <p class="dim">
+      An opening and a closing gesture prevent false alarms: gestures outside a message are ignored.
+      A message may hold several phrases, each with its own opening gesture.
+    </p>
+    <div class="frame-fields">
+      ${role("start")}${role("end")}${role("cancel")}${numberField({
         id: "frame-timeout",
         label: "Longest pause (s)",
         value: String(timeout),
@@ -56,8 +48,7 @@ export function framePanel() {
         max: 600,
         step: "any",
         commit: (text) => save("Longest pause", (base) => ({ ...base, timeout: Number(text) })),
-      }),
-      numberField({
+      })}${numberField({
         id: "frame-most",
         label: "Phrases, at most",
         value: String(most),
@@ -65,7 +56,7 @@ export function framePanel() {
         max: 8,
         commit: (text) =>
           save("Phrases in one message", (base) => ({ ...base, most_phrases: Number(text) })),
-      }),
-    ),
-  );
+      })}
+    </div>
+  </section>`;
 }

@@ -1,17 +1,16 @@
 // The card of a phrase: closed as a sequence, open as a form.
 
-import { h, icon } from "../core/dom.js";
-import { plural } from "../core/format.js";
 import { state, update } from "../core/state.js";
 import { toast } from "../core/toasts.js";
 import { showDone } from "../core/undo.js";
 import { read, written } from "../languages/robot-command.js";
+import { html, iconOf, nothing } from "../templates.js";
 import { textField, tool } from "./form-fields.js";
 import { inPhrase, rememberName, slotsOf } from "./grammar-edits.js";
 import { save } from "./grammar-store.js";
 import { addButtons, partList } from "./phrase-parts.js";
 import { sequence } from "./phrase-sequence.js";
-import { found, showExample } from "./phrase-trial.js";
+import { ambiguities, found, showExample } from "./phrase-trial.js";
 
 /** @import { Phrase } from "../core/types.d.ts" */
 
@@ -75,42 +74,42 @@ function form(phrase, place) {
     ? `${slots.join(" and ")} ${slots.length > 1 ? "stand for the values" : "stands for the value"} shown. In the spoken text, put what is left out with a slot in [ ].`
     : "Add a slot for a value of the command: how often, how deep or which way.";
   const id = `phrase-${place}`;
-  return h(
-    "div",
-    { className: "phrase-form" },
-    textField({
+  return html`<div class="phrase-form">
+    ${textField({
       id: `${id}-name`,
       label: "Name",
       value: phrase.name,
       most: 80,
       commit: (text) => rename(phrase, text),
-    }),
-    h(
-      "div",
-      { className: "phrase-parts" },
-      h("h3", {}, "What is shown"),
-      partList(phrase, [], phrase.parts),
-      addButtons(phrase),
-    ),
-    textField({
+    })}
+    <div class="phrase-parts">
+      <h3>What is shown</h3>
+      ${partList(phrase, [], phrase.parts)}${addButtons(phrase)}
+    </div>
+    ${textField({
       id: `${id}-says`,
       label: "Spoken back",
       value: phrase.says,
       placeholder: "the name and the values",
       most: 2000,
       commit: (text) => put(phrase, "Spoken text", { says: text.trim() }),
-    }),
-    textField({
+    })}${textField({
       id: `${id}-command`,
       label: "Command for the robot",
       value: written(phrase.command),
       placeholder: "words, or a JSON object",
       multiline: true,
       commit: (text) => command(phrase, text),
-    }),
-    h("p", { className: "dim" }, hint),
-  );
+    })}
+    <p class="dim">${hint}</p>
+  </div>`;
 }
+
+/** @param {number} count */
+const doubt = (count) =>
+  html`<span class="doubt"
+    ><span class="mark" aria-hidden="true">!</span>${ambiguities(count)}</span
+  >`;
 
 /**
  * Draw a phrase.
@@ -122,45 +121,25 @@ export function phraseCard(phrase, place) {
   const open = state.phrase === phrase.name;
   const doubts = found()?.ambiguities.filter(({ phrases }) => phrases.includes(phrase.name)) ?? [];
   const id = `phrase-${place}`;
-  return h(
-    "li",
-    { className: `phrase${open ? " open" : ""}` },
-    h(
-      "div",
-      { className: "phrase-head" },
-      h(
-        "button",
-        {
-          type: "button",
-          className: "phrase-open",
-          id: `${id}-open`,
-          "aria-expanded": String(open),
-          onclick: () => update({ phrase: open ? null : phrase.name }),
-        },
-        icon("chevron"),
-        h("b", {}, phrase.name),
-      ),
-      sequence(phrase),
-      doubts.length
-        ? h(
-            "span",
-            { className: "doubt" },
-            h("span", { className: "mark", "aria-hidden": "true" }, "!"),
-            plural(doubts.length, "ambiguity").replace("ambiguitys", "ambiguities"),
-          )
-        : null,
-      h(
-        "button",
-        {
-          type: "button",
-          id: `${id}-try`,
-          "aria-label": `Try ${phrase.name}`,
-          onclick: () => showExample(phrase.name),
-        },
-        "Try",
-      ),
-      tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase)),
-    ),
-    open ? form(phrase, place) : null,
-  );
+  return html`<li class="phrase ${open ? "open" : ""}">
+    <div class="phrase-head">
+      <button
+        type="button"
+        class="phrase-open"
+        id="${id}-open"
+        aria-expanded=${open}
+        @click=${() => update({ phrase: open ? null : phrase.name })}
+      >
+        ${iconOf("chevron")}<b>${phrase.name}</b></button
+      >${sequence(phrase)}${doubts.length ? doubt(doubts.length) : nothing}<button
+        type="button"
+        id="${id}-try"
+        aria-label="Try ${phrase.name}"
+        @click=${() => showExample(phrase.name)}
+      >
+        Try</button
+      >${tool(`${id}-remove`, "trash", `Delete ${phrase.name}`, () => remove(phrase))}
+    </div>
+    ${open ? form(phrase, place) : nothing}
+  </li>`;
 }

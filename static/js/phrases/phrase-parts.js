@@ -1,7 +1,7 @@
 // The form of a phrase's parts: gestures, slots, and groups of both.
 
-import { h, icon, WRITES } from "../core/dom.js";
-import { asOptions, checkbox, choice, numberField, textField, tool } from "./form-fields.js";
+import { asOptions, html, nothing } from "../templates.js";
+import { addButton, checkbox, choice, numberField, textField, tool } from "./form-fields.js";
 import {
   gesturePart,
   inPart,
@@ -54,8 +54,8 @@ function gestures(phrase, path, part) {
    * @param {string} title
    */
   const pick = (list, title) => put(phrase, path, title, { gestures: list });
-  const chosen = part.gestures.flatMap((label, index) => [
-    index ? h("span", { className: "dim" }, "or") : null,
+  const chosen = part.gestures.map((label, index) => [
+    index ? html`<span class="dim">or</span>` : nothing,
     choice({
       id: `${idOf(path)}-gesture-${index}`,
       label: index ? `Or gesture ${index + 1}` : "Gesture",
@@ -71,23 +71,18 @@ function gestures(phrase, path, part) {
         ),
     }),
   ]);
-  const more = free.length
-    ? choice({
-        id: `${idOf(path)}-or`,
-        label: "Or another gesture",
-        hidden: true,
-        value: "",
-        options: [["", "or\u2026"], ...asOptions(free)],
-        commit: (value) => pick([...part.gestures, value], `Or ${value}`),
-      })
-    : null;
-  return h(
-    "div",
-    { className: "part-what" },
-    h("b", {}, "Gesture"),
-    chosen.filter(Boolean),
-    more && h("span", { className: "part-or" }, more),
-  );
+  const more = () =>
+    choice({
+      id: `${idOf(path)}-or`,
+      label: "Or another gesture",
+      hidden: true,
+      value: "",
+      options: [["", "or\u2026"], ...asOptions(free)],
+      commit: (value) => pick([...part.gestures, value], `Or ${value}`),
+    });
+  return html`<div class="part-what">
+    <b>Gesture</b>${chosen}${free.length ? html`<span class="part-or">${more()}</span>` : nothing}
+  </div>`;
 }
 
 /**
@@ -99,11 +94,8 @@ function slot(phrase, path, part) {
   const types = grammar().slot_types;
   const readsAs = types.find(({ name }) => name === part.type)?.reads_as;
   const id = idOf(path);
-  return h(
-    "div",
-    { className: "part-what" },
-    h("b", {}, "Slot"),
-    textField({
+  return html`<div class="part-what">
+    <b>Slot</b>${textField({
       id: `${id}-slot`,
       label: "Name of the slot",
       hidden: true,
@@ -113,27 +105,27 @@ function slot(phrase, path, part) {
           `Rename to ${text}`,
           inPhrase(phrase.name, (whole) => withSlotRenamed(whole, part.slot, text.trim())),
         ),
-    }),
-    choice({
+    })}${choice({
       id: `${id}-type`,
       label: "filled by",
       value: part.type,
       options: asOptions(types.map(({ name }) => name)),
       commit: (type) => put(phrase, path, `Filled by ${type}`, { type, default: null }),
-    }),
-    part.least === 0
-      ? textField({
-          id: `${id}-default`,
-          label: "otherwise",
-          value: String(part.default ?? ""),
-          placeholder: "nothing",
-          commit: (text) =>
-            put(phrase, path, `Otherwise ${text || "nothing"}`, {
-              default: text.trim() ? typed(text, readsAs) : null,
-            }),
-        })
-      : null,
-  );
+    })}${
+      part.least === 0
+        ? textField({
+            id: `${id}-default`,
+            label: "otherwise",
+            value: String(part.default ?? ""),
+            placeholder: "nothing",
+            commit: (text) =>
+              put(phrase, path, `Otherwise ${text || "nothing"}`, {
+                default: text.trim() ? typed(text, readsAs) : null,
+              }),
+          })
+        : nothing
+    }
+  </div>`;
 }
 
 /**
@@ -141,15 +133,10 @@ function slot(phrase, path, part) {
  * @param {number[]} path
  * @param {GroupPart} part
  */
-function group(phrase, path, part) {
-  return h(
-    "div",
-    { className: "part-group" },
-    h("b", {}, "Together"),
-    partList(phrase, path, part.parts),
-    addButtons(phrase, path),
-  );
-}
+const group = (phrase, path, part) =>
+  html`<div class="part-group">
+    <b>Together</b>${partList(phrase, path, part.parts)}${addButtons(phrase, path)}
+  </div>`;
 
 /** @param {PhrasePart} part */
 const nounOf = (part) => ("parts" in part ? "group" : "slot" in part ? "slot" : "gesture");
@@ -160,7 +147,7 @@ const nounOf = (part) => ("parts" in part ? "group" : "slot" in part ? "slot" : 
  * @param {Phrase} phrase
  * @param {number[]} path
  * @param {PhrasePart} part
- * @returns {HTMLElement}
+ * @returns {unknown}
  */
 function whatOf(phrase, path, part) {
   if ("parts" in part) return group(phrase, path, part);
@@ -188,14 +175,10 @@ function partRow(phrase, path, part, count) {
     const most = Number(text);
     return put(phrase, path, `Up to ${text} times`, { most, least: Math.min(part.least, most) });
   };
-  return h(
-    "li",
-    { className: `part${part.least === 0 ? " optional" : ""}` },
-    whatOf(phrase, path, part),
-    h(
-      "div",
-      { className: "part-often" },
-      checkbox({
+  return html`<li class="part ${part.least === 0 ? "optional" : ""}">
+    ${whatOf(phrase, path, part)}
+    <div class="part-often">
+      ${checkbox({
         id: `${id}-optional`,
         label: "may be left out",
         checked: part.least === 0,
@@ -204,47 +187,39 @@ function partRow(phrase, path, part, count) {
             least: on ? 0 : 1,
             ...("slot" in part ? { default: null } : {}),
           }),
-      }),
-      numberField({
+      })}${numberField({
         id: `${id}-most`,
         label: "up to",
         value: String(part.most),
         min: 1,
         max: 10,
         commit: times,
-      }),
-      h(
-        "span",
-        { className: "dim" },
-        part.least > 1 ? `times, at least ${part.least}` : part.most > 1 ? "times" : "time",
-      ),
-    ),
-    h(
-      "div",
-      { className: "part-tools" },
-      tool(
+      })}<span class="dim"
+        >${part.least > 1 ? `times, at least ${part.least}` : part.most > 1 ? "times" : "time"}</span
+      >
+    </div>
+    <div class="part-tools">
+      ${tool(
         `${id}-up`,
         "up",
         `Move ${what} up`,
         () => rearrange("Move up", (parts) => moved(parts, index, -1)),
         index === 0,
-      ),
-      tool(
+      )}${tool(
         `${id}-down`,
         "down",
         `Move ${what} down`,
         () => rearrange("Move down", (parts) => moved(parts, index, 1)),
         index === count - 1,
-      ),
-      tool(
+      )}${tool(
         `${id}-remove`,
         "trash",
         `Delete ${what}`,
         () => rearrange(`Deletion of a ${noun}`, (parts) => without(parts, index)),
         count === 1,
-      ),
-    ),
-  );
+      )}
+    </div>
+  </li>`;
 }
 
 /**
@@ -254,16 +229,13 @@ function partRow(phrase, path, part, count) {
  * @param {number[]} path
  * @param {PhrasePart[]} parts
  */
-export function partList(phrase, path, parts) {
-  return h(
-    "ol",
-    {
-      className: "parts",
-      "aria-label": path.length ? "Parts of the group" : `Parts of ${phrase.name}`,
-    },
-    parts.map((part, index) => partRow(phrase, [...path, index], part, parts.length)),
-  );
-}
+export const partList = (phrase, path, parts) =>
+  html`<ol
+    class="parts"
+    aria-label=${path.length ? "Parts of the group" : `Parts of ${phrase.name}`}
+  >
+    ${parts.map((part, index) => partRow(phrase, [...path, index], part, parts.length))}
+  </ol>`;
 
 /**
  * Draw the buttons that add a part at `path`; a group holds no groups.
@@ -284,31 +256,13 @@ export function addButtons(phrase, path = []) {
         inParts(path, (parts) => [...parts, make(base)]),
       )(base),
     );
-  /**
-   * @param {string} kind
-   * @param {string} text
-   * @param {() => unknown} run
-   */
-  const button = (kind, text, run) =>
-    h(
-      "button",
-      { type: "button", id: `${id}-${kind}`, ...WRITES, onclick: run },
-      icon("plus"),
-      text,
-    );
-  return h(
-    "div",
-    { className: "part-add" },
-    button("gesture", "Gesture", () =>
-      add("New gesture in a phrase", (base) => gesturePart(base, labels())),
-    ),
-    button("slot", "Slot", () =>
-      save("New slot", (base) => withSlot(base, phrase.name, path, labels())),
-    ),
-    path.length
-      ? null
-      : button("group", "Group", () =>
-          add("New group", (base) => ({ parts: [gesturePart(base, labels())], least: 0, most: 1 })),
-        ),
-  );
+  const part = () => add("New gesture in a phrase", (base) => gesturePart(base, labels()));
+  const slotted = () => save("New slot", (base) => withSlot(base, phrase.name, path, labels()));
+  const grouped = () =>
+    add("New group", (base) => ({ parts: [gesturePart(base, labels())], least: 0, most: 1 }));
+  return html`<div class="part-add">
+    ${addButton(`${id}-gesture`, "Gesture", part)}${addButton(`${id}-slot`, "Slot", slotted)}${
+      path.length ? nothing : addButton(`${id}-group`, "Group", grouped)
+    }
+  </div>`;
 }

@@ -1,6 +1,6 @@
 // A phrase as a sequence of chips.
 
-import { h } from "../core/dom.js";
+import { html, nothing } from "../templates.js";
 import { grammar } from "./grammar-store.js";
 
 /** @import { Phrase, PhrasePart } from "../core/types.d.ts" */
@@ -11,27 +11,24 @@ const often = ({ least, most }) =>
 
 /**
  * @param {PhrasePart} part
- * @returns {HTMLElement}
+ * @returns {unknown}
  */
 function chip(part) {
   const optional = part.least === 0;
-  const note = optional ? h("span", { className: "visually-hidden" }, " (may be left out)") : null;
-  const look = optional ? " optional" : "";
+  const note = optional ? html`<span class="visually-hidden"> (may be left out)</span>` : nothing;
+  const look = optional ? "optional" : "";
+  const end = [often(part), note];
   if ("parts" in part)
-    return h("span", { className: `chip-group${look}` }, part.parts.map(chip), often(part), note);
+    return html`<span class="chip-group ${look}">${part.parts.map(chip)}${end}</span>`;
   if ("slot" in part)
-    return h(
-      "span",
-      { className: `chip slot${look}`, title: `a gesture of ${part.type}` },
-      `{${part.slot}}`,
-      often(part),
-      note,
-    );
-  return h("span", { className: `chip${look}` }, part.gestures.join(" or "), often(part), note);
+    return html`<span class="chip slot ${look}" title="a gesture of ${part.type}"
+      >{${part.slot}}${end}</span
+    >`;
+  return html`<span class="chip ${look}">${part.gestures.join(" or ")}${end}</span>`;
 }
 
-/** @param {string | null | undefined} label */
-const frame = (label) => (label ? h("span", { className: "chip frame" }, label) : null);
+/** @param {string | null} label */
+const frame = (label) => (label ? html`<span class="chip frame">${label}</span>` : nothing);
 
 /**
  * Draw a phrase with its start and end gestures.
@@ -40,9 +37,5 @@ const frame = (label) => (label ? h("span", { className: "chip frame" }, label) 
  */
 export function sequence(phrase) {
   const { start, end } = grammar();
-  return h(
-    "span",
-    { className: "sequence" },
-    [frame(start), ...phrase.parts.map(chip), frame(end)].filter(Boolean),
-  );
+  return html`<span class="sequence">${frame(start)}${phrase.parts.map(chip)}${frame(end)}</span>`;
 }

@@ -1,10 +1,10 @@
 // The trial of phrases: clicked gestures are parsed as on the robot.
 
 import * as api from "../core/api.js";
-import { h, reconcile } from "../core/dom.js";
 import { askWhich } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { html, nothing, repeat } from "../templates.js";
 import { called, ROLES } from "./grammar-edits.js";
 import { grammar, saved } from "./grammar-store.js";
 
@@ -18,18 +18,13 @@ const MARKS = { complete: "\u2713", continues: "\u2026", repeat: "?" };
 // The server's answer; `settled` says whether it is about the gestures shown now.
 /** @type {{ key: string, view: PhrasesAnswer | null, settled: boolean } | null} */
 let answer = null;
-/** @type {(() => void)[]} */
-const listeners = [];
+let draw = () => {};
 
 /** The latest answer about the phrases on display, or null. */
 export const found = () => answer?.view ?? null;
 
-/**
- * Call `react` after each new answer.
- *
- * @param {() => void} react
- */
-export const followFound = (react) => listeners.push(react);
+/** @param {number} count */
+export const ambiguities = (count) => `${count} ${count === 1 ? "ambiguity" : "ambiguities"}`;
 
 /**
  * The gestures shown, "" for one that was not recognised, two with a tab between them for a pair.
@@ -84,6 +79,7 @@ function press(gesture) {
     picked = null;
     add(pair);
   }
+  draw();
 }
 
 /** Request the meaning of the gestures shown, whenever they or the phrases change. */
@@ -98,7 +94,7 @@ async function load() {
   );
   if (!loaded || answer?.key !== key) return;
   answer = { key, view: loaded, settled: true };
-  for (const react of listeners) react();
+  draw();
 }
 
 const canSpeak = () => "speechSynthesis" in window;
@@ -125,77 +121,63 @@ function markOf(event) {
 /** @param {PhraseEvent | null} event */
 function drawAnswer(event) {
   const words = event ? event.text : "Show a gesture: click it below.";
-  return h(
-    "div",
-    { className: `said ${lookOf(event)}` },
-    h("span", { className: "mark", "aria-hidden": "true" }, markOf(event)),
-    h("p", { id: "said" }, words),
-    canSpeak() && event
-      ? h("button", { type: "button", id: "speak", onclick: () => speak(words) }, "Speak")
-      : null,
-  );
+  const speaking = () => speak(words);
+  return html`<div class="said ${lookOf(event)}">
+    <span class="mark" aria-hidden="true">${markOf(event)}</span>
+    <p id="said">${words}</p>
+    ${
+      canSpeak() && event
+        ? html`<button type="button" id="speak" @click=${speaking}>Speak</button>`
+        : nothing
+    }
+  </div>`;
+}
+
+/** @param {string | object | null} command */
+function commandOf(command) {
+  if (command === null) return html`<span class="dim">no command</span>`;
+  return html`<code>${typeof command === "string" ? command : JSON.stringify(command)}</code>`;
 }
 
 /** @param {PhraseEvent | null} event */
 function commands(event) {
-  if (!event?.mission) return null;
-  return h(
-    "div",
-    { className: "obeyed" },
-    h("h3", {}, "Commands to the robot"),
-    h(
-      "ol",
-      {},
-      event.mission.map(({ phrase, command }) =>
-        h(
-          "li",
-          {},
-          h("b", {}, phrase),
-          command === null
-            ? h("span", { className: "dim" }, "no command")
-            : h("code", {}, typeof command === "string" ? command : JSON.stringify(command)),
-        ),
-      ),
-    ),
-  );
+  if (!event?.mission) return nothing;
+  return html`<div class="obeyed">
+    <h3>Commands to the robot</h3>
+    <ol>
+      ${event.mission.map(
+        ({ phrase, command }) => html`<li><b>${phrase}</b>${commandOf(command)}</li>`,
+      )}
+    </ol>
+  </div>`;
 }
 
 /**
- * A gesture to click; an existing button is reused, so that no click on it is lost.
+ * A gesture to click.
  *
  * @param {Gesture} gesture
  * @param {boolean} next
- * @param {HTMLElement | undefined} item
  */
-function gestureButton({ label, thumbnail }, next, item) {
-  const drawn =
-    item ??
-    h(
-      "li",
-      {},
-      h(
-        "button",
-        { type: "button", className: "try-gesture", onclick: () => press(label) },
-        h("img", { alt: "", width: 56, height: 56 }),
-        h("span", {}, label),
-      ),
-    );
-  const button = /** @type {HTMLElement} */ (drawn.querySelector("button"));
-  const picture = /** @type {HTMLImageElement} */ (drawn.querySelector("img"));
-  button.classList.toggle("next", next);
-  button.setAttribute("aria-label", `Show ${label}${next ? ", may come next" : ""}`);
-  const source = api.beside(thumbnail);
-  if (picture.getAttribute("src") !== source) picture.src = source;
+function gestureButton({ label, thumbnail }, next) {
   const roles = ROLES.filter((role) => grammar()[role] === label).join(", ");
-  button.dataset.role = next ? "next" : roles;
-  return drawn;
+  return html`<li>
+    <button
+      type="button"
+      class="try-gesture ${next ? "next" : ""}"
+      aria-label="Show ${label}${next ? ", may come next" : ""}"
+      data-role=${next ? "next" : roles}
+      @click=${() => press(label)}
+    >
+      <img alt="" width="56" height="56" src=${api.beside(thumbnail)} /><span>${label}</span>
+    </button>
+  </li>`;
 }
 
 /** @param {string} label */
 function chip(label) {
   const [one, other] = label.split(BETWEEN);
-  if (other) return h("li", { className: "chip asked" }, askWhich([one, other]));
-  return h("li", { className: label ? "chip" : "chip rejected" }, label || "not recognised");
+  if (other) return html`<li class="chip asked">${askWhich([one, other])}</li>`;
+  return html`<li class="chip ${label ? "" : "rejected"}">${label || "not recognised"}</li>`;
 }
 
 function hint() {
@@ -205,68 +187,58 @@ function hint() {
     : "Framed and marked \u201cnext\u201d: what may come next.";
 }
 
-/** Build the panel; it follows what is shown. */
-export function trialPanel() {
-  const sequence = h("ol", { className: "shown", "aria-label": "Gestures shown" });
-  const result = h("div", { className: "trial-result", role: "status" });
-  const gestures = h("ul", { className: "try-gestures", "aria-label": "Gestures to show" });
-  const pause = h(
-    "button",
-    { type: "button", onclick: () => update({ paused: "yes" }) },
-    "Pause too long",
-  );
-  const between = h("button", { type: "button" });
-  const drawBetween = () => {
-    between.setAttribute("aria-pressed", String(picked !== null));
-    between.textContent = picked?.length ? `${picked[0]} or \u2026?` : "Between two";
-  };
-  between.onclick = () => {
-    picked = picked === null ? [] : null;
-    drawBetween();
-  };
-  gestures.addEventListener("click", drawBetween);
-  const clear = h("button", { type: "button", onclick: () => show([]) }, "Clear");
-  const note = h("p", { className: "dim" });
-  const draw = () => {
-    if (state.view !== "phrases" || !state.gestures) return;
-    const event = state.shown === null ? null : last();
-    const expected = new Set(found()?.expected ?? []);
-    sequence.replaceChildren(
-      ...shown().map(chip),
-      ...(state.paused === null ? [] : [h("li", { className: "chip rejected" }, "pause")]),
-    );
-    result.replaceChildren(...[drawAnswer(event), commands(event)].filter((each) => each !== null));
-    reconcile(
-      gestures,
-      state.gestures.gestures,
-      ({ label }) => label,
-      (gesture, item) => gestureButton(gesture, expected.has(gesture.label), item),
-    );
-    pause.disabled = !event || isOver(event) || state.paused !== null;
-    drawBetween();
-    clear.disabled = state.shown === null;
-    note.textContent = hint();
-  };
-  followFound(draw);
+/**
+ * Request the meaning of what is shown, and call `react` with each new answer.
+ *
+ * @param {() => void} react
+ */
+export function followTrial(react) {
+  draw = react;
   follow(["view", "gestures", "shown", "paused"], () => {
     loading = load();
-    draw();
   });
-  return h(
-    "section",
-    { className: "panel trial", "aria-labelledby": "trial-title" },
-    h("h2", { id: "trial-title" }, "Try it"),
-    sequence,
-    result,
-    gestures,
-    h(
-      "div",
-      { className: "trial-actions" },
-      h("button", { type: "button", onclick: () => press("") }, "Not recognised"),
-      between,
-      pause,
-      clear,
-    ),
-    note,
-  );
+}
+
+function pickTwo() {
+  picked = picked === null ? [] : null;
+  draw();
+}
+
+/** Draw the panel. */
+export function trialPanel() {
+  const event = state.shown === null ? null : last();
+  const expected = new Set(found()?.expected ?? []);
+  return html`<section class="panel trial" aria-labelledby="trial-title">
+    <h2 id="trial-title">Try it</h2>
+    <ol class="shown" aria-label="Gestures shown">
+      ${shown().map(chip)}${
+        state.paused === null ? nothing : html`<li class="chip rejected">pause</li>`
+      }
+    </ol>
+    <div class="trial-result" role="status">${drawAnswer(event)}${commands(event)}</div>
+    <ul class="try-gestures" aria-label="Gestures to show">
+      ${repeat(
+        state.gestures?.gestures ?? [],
+        ({ label }) => label,
+        (gesture) => gestureButton(gesture, expected.has(gesture.label)),
+      )}
+    </ul>
+    <div class="trial-actions">
+      <button type="button" @click=${() => press("")}>Not recognised</button>
+      <button type="button" aria-pressed=${picked !== null} @click=${pickTwo}>
+        ${picked?.length ? `${picked[0]} or \u2026?` : "Between two"}
+      </button>
+      <button
+        type="button"
+        ?disabled=${!event || isOver(event) || state.paused !== null}
+        @click=${() => update({ paused: "yes" })}
+      >
+        Pause too long
+      </button>
+      <button type="button" ?disabled=${state.shown === null} @click=${() => show([])}>
+        Clear
+      </button>
+    </div>
+    <p class="dim">${hint()}</p>
+  </section>`;
 }

@@ -1,19 +1,20 @@
 // The phrases view: a form for the phrases, their ambiguities, and a trial by clicked gestures.
 
-import { byId, h, icon, WRITES } from "../core/dom.js";
+import { byId, h } from "../core/dom.js";
 import { plural } from "../core/format.js";
 import { follow, state, update } from "../core/state.js";
 import { showDone } from "../core/undo.js";
 import { go } from "../core/views.js";
-import { redraw } from "./form-fields.js";
+import { html, nothing } from "../templates.js";
+import { addButton, redraw } from "./form-fields.js";
 import { free, withPhrase } from "./grammar-edits.js";
 import { followRefusals, grammar, labels, save } from "./grammar-store.js";
 import { framePanel } from "./message-frame.js";
 import { phraseCard } from "./phrase-card.js";
-import { followFound, found, show, trialPanel } from "./phrase-trial.js";
+import { ambiguities, followTrial, found, show, trialPanel } from "./phrase-trial.js";
 import { slotTypesPanel } from "./slot-types.js";
 
-/** @import { Grammar } from "../core/types.d.ts" */
+/** @import { State } from "../core/types.d.ts" */
 
 async function addPhrase() {
   const name = free(
@@ -33,109 +34,88 @@ async function takeOut() {
 }
 
 /** The ambiguities, each with a message that shows it. */
-function ambiguities() {
+function findings() {
   const list = found()?.ambiguities ?? [];
-  if (!list.length) return null;
-  return h(
-    "ul",
-    { className: "findings", "aria-label": "Ambiguities" },
-    list.map(({ message, gestures }, index) =>
-      h(
-        "li",
-        { className: "finding error" },
-        h("span", { className: "mark", "aria-hidden": "true" }, "!"),
-        h("div", { className: "finding-text" }, h("p", {}, message)),
-        h(
-          "button",
-          {
-            type: "button",
-            id: `ambiguity-${index}-try`,
-            "aria-label": `Try: ${gestures.join(", ")}`,
-            onclick: () => show(gestures),
-          },
-          "Try",
-        ),
-      ),
-    ),
-  );
+  if (!list.length) return nothing;
+  return html`<ul class="findings" aria-label="Ambiguities">
+    ${list.map(
+      ({ message, gestures }, index) =>
+        html`<li class="finding error">
+          <span class="mark" aria-hidden="true">!</span>
+          <div class="finding-text"><p>${message}</p></div>
+          <button
+            type="button"
+            id="ambiguity-${index}-try"
+            aria-label="Try: ${gestures.join(", ")}"
+            @click=${() => show(gestures)}
+          >
+            Try
+          </button>
+        </li>`,
+    )}
+  </ul>`;
 }
 
 function verdict() {
   const view = found();
-  if (!view || !grammar().phrases.length) return null;
+  if (!view || !grammar().phrases.length) return nothing;
   const count = view.ambiguities.length;
-  return h(
-    "p",
-    { className: `verdict ${count ? "unwell" : "well"}`, role: "status" },
-    h("span", { className: "mark", "aria-hidden": "true" }, count ? "!" : "\u2713"),
-    h(
-      "b",
-      {},
-      count ? `${count} ${count === 1 ? "ambiguity" : "ambiguities"}` : "Nothing ambiguous",
-    ),
-  );
+  return html`<p class="verdict ${count ? "unwell" : "well"}" role="status">
+    <span class="mark" aria-hidden="true">${count ? "!" : "\u2713"}</span
+    ><b>${count ? ambiguities(count) : "Nothing ambiguous"}</b>
+  </p>`;
 }
 
-function beginning() {
-  return h(
-    "div",
-    { className: "phrases-empty" },
-    h("p", {}, h("b", {}, "No phrases yet")),
-    h(
-      "p",
-      { className: "dim" },
-      "Without phrases every gesture is a message of its own. A phrase is a sequence of gestures with one meaning: \u201cphoto, 3 times\u201d. Gestures of your choice open and close it, so that background motion is not obeyed.",
-    ),
-    h(
-      "button",
-      { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
-      icon("plus"),
-      "Add the first phrase",
-    ),
-  );
-}
+const beginning = () =>
+  html`<div class="phrases-empty">
+    <p><b>No phrases yet</b></p>
+    <p class="dim">
+      Without phrases every gesture is a message of its own. A phrase is a sequence of gestures with
+      one meaning: “photo, 3 times”. Gestures of your choice open and close it, so that background
+      motion is not obeyed.
+    </p>
+    ${addButton("add-phrase", "Add the first phrase", addPhrase, "primary")}
+  </div>`;
 
-function noGestures() {
-  return h(
-    "div",
-    { className: "phrases-empty" },
-    h("p", {}, h("b", {}, state.gestures ? "No gestures to make phrases of" : "No language yet")),
-    h("p", { className: "dim" }, "Save a gesture from a clip first."),
-    h(
-      "button",
-      { type: "button", className: "primary", onclick: () => go("studio") },
-      "To the clips",
-    ),
-  );
-}
+const noGestures = () =>
+  html`<div class="phrases-empty">
+    <p><b>${state.gestures ? "No gestures to make phrases of" : "No language yet"}</b></p>
+    <p class="dim">Save a gesture from a clip first.</p>
+    <button type="button" class="primary" @click=${() => go("studio")}>To the clips</button>
+  </div>`;
 
 function list() {
   const { phrases } = grammar();
-  return h(
-    "section",
-    { className: "phrase-section", "aria-labelledby": "phrases-title" },
-    h(
-      "div",
-      { className: "panel-head" },
-      h("h2", { id: "phrases-title" }, "Phrases"),
-      h("small", { className: "dim" }, plural(phrases.length, "phrase")),
-      h("span", { className: "spacer" }),
-      h(
-        "button",
-        { type: "button", className: "primary", id: "add-phrase", ...WRITES, onclick: addPhrase },
-        icon("plus"),
-        "New phrase",
-      ),
-    ),
-    h("ul", { className: "phrase-list", "aria-label": "Phrases" }, phrases.map(phraseCard)),
-  );
+  return html`<section class="phrase-section" aria-labelledby="phrases-title">
+    <div class="panel-head">
+      <h2 id="phrases-title">Phrases</h2>
+      <small class="dim">${plural(phrases.length, "phrase")}</small>
+      <span class="spacer"></span>
+      ${addButton("add-phrase", "New phrase", addPhrase, "primary")}
+    </div>
+    <ul class="phrase-list" aria-label="Phrases">
+      ${phrases.map(phraseCard)}
+    </ul>
+  </section>`;
 }
 
-/** All that the view shows, as one key. */
-function shownKey() {
-  const { gestures, phrase } = state;
-  const { id, name, grammar: kept } = gestures ?? {};
-  return JSON.stringify([id, name, labels(), kept, phrase, found()?.ambiguities]);
+const form = () =>
+  html`${findings()}${list()}${framePanel()}${slotTypesPanel()}
+    <div>
+      <button type="button" class="quiet" id="take-out" data-writes @click=${takeOut}>
+        Take all phrases out
+      </button>
+    </div>`;
+
+/** @param {State} state */
+function columns({ gestures }) {
+  if (!gestures?.gestures.length) return noGestures();
+  const some = grammar().phrases.length > 0;
+  const first = () => [beginning(), gestures.grammar ? slotTypesPanel() : nothing];
+  return html`<div class="phrase-columns ${some ? "" : "alone"}">
+    <div class="phrase-editor">${some ? form() : first()}</div>
+    ${some ? trialPanel() : nothing}
+  </div>`;
 }
 
 /**
@@ -144,65 +124,22 @@ function shownKey() {
  * @param {HTMLElement} section
  */
 export function open(section) {
-  const title = h("h1");
-  const says = h("div", { className: "verdict-place" });
-  const form = h("div", { className: "phrase-editor" });
-  const trial = trialPanel();
-  const columns = h("div", { className: "phrase-columns" }, form, trial);
-  const none = h("div");
-  let drawn = "";
-  /** @param {Grammar | null | undefined} kept */
-  const drawForm = (kept) => {
-    trial.hidden = !grammar().phrases.length;
-    columns.classList.toggle("alone", trial.hidden);
-    if (trial.hidden) redraw(form, beginning(), kept ? slotTypesPanel() : null);
-    else {
-      redraw(
-        form,
-        ambiguities(),
-        list(),
-        framePanel(),
-        slotTypesPanel(),
-        h(
-          "div",
-          {},
-          h(
-            "button",
-            { type: "button", className: "quiet", id: "take-out", ...WRITES, onclick: takeOut },
-            "Take all phrases out",
-          ),
-        ),
-      );
-    }
-  };
+  const page = h("div", { className: "phrases-page" });
+  section.append(page);
   const draw = () => {
     const { gestures, loaded, view } = state;
     if (view !== "phrases" || (!gestures && !loaded)) return;
-    const now = shownKey();
-    if (now === drawn) return; // a button being pressed stays in place
-    drawn = now;
-    title.textContent = gestures ? `Phrases of ${gestures.name}` : "Phrases";
-    const able = Boolean(gestures?.gestures.length);
-    columns.hidden = !able;
-    none.hidden = able;
-    none.replaceChildren(...(able ? [] : [noGestures()]));
-    says.replaceChildren(...[able ? verdict() : null].filter((each) => each !== null));
-    if (!able) return;
-    drawForm(gestures?.grammar);
+    redraw(
+      page,
+      html`<div class="page-head">
+          <h1>${gestures ? `Phrases of ${gestures.name}` : "Phrases"}</h1>
+          <span class="spacer"></span>
+          <div class="verdict-place">${gestures?.gestures.length ? verdict() : nothing}</div>
+        </div>
+        ${columns(state)}`,
+    );
   };
-  section.append(
-    h(
-      "div",
-      { className: "phrases-page" },
-      h("div", { className: "page-head" }, title, h("span", { className: "spacer" }), says),
-      none,
-      columns,
-    ),
-  );
-  followFound(draw);
-  followRefusals(() => {
-    drawn = "";
-    draw();
-  });
-  follow(["view", "gestures", "phrase", "loaded"], draw);
+  followTrial(draw);
+  followRefusals(draw);
+  follow(["view", "gestures", "phrase", "loaded", "shown", "paused"], draw);
 }

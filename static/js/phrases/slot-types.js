@@ -1,7 +1,7 @@
 // The panel of slot types: gestures, each with the value it stands for.
 
-import { h, icon, WRITES } from "../core/dom.js";
-import { asOptions, choice, textField, tool } from "./form-fields.js";
+import { asOptions, html, nothing } from "../templates.js";
+import { addButton, choice, textField, tool } from "./form-fields.js";
 import {
   inSlotType,
   rememberName,
@@ -62,27 +62,22 @@ function valueRow(type, place, { gesture, value }, index) {
     inValues(type.name, (values) =>
       values.map((each, at) => (at === index ? { ...each, ...change } : each)),
     );
-  return h(
-    "li",
-    {},
-    choice({
+  return html`<li>
+    ${choice({
       id: `${id}-gesture`,
       label: `Gesture ${index + 1} of ${type.name}`,
       hidden: true,
       value: gesture,
       options,
       commit: (label) => save(`${type.name}: ${label}`, put({ gesture: label })),
-    }),
-    h("span", { className: "dim", "aria-hidden": "true" }, "="),
-    textField({
+    })}<span class="dim" aria-hidden="true">=</span>${textField({
       id,
       label: `Value of ${gesture}`,
       hidden: true,
       value: String(value),
       commit: (text) =>
         save(`${gesture} means ${text}`, put({ value: typed(text, type.reads_as) })),
-    }),
-    tool(
+    })}${tool(
       `${id}-remove`,
       "close",
       `Take ${gesture} out of ${type.name}`,
@@ -92,8 +87,8 @@ function valueRow(type, place, { gesture, value }, index) {
           inValues(type.name, (values) => without(values, index)),
         ),
       type.values.length === 1,
-    ),
-  );
+    )}
+  </li>`;
 }
 
 /** @param {SlotType} type */
@@ -147,20 +142,15 @@ function slotType(type, place) {
       })),
     users.length > 0,
   );
-  return h(
-    "li",
-    { className: "slot-type" },
-    h(
-      "div",
-      { className: "slot-type-head" },
-      textField({
+  return html`<li class="slot-type">
+    <div class="slot-type-head">
+      ${textField({
         id: `${id}-name`,
         label: "Name of the values",
         hidden: true,
         value: type.name,
         commit: (text) => rename(type, text.trim()),
-      }),
-      choice({
+      })}${choice({
         id: `${id}-reads`,
         label: `How ${type.name} is read`,
         hidden: true,
@@ -175,56 +165,41 @@ function slotType(type, place) {
               values: converted(each.values, readsAs),
             })),
           ),
-      }),
-      remove,
-    ),
-    h(
-      "ul",
-      { className: "slot-values", "aria-label": `Gestures of ${type.name}` },
-      type.values.map((value, index) => valueRow(type, place, value, index)),
-    ),
-    h(
-      "button",
-      {
-        type: "button",
-        className: "link",
-        ...WRITES,
-        id: `${id}-add`,
-        onclick: () => addValue(type),
-        hidden: type.values.length === labels().length,
-      },
-      "Add a gesture",
-    ),
-  );
+      })}${remove}
+    </div>
+    <ul class="slot-values" aria-label="Gestures of ${type.name}">
+      ${type.values.map((value, index) => valueRow(type, place, value, index))}
+    </ul>
+    <button
+      type="button"
+      class="link"
+      data-writes
+      id="${id}-add"
+      ?hidden=${type.values.length === labels().length}
+      @click=${() => addValue(type)}
+    >
+      Add a gesture
+    </button>
+  </li>`;
 }
 
 /** Draw the panel. */
 export function slotTypesPanel() {
   const { slot_types: types } = grammar();
-  return h(
-    "section",
-    { className: "panel", "aria-labelledby": "slot-types-title" },
-    h("h2", { id: "slot-types-title" }, "Values"),
-    h(
-      "p",
-      { className: "dim" },
-      "Gestures that stand for a number or a word, to fill the slots of phrases: how often, how deep, which way.",
-    ),
-    types.length ? h("ul", { className: "slot-types" }, types.map(slotType)) : null,
-    h(
-      "div",
-      {},
-      h(
-        "button",
-        {
-          type: "button",
-          id: "add-slot-type",
-          ...WRITES,
-          onclick: () => save("New values", (base) => withSlotType(base, labels())),
-        },
-        icon("plus"),
-        "Add values",
-      ),
-    ),
-  );
+  const add = () => save("New values", (base) => withSlotType(base, labels()));
+  return html`<section class="panel" aria-labelledby="slot-types-title">
+    <h2 id="slot-types-title">Values</h2>
+    <p class="dim">
+      Gestures that stand for a number or a word, to fill the slots of phrases: how often, how deep,
+      which way.
+    </p>
+    ${
+      types.length
+        ? html`<ul class="slot-types">
+            ${types.map(slotType)}
+          </ul>`
+        : nothing
+    }
+    <div>${addButton("add-slot-type", "Add values", add)}</div>
+  </section>`;
 }

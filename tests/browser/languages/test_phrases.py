@@ -73,7 +73,7 @@ def test_a_pair_is_tried_and_asked_for_its_place(open_page: OpenPage, library: L
     expect(page.get_by_role("button", name="three or \u2026?")).to_be_visible()
     gestures.get_by_role("button", name="Show square").click()
     said = page.locator(".said.asked")
-    expect(said).to_have_text("?gesture 3: three or square? show it againSpeak")
+    expect(said).to_have_text("? gesture 3: three or square? show it again Speak")
     expect(page.locator(".chip.asked")).to_have_text("three or square?")
     expect(page.get_by_role("button", name="Between two")).to_have_attribute(
         "aria-pressed", "false"
