@@ -76,22 +76,8 @@ OpenPage = Callable[..., Page]
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Mark the tests of this folder as slow; a failed one is retried once and reported.
-
-    A browser on a loaded machine sometimes misses a step; a real fault fails again.
-    """
+    """Mark the tests of this folder as slow."""
     item.add_marker(pytest.mark.slow)
-    item.add_marker(pytest.mark.flaky(reruns=1))
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item: pytest.Function) -> None:
-    """Begin a retry with a new server, which has no data of the first try."""
-    if getattr(item, "execution_count", 1) > 1:
-        for definitions in item._fixtureinfo.name2fixturedefs.values():
-            for fixture in definitions:
-                if fixture.scope == "module":
-                    fixture.finish(item._request)  # type: ignore[arg-type]  # passed on alone
 
 
 # Not for the whole session: Playwright keeps an event loop running in this thread, and no test of

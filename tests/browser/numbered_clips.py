@@ -33,6 +33,17 @@ FIRST = 126_000
 GAPS = (3003, 1501, 4504, 9009, 2999, 1801)
 """Ticks between frames, as of a camera that lengthens its exposure in the dark."""
 
+FIXED_ORDER: dict[str, object] = {
+    "preset": "veryfast",
+    "bf": "2",
+    "g": "12",
+    "x264-params": "b-adapt=0:b-pyramid=none:scenecut=0:threads=1",
+}
+"""Two frames out of order after each in order, whichever processor encodes.
+
+An MP4 stores differences of decoding times as durations, so by the file some frames last beyond the
+beginning of the next."""
+
 Picture = npt.NDArray[np.uint8]
 
 Marks = list[tuple[float, float]]
@@ -46,7 +57,7 @@ def numbered_clip(path: Path, frames: int) -> list[float]:
         assert isinstance(stream, VideoStream)
         stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, "yuv420p"
         stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
-        stream.options = {"preset": "veryfast", "bf": "2", "g": "12"}
+        stream.options = FIXED_ORDER
         for number, stamp in enumerate(stamps):
             frame = av.VideoFrame.from_ndarray(numbered(number), format="rgb24")
             frame = frame.reformat(format="yuv420p")
@@ -61,7 +72,7 @@ def numbered(number: int) -> Picture:
     image = np.full((HEIGHT, WIDTH, 3), 110, np.uint8)
     for (x, y), colour in zip(_corners(CORNER // 2), CORNERS, strict=True):
         _square(image, x, y)[:] = colour
-    for bit, (x, y) in enumerate(_blocks()):
+    for bit, (x, y) in enumerate(block_places()):
         _square(image, x, y)[:] = 235 if number >> bit & 1 else 20
     return image
 
@@ -74,7 +85,7 @@ def number_on(screen: bytes) -> int | None:
         return None
     painted = np.array(_corners(CORNER // 2), np.float32)
     onto = cv2.getPerspectiveTransform(painted, np.array(places, np.float32))
-    blocks = cv2.perspectiveTransform(np.array([_blocks()], np.float32), onto)[0]
+    blocks = cv2.perspectiveTransform(np.array([block_places()], np.float32), onto)[0]
     lit = [shown[round(float(y)), round(float(x))].mean() > 128 for x, y in blocks]
     return sum(1 << bit for bit, on in enumerate(lit) if on)
 
@@ -109,8 +120,8 @@ def _corners(inside: int) -> list[tuple[int, int]]:
     return [(inside, inside), (right, inside), (right, bottom), (inside, bottom)]
 
 
-def _blocks() -> list[tuple[int, int]]:
-    """Return the middles of the blocks, the lowest bit's first."""
+def block_places() -> list[tuple[int, int]]:
+    """Return the middles of the blocks in pixels, the lowest bit's first."""
     half = CORNER // 2
     lines = [divmod(bit, COLUMNS) for bit in range(BITS)]
     return [(LEFT + CORNER * column + half, TOP + CORNER * line + half) for line, column in lines]

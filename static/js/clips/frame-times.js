@@ -1,5 +1,7 @@
 // Frames and their timestamps: `time` has each frame's container timestamp in seconds.
 
+const HAVE_METADATA = 1; // HTMLMediaElement's, which no test outside a browser has
+
 /** The fewest frames of a range. */
 export const LEAST_FRAMES = 3;
 
@@ -35,31 +37,118 @@ export const insideFrame = (time, frame) =>
     : time[frame + 1] - time[frame]) /
     2;
 
-/**
- * The time of the first frame by the clock of a video whose source was just set. It is not 0 if
- * sound begins before the picture, or if the file was cut from a longer one.
- *
- * @param {HTMLVideoElement} video
- * @returns {Promise<number>}
- */
-export const firstMoment = (video) =>
-  new Promise((resolve) => {
-    // Firefox before 132 has no such callback.
-    if (video.requestVideoFrameCallback)
-      video.requestVideoFrameCallback((now, { mediaTime }) => resolve(mediaTime));
-    else video.addEventListener("loadeddata", () => resolve(video.currentTime), { once: true });
-  });
+const ROUNDING = 0.001; // s: containers round their timestamps
+const SLOWEST = 1 / 16; // of the usual speed: the least at which browsers play
+const LEAD = 0.004; // s: how long before a frame playing begins; no camera's frame is as short
+const MOST_SEEKS = 3; // until a frame counts as missing in the video
 
 /**
- * Seek a video to a moment, and draw over it once it shows that frame. Does nothing while a seek is
- * under way: a seek interrupted by the next one shows no frame.
+ * A frame to show: when it begins, and a moment inside it to seek to, in seconds of the clip.
+ * `shown` is called once it is on the screen.
+ *
+ * @typedef {{ begin: number, inside?: number, shown?: () => void }} Frame
+ */
+
+/**
+ * Show single frames of a video: `load(source)` its file, then `show(frame)` any number of times.
+ * The next frame does not cut a seek short, or none would be shown; the newest one comes next.
+ *
+ * After a seek Chromium may show an earlier frame: an MP4 whose frames are stored out of order has
+ * wrong durations, by which a frame lasts beyond the beginning of the next. Playing goes by the
+ * frames' beginnings, so the video plays slowly until the wanted frame is on the screen.
  *
  * @param {HTMLVideoElement} video
- * @param {number} moment
- * @param {() => void} draw
  */
-export function drawAt(video, moment, draw) {
-  if (video.seeking) return;
-  video.onseeked = draw;
-  video.currentTime = moment;
+export function showFrames(video) {
+  /** @type {number | null} */
+  let start = null; // of the clip by the video's clock: not 0 if sound begins before the picture
+  /** @type {number | null} */
+  let onScreen = null; // when the frame on the screen begins, in seconds of the clip; null: unknown
+  /** @type {Frame | null} */
+  let sought = null;
+  /** @type {Frame | null} */
+  let newest = null; // the frame to seek to as soon as the last one is done
+  let done = true; // whether the frame sought is shown, or counts as missing
+  let seeks = 0; // so far for the frame sought: once into it, then before it to play
+
+  video.defaultPlaybackRate = SLOWEST;
+  if (video.requestVideoFrameCallback) video.requestVideoFrameCallback(follow);
+  // Firefox before 132 has no such callback: there nobody knows which frame a seek shows.
+  else video.onloadeddata = () => presented(video.currentTime);
+  video.onseeked = () => {
+    if (!video.requestVideoFrameCallback && sought) onScreen = sought.begin;
+    settle();
+  };
+
+  /**
+   * @param {number} now
+   * @param {{ mediaTime: number }} frame
+   */
+  function follow(now, { mediaTime }) {
+    video.requestVideoFrameCallback(follow); // first: after a seek Chromium may miss its frame
+    // A frame of the clip before may come after another one was chosen.
+    if (video.readyState >= HAVE_METADATA) presented(mediaTime);
+  }
+  /** @param {number} moment of the video's clock */
+  function presented(moment) {
+    start ??= moment;
+    onScreen = moment - start;
+    if (done) showNewest();
+    settle();
+  }
+  function showNewest() {
+    if (!newest || start === null) return;
+    [sought, newest, done, seeks] = [newest, null, false, 0];
+    if (isShown(sought)) settle();
+    else seek(sought);
+  }
+  /** @param {Frame} frame that begins on the screen, or, in Firefox, at the moment sought */
+  const isShown = ({ begin, inside = begin }) =>
+    onScreen !== null && onScreen > begin - ROUNDING && onScreen < inside + 2 * ROUNDING;
+
+  /** @param {Frame} frame */
+  function seek({ begin, inside = begin + ROUNDING }) {
+    const moment = (start ?? 0) + (seeks ? begin - LEAD : inside);
+    seeks += 1;
+    if (video.currentTime !== moment) onScreen = null; // Otherwise no new frame may come.
+    video.currentTime = moment;
+  }
+  /** Look whether the frame sought is on the screen, also after it was: playing may pass it by. */
+  function settle() {
+    if (!sought || onScreen === null || video.seeking) return;
+    if (isShown(sought) || seeks > MOST_SEEKS) finish(sought);
+    else if (onScreen < sought.begin && seeks > 1 && !video.ended) play(sought);
+    else {
+      video.pause();
+      seek(sought);
+    }
+  }
+  /** @param {Frame} frame */
+  function play(frame) {
+    if (!video.paused) return;
+    video.play().catch(({ name }) => {
+      // A browser that saves power plays nothing unasked. A pause has another name.
+      if (name === "NotAllowedError" && sought === frame) finish(frame);
+    });
+  }
+  /** @param {Frame} frame */
+  function finish(frame) {
+    video.pause();
+    if (!done && isShown(frame)) frame.shown?.();
+    done = true;
+    showNewest();
+  }
+
+  return {
+    /** @param {string} source */
+    load(source) {
+      [start, onScreen, sought, newest, done] = [null, null, null, null, true];
+      video.src = source;
+    },
+    /** @param {Frame} frame */
+    show(frame) {
+      newest = frame;
+      if (done) showNewest();
+    },
+  };
 }

@@ -3,7 +3,7 @@
 import * as api from "../core/api.js";
 import { h, svg } from "../core/dom.js";
 import { readable } from "../core/format.js";
-import { firstMoment, insideFrame } from "../clips/frame-times.js";
+import { insideFrame, showFrames } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 
 /** @import { Clip, Poses } from "../core/types.d.ts" */
@@ -24,27 +24,7 @@ export function figure(onPick) {
   const element = h("div", { className: "figure" }, video, over);
   /** @type {Content | null} */
   let content = null;
-  /** @type {number | null} */
-  let wanted = null; // the moment of the clip to seek to as soon as the last seek is done
-  /** @type {number | null} */
-  let start = null; // the clip's start by the video's clock, once known
-
-  const seek = () => {
-    if (wanted === null || start === null || video.seeking) return;
-    video.currentTime = start + wanted;
-    wanted = null;
-  };
-  video.onseeked = seek;
-
-  /** @param {string} source */
-  async function load(source) {
-    start = null;
-    video.src = source;
-    const found = await firstMoment(video);
-    if (video.getAttribute("src") !== source) return; // Another clip is shown by now.
-    start = found;
-    seek();
-  }
+  const frames = showFrames(video);
 
   /**
    * @param {Poses} poses
@@ -67,7 +47,7 @@ export function figure(onPick) {
     over.replaceChildren(body);
     content = { poses, body, trails, circles };
     video.hidden = !clip;
-    if (clip) load(api.clips.video(clip));
+    if (clip) frames.load(api.clips.video(clip));
     else video.removeAttribute("src");
   }
 
@@ -112,10 +92,8 @@ export function figure(onPick) {
         svg("path", { d: trail(poses, poses.landmarks.indexOf(name), first, last) }),
       ),
     );
-    if (!video.hidden) {
-      wanted = insideFrame(poses.time, frame);
-      seek();
-    }
+    const [begin, inside] = [poses.time[frame], insideFrame(poses.time, frame)];
+    if (!video.hidden) frames.show({ begin, inside });
   }
 
   /**

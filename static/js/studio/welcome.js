@@ -6,7 +6,7 @@ import { addSampleClip, samplesList } from "../clips/sample-clips.js";
 import { topicsPanel } from "../clips/topic-dialog.js";
 import * as api from "../core/api.js";
 import { byId, h, icon, WRITES } from "../core/dom.js";
-import { drawAt, firstMoment } from "../clips/frame-times.js";
+import { showFrames } from "../clips/frame-times.js";
 import { drawPose, skeleton } from "../clips/skeleton.js";
 import { mayWrite } from "../core/session.js";
 import { isReadable, selectedClip, state, update, whenLoaded } from "../core/state.js";
@@ -201,6 +201,9 @@ const noClip = () =>
     h("p", { className: "dim" }, "Choose one from the list, or drop another one."),
   );
 
+/** @type {ReturnType<typeof showFrames> | null} */
+let frames = null; // of the clip whose progress is shown
+
 /**
  * The clip's own picture under the skeleton; `showProgress` updates both.
  *
@@ -212,16 +215,13 @@ function progressPanel(clip) {
     clip.topics.length || clip.turn
       ? null
       : h("video", {
-          src: api.clips.video(clip),
           muted: true,
           playsInline: true,
           preload: "auto",
           "aria-hidden": "true",
         });
-  if (video)
-    firstMoment(video).then((start) => {
-      video.dataset.start = String(start);
-    });
+  frames = video && showFrames(video);
+  frames?.load(api.clips.video(clip));
   return h(
     "div",
     { className: "welcome-progress" },
@@ -252,10 +252,8 @@ function showPose(panel, clip, { time, pose }) {
     (video.videoWidth || video.readyState === HTMLMediaElement.HAVE_NOTHING);
   if (video && !playable) video.replaceWith(h("img", { src: api.clips.poster(clip), alt: "" }));
   const skeletonDrawing = /** @type {SVGSVGElement} */ (panel.querySelector(".skeleton"));
-  if (!playable || time === null) return drawPose(skeletonDrawing, pose);
-  if (!video.dataset.start) return undefined;
-  const moment = Number(video.dataset.start) + time;
-  return drawAt(video, moment, () => drawPose(skeletonDrawing, pose));
+  if (!frames || !playable || time === null) return drawPose(skeletonDrawing, pose);
+  return frames.show({ begin: time, shown: () => drawPose(skeletonDrawing, pose) });
 }
 
 /**

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import json
+import os
 import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from queue import SimpleQueue
+from threading import Thread
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.api.running import until
-from tests.browser.conftest import OpenPage
+from tests.api.running import PATIENCE_SECONDS, until
+from tests.browser.conftest import SHELL, WHOLE, OpenPage
 from tests.browser.files import drop
-from tests.browser.numbered_clips import number_on, numbered_clip
+from tests.browser.numbered_clips import block_places, number_on, numbered_clip
+from tests.conftest import ROOT
 
 FRAMES = 30
 
@@ -104,3 +115,95 @@ def test_number_and_seconds_are_those_of_the_picture_on_the_screen(
     page.get_by_label("Start frame").fill("5")
     page.get_by_role("heading", name="New gesture").click()
     video.steps_and_plays(page, 5)
+
+
+_READS_NUMBERS = """<!doctype html><title>Exact frames</title><video muted playsinline></video>
+<script type="module">
+import { insideFrame, showFrames } from "/js/clips/frame-times.js";
+const { times, order, blocks } = await (await fetch("/task")).json();
+const video = document.querySelector("video");
+const canvas = Object.assign(document.createElement("canvas"), { width: 320, height: 240 });
+const context = canvas.getContext("2d", { willReadFrequently: true });
+const number = () => {
+  context.drawImage(video, 0, 0);
+  return blocks.reduce((sum, [x, y], bit) =>
+    sum + (context.getImageData(x, y, 1, 1).data[0] > 128 ? 2 ** bit : 0), 0);
+};
+const frames = showFrames(video);
+frames.load(URL.createObjectURL(await (await fetch("/clip")).blob()));
+await new Promise((shown) => frames.show({ begin: 0, shown }));
+frames.show({ begin: (times[8] + times[9]) / 2 }); // No frame begins there; it holds nothing up.
+const seen = [];
+for (const frame of order) {
+  await new Promise((shown) => frames.show({
+    begin: times[frame], inside: insideFrame(times, frame), shown }));
+  seen.push(number());
+}
+await fetch("/seen", { method: "POST", body: JSON.stringify(seen) });
+</script>"""
+"""A page that shows frames in an order, and reads the number off each as soon as it is shown."""
+
+_BROWSERS = {
+    "chromium": ((SHELL, *WHOLE), ("--headless", "--no-sandbox", "--user-data-dir={folder}")),
+    "firefox": (("firefox-esr", "firefox"), ("--headless", "--no-remote", "--profile", "{folder}")),
+}
+"""Names and arguments of browsers, opened as people do: no driver is needed for one page."""
+
+
+@pytest.mark.parametrize("kind", _BROWSERS)
+def test_the_picture_is_that_of_the_wanted_frame_where_durations_are_wrong(
+    kind: str, tmp_path: Path
+) -> None:
+    names, arguments = _BROWSERS[kind]
+    executable = next(filter(None, map(shutil.which, names)), None)
+    if executable is None:
+        pytest.skip(f"needs {kind}: apt-get install {names[0]}")
+    times = numbered_clip(tmp_path / "numbered.mp4", FRAMES)
+    order = [*range(FRAMES), *reversed(range(FRAMES)), 8, 7, 20, 19, 8, FRAMES - 1, 0]
+    task = {"times": times, "order": order, "blocks": block_places()}
+    with _serving(task, tmp_path / "numbered.mp4") as (address, seen):
+        folder = tmp_path / "profile"
+        folder.mkdir()
+        options = [argument.format(folder=folder) for argument in arguments]
+        environment = {**os.environ, "HOME": str(folder)}
+        browser = subprocess.Popen([executable, *options, address], env=environment)
+        try:
+            assert seen.get(timeout=PATIENCE_SECONDS) == order
+        finally:
+            browser.terminate()
+            browser.wait()
+
+
+@contextmanager
+def _serving(task: object, clip: Path) -> Iterator[tuple[str, SimpleQueue[list[int]]]]:
+    """Serve the page that reads numbers; give its address, and what it will have read."""
+    seen: SimpleQueue[list[int]] = SimpleQueue()
+
+    class Handler(SimpleHTTPRequestHandler):
+        def do_GET(self) -> None:
+            if self.path.startswith("/js/"):
+                super().do_GET()
+                return
+            pages = {"/": _READS_NUMBERS.encode(), "/task": json.dumps(task).encode()}
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html" if self.path == "/" else "video/mp4")
+            self.end_headers()
+            self.wfile.write(pages.get(self.path) or clip.read_bytes())
+
+        def do_POST(self) -> None:
+            seen.put(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, format: str, *arguments: object) -> None:
+            """Write nothing."""
+
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Handler, directory=ROOT / "static"))
+    thread = Thread(target=server.serve_forever)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}/", seen
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
