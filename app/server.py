@@ -23,6 +23,7 @@ from app.api.http import problems
 from app.api.http.page_files import (
     ADDRESS,
     INVITATION_ADDRESS,
+    CompressedPage,
     InvitationFiles,
     PageFiles,
 )
@@ -320,5 +321,6 @@ def _guard(app: FastAPI, settings: Settings, metrics: Metrics) -> None:
     app.add_middleware(SameOrigin, settings=settings)
     app.add_middleware(AnswerAfterBody)
     app.add_middleware(app.state.requests.guard)
+    app.add_middleware(CompressedPage)
     app.add_middleware(SecurityHeaders)
     app.add_middleware(RequestLog, metrics=metrics)

@@ -15,8 +15,9 @@ from fastapi.staticfiles import StaticFiles
 from starlette.concurrency import run_in_threadpool
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.responses import Response
-from starlette.types import Scope
+from starlette.types import Receive, Scope, Send
 
 from app.settings import Settings
 
@@ -134,6 +135,20 @@ class PageFiles(StaticFiles):
                 digest.update(f"{path.relative_to(self._folder)} {len(contents)} ".encode())
                 digest.update(contents)
         return digest.hexdigest()[:16]
+
+
+class CompressedPage(GZipMiddleware):
+    """Middleware that compresses the page and its files, but no answer of the API.
+
+    An answer that holds a secret beside text of its reader tells the secret by its compressed size.
+    """
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Compress texts, of a browser that takes them so."""
+        if scope["type"] == "http" and not scope["path"].startswith("/api/"):
+            await super().__call__(scope, receive, send)
+        else:
+            await self.app(scope, receive, send)
 
 
 class InvitationFiles:

@@ -183,6 +183,9 @@ class Replacement:
         Index among the candidates.
     before, after
         Estimated share of takes of all gestures that is not read right: now, and with it.
+    nearest
+        The gesture with this movement, and the other one that would be nearest to it; None in a
+        language of one gesture.
     alike
         Pairs of gestures that would be nearly alike, those that are mixed up most first.
     people
@@ -193,6 +196,7 @@ class Replacement:
     candidate: int
     before: float
     after: float
+    nearest: ConfusedPair | None
     alike: tuple[ConfusedPair, ...]
     people: int
 
@@ -243,11 +247,11 @@ def find_replacements(
     found = []
     for at in range(len(candidates)):
         after = pool.measure_misread([*others, size + at])
-        pairs = (pool.compare(size + at, other) for other in others)
-        alike = [
-            replace(pair, gestures=(label, pair.gestures[1])) for pair in pairs if pair.is_alike
-        ]
-        found.append(Replacement(at, now, after, (*kept, *alike), pool.people))
+        compared = [pool.compare(size + at, other) for other in others]
+        pairs = [replace(pair, gestures=(label, pair.gestures[1])) for pair in compared]
+        nearest = min(pairs, key=lambda pair: pair.distance, default=None)
+        alike = (*kept, *(pair for pair in pairs if pair.is_alike))
+        found.append(Replacement(at, now, after, nearest, alike, pool.people))
     better = sorted((each for each in found if each.after < now), key=lambda each: each.after)
     return tuple(better[:MOST_PROPOSED])
 

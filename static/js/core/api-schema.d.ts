@@ -1292,7 +1292,7 @@ export interface components {
         };
         /**
          * AlikeView
-         * @description Two gestures that would be nearly alike.
+         * @description Two gestures, and how far apart they would be.
          */
         AlikeView: {
             /** Gestures */
@@ -3844,7 +3844,7 @@ export interface components {
             image: string;
             /**
              * Before
-             * @description Estimated share of takes that is not read right now, 0 to 1.
+             * @description How much all gestures are mixed up now, 0 to 1; for the order, nobody has measured it.
              */
             before: number;
             /**
@@ -3852,6 +3852,8 @@ export interface components {
              * @description The same with this movement.
              */
             after: number;
+            /** @description The gesture with this movement, and the one that would be nearest to it. */
+            nearest: components["schemas"]["AlikeView"] | null;
             /**
              * Alike
              * @description Pairs that would be nearly alike, the worst first.

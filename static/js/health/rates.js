@@ -53,12 +53,12 @@ export function costWords({ people, measured, refused, accepted }) {
 }
 
 /**
- * What another movement would do to a language, in one sentence or two.
+ * How far another movement would be from the other gestures, in one sentence or two.
  *
- * @param {Pick<Replacement, "before" | "after" | "alike">} replacement
+ * @param {Pick<Replacement, "nearest" | "alike">} replacement
  */
-export function effectText({ before, after, alike }) {
+export function effectText({ nearest, alike }) {
   const pairs = alike.map(({ gestures }) => gestures.join(" and ")).join(", ");
   const still = pairs && ` Nearly alike: ${pairs}.`;
-  return `Not read right: ${percent(after)}\u00a0%, now ${percent(before)}\u00a0%.${still}`;
+  return nearest ? `Nearest is ${nearest.gestures[1]}: ${nearest.words}.${still}` : still;
 }

@@ -82,6 +82,24 @@ def test_all_style_sheets_come_as_one_in_the_order_of_the_page(client: httpx.Cli
     assert client.post(link).status_code == 405
 
 
+def test_the_page_and_its_files_are_compressed_and_no_answer_of_the_api(
+    client: httpx.Client, folder: Path
+) -> None:
+    text = "one();\n" * 1000
+    (folder / "js" / "main.js").write_text(text)
+    (folder / "index.html").write_text(PAGE + " " * 1000)
+    found = client.get(script(client))
+    assert found.headers["content-encoding"] == "gzip"
+    assert int(found.headers["content-length"]) < len(text) / 10
+    assert found.text == text
+    assert client.get("/").headers["content-encoding"] == "gzip"
+    part = client.get(script(client), headers={"Range": "bytes=0-599"})
+    assert (part.status_code, "content-encoding" in part.headers) == (206, False)
+    listed = client.get("/api/v1/samples")
+    assert len(listed.content) > 600
+    assert "content-encoding" not in listed.headers
+
+
 @pytest.mark.parametrize("path", ["", "js", "js/none.js", "0123456789abcdef", "../secret"])
 def test_what_is_no_file_is_not_found(client: httpx.Client, path: str) -> None:
     assert client.get(f"static/{path}").status_code == 404

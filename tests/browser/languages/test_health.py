@@ -447,7 +447,7 @@ def test_one_of_two_alike_gestures_gets_another_movement_and_undo_takes_it_back(
         assert faults(page) == []
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
         cards = dialog.get_by_role("heading", name="Instead of frame").locator("+ ul button")
-        expect(cards.first).to_contain_text("Not read right")
+        expect(cards.first).to_contain_text("Nearest is")
         cards.first.click()
         expect(dialog).to_be_hidden()
         expect(page.get_by_text("frame has another movement")).to_be_visible()

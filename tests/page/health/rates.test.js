@@ -48,12 +48,10 @@ test("a limit that too few demonstrations measure is called a constant beside it
   assert.deepEqual(more, []);
 });
 
-test("the effect of another movement names the pairs that stay alike", () => {
-  const better = { before: 0.312, after: 0.12, alike: [] };
-  assert.equal(effectText(better), "Not read right: 12\u00a0%, now 31\u00a0%.");
+test("the effect of another movement is told by distances, and names the pairs that stay alike", () => {
+  const nearest = { gestures: ["up", "down"], words: "told apart, distance 1.20" };
+  const words = "Nearest is down: told apart, distance 1.20.";
+  assert.equal(effectText({ nearest, alike: [] }), words);
   const alike = [{ gestures: ["up", "stop"], words: "nearly alike" }];
-  assert.equal(
-    effectText({ ...better, alike }),
-    "Not read right: 12\u00a0%, now 31\u00a0%. Nearly alike: up and stop.",
-  );
+  assert.equal(effectText({ nearest, alike }), `${words} Nearly alike: up and stop.`);
 });

@@ -124,6 +124,9 @@ def test_a_gesture_is_replaced_by_what_is_told_apart_best() -> None:
     assert first.candidate == 1
     assert first.after < first.before
     assert first.alike == ()
+    assert first.nearest is not None
+    assert first.nearest.gestures[0] == "ring"
+    assert not first.nearest.is_alike
     assert all(each.after >= first.after for each in others)
     # Another line is nearly alike to the line, by the name of the gesture that it would replace.
     again = [each for each in others if each.candidate == 2]

@@ -90,7 +90,7 @@ class ReplacementsRequest(Body):
 
 
 class AlikeView(View):
-    """Two gestures that would be nearly alike."""
+    """Two gestures, and how far apart they would be."""
 
     gestures: tuple[str, str]
     words: str
@@ -110,9 +110,11 @@ class ReplacementView(View):
     image: str
     """Trajectory image with its direction, a data URI of a PNG."""
     before: float
-    """Estimated share of takes that is not read right now, 0 to 1."""
+    """How much all gestures are mixed up now, 0 to 1; for the order, nobody has measured it."""
     after: float
     """The same with this movement."""
+    nearest: AlikeView | None
+    """The gesture with this movement, and the one that would be nearest to it."""
     alike: list[AlikeView]
     """Pairs that would be nearly alike, the worst first."""
 
@@ -251,7 +253,8 @@ class _Candidate:
             image=data_url(mark_gesture(self.gesture)),
             before=found.before,
             after=found.after,
-            alike=[AlikeView(gestures=pair.gestures, words=pair.words) for pair in found.alike],
+            nearest=None if found.nearest is None else AlikeView.model_validate(found.nearest),
+            alike=[AlikeView.model_validate(pair) for pair in found.alike],
         )
 
 

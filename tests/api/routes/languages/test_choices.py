@@ -110,6 +110,8 @@ def test_a_replacement_keeps_what_the_gesture_means_and_undo_takes_it_back(
     assert 0 <= first["after"] < first["before"] <= 1
     assert all(first["after"] <= each["after"] for each in others)
     assert first["alike"] == []
+    assert first["nearest"]["gestures"][0] == "rounded square"
+    assert first["nearest"]["words"].startswith("told apart, distance")
     assert {each["sign"] for each in found["replacements"]} == {None}
     assert b64decode(first["image"].partition(",")[2]).startswith(b"\x89PNG")
     before = client.get(alike).json()
