@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from app.recognition.explanation.alignment import Alignment, align
 from app.recognition.explanation.causes import prove_change, tell_change
 from app.recognition.explanation.transcript import (
+    Piece,
     compare_transcripts,
     transcribe,
     transcribe_gesture,
@@ -74,8 +75,7 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
             row[strokes.differs] if strokes.differs < len(row) else None
             for row in (strokes.shown, strokes.expected)
         )
-        ways = [each.words if each else "ended" for each in (ours, theirs)]
-        words = f"it goes {ways[0]} where {against.label!r} goes {ways[1]}"
+        words = f"it {describe_act(ours)} where {against.label!r} {describe_act(theirs)}"
         span = (ours.start, ours.end) if ours else (strokes.shown[-1].end, strokes.shown[-1].end)
     if proven := prove_change(comparison):
         told = tell_change(proven, against.label).partition(". ")[0]
@@ -83,3 +83,21 @@ def compare_pair(recognizer: Recognizer, one: int, other: int) -> PairDifference
             told.replace("The take", "it", 1) if "The take" in told else told[0].lower() + told[1:]
         )
     return PairDifference(words, span, alignment)
+
+
+def describe_act(piece: Piece | None) -> str:
+    """Return what a diver does, as a predicate: "goes left", "draws a clockwise loop".
+
+    None: the movement has ended before this piece.
+    """
+    if piece is None:
+        return "has ended"
+    match piece.kind:
+        case "pause":
+            return "pauses"
+        case "line":
+            return f"goes {piece.words}"
+        case "arc" | "loop" if not piece.words[0].isdigit():
+            return f"draws {'an' if piece.turn < 0 else 'a'} {piece.words}"
+        case _:
+            return f"draws {piece.words}"

@@ -1,9 +1,11 @@
 """Pair differences: the differences of two demonstrations, in words and in seconds."""
 
 import numpy as np
+import pytest
 
 from app.recognition import Gesture, Language, Recognizer
-from app.recognition.explanation.pair_difference import compare_pair
+from app.recognition.explanation.pair_difference import compare_pair, describe_act
+from app.recognition.explanation.transcript import Piece, PieceKind
 from app.recognition.poses.sequence import FloatArray
 from tests.recognition.demonstrations import pool, shown
 from tests.recognition.strategies import circle, line
@@ -31,3 +33,24 @@ def test_without_a_demonstration_there_is_nothing_to_compare() -> None:
     recognizer = Recognizer(Language("mixed", [shown("circle", circle), imported]), "full")
     assert compare_pair(recognizer, 1, 0) is None
     assert compare_pair(recognizer, 0, 1) is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "turn", "direction", "act"),
+    [
+        ("line", 0.0, 180.0, "goes left"),
+        ("pause", 0.0, None, "pauses"),
+        ("arc", 120.0, 90.0, "draws a clockwise arc down"),
+        ("arc", -120.0, 0.0, "draws an anticlockwise arc right"),
+        ("loop", 350.0, None, "draws a clockwise loop"),
+        ("loop", -720.0, None, "draws 2 anticlockwise loops"),
+        ("curve", 0.0, None, "draws a curve"),
+        ("curve", 90.0, 0.0, "draws a curve right"),
+    ],
+)
+def test_what_a_piece_does_is_a_predicate(
+    kind: PieceKind, turn: float, direction: float | None, act: str
+) -> None:
+    piece = Piece(kind=kind, hand="right_wrist", direction=direction, turn=turn, start=0.0, end=1.0)
+    assert describe_act(piece) == act
+    assert describe_act(None) == "has ended"
