@@ -50,18 +50,18 @@ test: $(VENV)/.development models  ## Check and test everything
 
 # For every change: style, types, layers, the page, and the tests that take no video, pose model, browser
 # or process of their own.
-check: $(VENV)/.development  ## Check the source and run the quick tests, in two minutes
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes
 	@$(MAKE) --jobs 2 lint quick
 
 # Browser tests are left out: all are slow, and collecting them takes long.
-quick: $(VENV)/.development $(PAGE_TOOLS)
-	$(BIN)/python -m pytest -n 4 --dist loadfile --hypothesis-profile ci \
+quick: $(VENV)/.development $(PAGE_TOOLS) models
+	$(BIN)/python -m pytest -n auto --dist loadfile --hypothesis-profile ci \
 	  -m "not slow and not models" -q --ignore tests/browser
 
 # Branch coverage of the tests, including their child processes; takes longer than the tests alone.
 # For the quick tests only: make coverage TESTS='-m "not slow"'.
 coverage: $(VENV)/.development $(PAGE_TOOLS) models  ## Measure which branches the tests execute
-	$(BIN)/python -m pytest -n 2 --dist loadfile --hypothesis-profile ci \
+	$(BIN)/python -m pytest -n auto --dist loadfile --hypothesis-profile ci \
 	  --cov --cov-report=term-missing:skip-covered --cov-report=html $(TESTS)
 
 durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test and fixture takes, into build/durations.tsv
@@ -69,15 +69,16 @@ durations: $(VENV)/.development $(PAGE_TOOLS) models  ## Write what each test an
 	  --hypothesis-profile ci -q $(TESTS)
 
 # Distributed by file, since the tests of one file share a server, a database or a recording; in the
-# order of tests/conftest.py, the long ones first. Three workers even on two cores: tests with a
-# browser or other processes wait a lot, but four browsers at once take half as much processor time
-# again as two. Property tests use the same examples everywhere, so that a change fails only for its
-# own faults; plain `pytest` keeps trying new examples.
+# order of tests/conftest.py, the long ones first. As many workers as tests/conftest.py finds for the
+# machine: three on two cores, since tests with a browser or other processes wait a lot, but four
+# browsers at once take half as much processor time again as two. Property tests use the same
+# examples everywhere, so that a change fails only for its own faults; plain `pytest` keeps trying new
+# examples.
 pytest: $(VENV)/.development $(PAGE_TOOLS) models
 ifndef MEDIAPIPE_LOCK
 	@echo "MediaPipe's own library is installed on Linux x86-64 only; the parity test will be skipped"
 endif
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --hypothesis-profile ci \
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder --hypothesis-profile ci \
 	  --durations 25
 
 # Compiles the tests once: in a fresh checkout each test worker would compile all. In two halves,

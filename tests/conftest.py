@@ -27,7 +27,55 @@ PROCESSORS = ("avx2", "avx512")
 UPDATES_IMAGES = bool(os.environ.get("OSG_UPDATE_IMAGES"))
 """Whether the pictures that tests take go into the documentation."""
 
+WITHOUT_BROWSER = "needs Chromium: apt-get install chromium"
+"""Why a test in a browser is left out."""
+
 SHARED_DATA = Path(os.environ.get("OSG_SHARED_DATA", ROOT.parent / "shared" / "data"))
+
+
+GIB = 2**30
+
+WORKER_GIB = 2
+"""Memory of a worker with a server that finds poses, and a browser."""
+
+
+def workers(cores: int, memory: int, quick: bool) -> int:
+    """Return how many workers test at once, on a machine with some cores and bytes of memory.
+
+    More than cores, for tests wait: the quick ones, which have no browser, most of all.
+    """
+    wanted = 2 * cores if quick else cores + cores // 2
+    return max(1, min(wanted, memory // (WORKER_GIB * GIB)))
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Choose the workers of `-n auto`, by what the machine or its container has."""
+    from dask.system import CPU_COUNT
+    from distributed.system import MEMORY_LIMIT
+
+    return workers(CPU_COUNT, MEMORY_LIMIT, quick="not slow" in config.option.markexpr)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """List the reasons for which tests were left out, each in one line."""
+    for reason, count in _left_out(terminalreporter).most_common():
+        terminalreporter.write_line(f"left out {count}: {reason}")
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_sessionfinish(session: pytest.Session) -> Iterator[None]:
+    """End with how to bring the browser tests, after pytest's own last line."""
+    yield
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    if isinstance(reporter, pytest.TerminalReporter) and _left_out(reporter)[WITHOUT_BROWSER]:
+        count, command = _left_out(reporter)[WITHOUT_BROWSER], WITHOUT_BROWSER.partition(": ")[2]
+        reporter.write_line(f"{count} browser tests were left out; this brings them: {command}")
+
+
+def _left_out(reporter: pytest.TerminalReporter) -> Counter[str]:
+    """Count the tests that were skipped, by reason."""
+    reports = reporter.stats.get("skipped", [])
+    return Counter(str(report.longrepr[2]).removeprefix("Skipped: ") for report in reports)
 
 
 def pytest_collection() -> None:

@@ -26,7 +26,7 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from app.settings import Settings
 from tests.api.running import Running, running
-from tests.conftest import ROOT, UPDATES_IMAGES
+from tests.conftest import ROOT, UPDATES_IMAGES, WITHOUT_BROWSER
 
 WEBGL = (
     "--no-sandbox",
@@ -96,7 +96,7 @@ def started(kind: BrowserType, *more: str, whole: bool = False) -> Iterator[Brow
     names = WHOLE if whole else (SHELL, *WHOLE)
     executable = next(filter(None, map(shutil.which, names)), None)
     if executable is None:
-        pytest.skip(f"needs Chromium: apt-get install {names[0]}")
+        pytest.skip(WITHOUT_BROWSER)
     args = [*WEBGL, *WITHOUT_WINDOW, *ONE_PROCESS, *WITHOUT_NETWORK_PROCESS, *more]
     browser = kind.launch(executable_path=executable, args=args, timeout=PATIENCE_MS)
     yield browser

@@ -10,8 +10,6 @@ import httpx
 import pytest
 from playwright.sync_api import Page, Route, expect
 
-from app.recognition.poses.landmarks import POSE_LANDMARKS, SKELETON
-from app.recognition.recording.salute import ENTER_SCORE
 from tests.api.running import Running, client_of
 from tests.browser.conftest import OpenPage
 from tests.browser.files import drop
@@ -37,19 +35,6 @@ def workspace_of(page: Page) -> str:
     frame = page.locator("#lab")
     expect(frame).to_have_attribute("src", re.compile(r"^viser/\w"))
     return str(frame.get_attribute("src"))
-
-
-def test_the_page_joins_the_landmarks_by_the_recognisers_bones(open_page: OpenPage) -> None:
-    page = open_page(scene=False)
-    bones = page.evaluate("async () => (await import('/static/js/clips/skeleton.js')).BONES")
-    joined = tuple((POSE_LANDMARKS[start], POSE_LANDMARKS[end]) for start, end in bones)
-    assert joined == SKELETON
-
-
-def test_the_page_draws_the_bar_of_the_recognisers_salute(open_page: OpenPage) -> None:
-    page = open_page(scene=False)
-    bar = page.evaluate("async () => (await import('/static/js/clips/salute-threshold.js')).SALUTE")
-    assert bar == ENTER_SCORE
 
 
 def test_a_key_pressed_right_after_a_tab_counts_and_a_missing_camera_is_explained(
@@ -189,17 +174,6 @@ def test_the_slate_for_divers_is_fetched_as_a_pdf_and_an_svg(
     for text in ("circle", "line", "R"):
         expect(page.locator("text").get_by_text(text, exact=True).first).to_be_visible()
     expect(page.locator("polygon").first).to_be_visible()  # an arrow's head
-
-
-def test_a_deleted_gesture_comes_back(open_page: OpenPage, library: Library) -> None:
-    page = open_page(library.address, scene=False)
-    cards = page.get_by_role("list", name="Gestures").get_by_role("listitem")
-    cards.first.hover()
-    page.get_by_role("button", name="Delete circle", exact=True).click()
-    expect(cards).to_have_count(1)
-    page.get_by_role("button", name="Undo").click()
-    expect(cards).to_have_count(2)
-    expect(cards.first).to_contain_text("circle")
 
 
 def card_of(label: str) -> str:

@@ -1,0 +1,41 @@
+"""How the suite fits a machine, and what it says about tests that it left out."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import GIB, ROOT, WITHOUT_BROWSER, workers
+
+
+@pytest.mark.parametrize(
+    ("cores", "gib", "quick", "expected"),
+    [(2, 24, False, 3), (2, 24, True, 4), (16, 64, False, 24), (16, 8, True, 4), (1, 1, False, 1)],
+)
+def test_workers_are_as_many_as_cores_and_memory_allow(
+    cores: int, gib: int, quick: bool, expected: int
+) -> None:
+    assert workers(cores, gib * GIB, quick) == expected
+
+
+@pytest.mark.slow
+@pytest.mark.models
+def test_a_run_without_chromium_ends_with_the_command_that_brings_it(tmp_path: Path) -> None:
+    file = "tests/browser/page/test_toasts.py"
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", file]
+    environment = {**os.environ, "PATH": str(tmp_path)}
+    environment.pop("PYTEST_XDIST_WORKER", None)
+    run = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True
+    )
+    *_, listed, summary, last = run.stdout.splitlines()
+    count = summary.split()[0]
+    assert listed == f"left out {count}: {WITHOUT_BROWSER}"
+    assert summary.split()[1] == "skipped"
+    assert (
+        last == f"{count} browser tests were left out; this brings them: apt-get install chromium"
+    )
