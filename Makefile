@@ -50,7 +50,7 @@ test: $(VENV)/.development models  ## Check and test everything
 
 # For every change: style, types, layers, the page, and the tests that take no video, pose model, browser
 # or process of their own.
-check: $(VENV)/.development  ## Check the source and run the quick tests, in two minutes
+check: $(VENV)/.development models  ## Check the source and run the quick tests, in two minutes
 	@$(MAKE) --jobs 2 lint quick
 
 # Browser tests are left out: all are slow, and collecting them takes long.
