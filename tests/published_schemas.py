@@ -55,13 +55,6 @@ class PublishedSchema:
         head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": identity}
         return json.dumps(head | self.describe(), indent=2) + "\n"
 
-    def require_current(self) -> None:
-        """Check that the file is the schema of the models."""
-        assert self.file.read_text("utf-8") == self.generate(), (
-            "run python -m tests.published_schemas; a change that refuses what was written before "
-            "needs a new version"
-        )
-
 
 LANGUAGE_FILE = PublishedSchema(
     "recognition", "gesture-language-1", LanguageDocument.model_json_schema
@@ -72,8 +65,9 @@ RECOGNITION_REPORT = PublishedSchema(
 ROBOT_EVENT = PublishedSchema(
     "robot", "robot-event-1", lambda: MESSAGES.json_schema(mode="serialization")
 )
+SCHEMAS = (LANGUAGE_FILE, RECOGNITION_REPORT, ROBOT_EVENT)
 
 
 if __name__ == "__main__":
-    for schema in (LANGUAGE_FILE, RECOGNITION_REPORT, ROBOT_EVENT):
+    for schema in SCHEMAS:
         schema.file.write_text(schema.generate(), encoding="utf-8")

@@ -16,14 +16,6 @@ from tests.short_clips import shortened
 LANGUAGE = ROOT / "languages" / "osg-table-2.json"
 
 
-def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
-    RECOGNITION_REPORT.require_current()
-
-
-def test_the_schema_is_one() -> None:
-    jsonschema.Draft202012Validator.check_schema(RECOGNITION_REPORT.content)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("clip", "options"),

@@ -148,11 +148,3 @@ def test_a_pair_is_named_and_lines_written_before_have_none() -> None:
 
 def test_a_margin_to_no_other_gesture_is_null() -> None:
     assert json.loads(format_line(rejected()))["margin"] is None
-
-
-def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
-    ROBOT_EVENT.require_current()
-
-
-def test_the_schema_is_a_valid_one_of_2020_12() -> None:
-    jsonschema.Draft202012Validator.check_schema(SCHEMA)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sqlite3
-import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -48,7 +47,10 @@ def status(client: httpx.Client, job_id: str) -> str:
 
 @pytest.mark.withstands(row="H22")
 def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
-    impatient: Running, settings: Settings, small_clip: Path
+    impatient: Running,
+    settings: Settings,
+    small_clip: Path,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
     with client_of(impatient.address) as client:
         job_id = upload(client, small_clip)
@@ -58,7 +60,7 @@ def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
             folder = settings.data_dir / "clips" / clip
             # The worker removes its scratch folder when it ends.
             until(lambda: not list(folder.glob(".unpacked-*")))
-            time.sleep(1)  # the first tries fail
+            until(lambda: "cannot be stored yet" in caplog.text)
             assert status(client, job_id) == "running"
         until(lambda: status(client, job_id) in ("done", "failed"))
         job = client.get(f"{JOBS}/{job_id}").json()
@@ -69,7 +71,10 @@ def test_a_job_whose_end_cannot_be_written_ends_once_it_can(
 
 
 def test_a_job_that_cannot_be_started_starts_later(
-    impatient: Running, settings: Settings, small_clip: Path
+    impatient: Running,
+    settings: Settings,
+    small_clip: Path,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
     studio = impatient.studio
     with client_of(impatient.address) as client:
@@ -81,6 +86,6 @@ def test_a_job_that_cannot_be_started_starts_later(
             # On the server's event loop, as for a new clip.
             loop = studio.broadcast._loop
             loop.call_soon_threadsafe(loop.create_task, studio.extractions.submit(job))
-            time.sleep(1)
+            until(lambda: "cannot be stored yet" in caplog.text)
             assert status(client, job.id) == "queued"
         until(lambda: status(client, job.id) in ("done", "failed"))

@@ -25,6 +25,7 @@ from websockets.sync.connection import Connection
 from websockets.typing import Subprotocol
 
 from app.api.http.websockets import POLICY_VIOLATION
+from app.api.middleware import open_connections
 from app.api.middleware.access import COOKIE
 from app.settings import Settings
 from app.store import Role, TokenFile
@@ -42,6 +43,12 @@ CUT_OFF = (httpx.RemoteProtocolError, httpx.ReadError)
 
 CLIP_BYTES = 64 * 1024 * 1024
 """Bytes of a video that no socket holds: much of it is still to be sent when a client pauses."""
+
+
+@pytest.fixture(autouse=True)
+def watched_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a server look ten times a second whether open connections are still allowed."""
+    monkeypatch.setattr(open_connections, "WATCH_SECONDS", 0.1)
 
 
 @pytest.fixture

@@ -13,15 +13,6 @@ from tests.recognition.strategies import circle, recording
 SCHEMA = LANGUAGE_FILE.content
 
 
-def test_the_schema_checked_in_is_the_one_generated_from_the_models() -> None:
-    LANGUAGE_FILE.require_current()
-
-
-def test_the_schema_is_a_valid_one_of_2020_12() -> None:
-    assert SCHEMA["$schema"] == "https://json-schema.org/draft/2020-12/schema"
-    jsonschema.Draft202012Validator.check_schema(SCHEMA)
-
-
 def test_files_obey_the_schema() -> None:
     made = Language("pool", [Gesture.from_demonstration("circle", recording(circle))]).to_json()
     for text in (made, GOLDEN.read_text("utf-8"), GOLDEN_OF_DIVERS.read_text("utf-8")):

@@ -122,21 +122,66 @@ def test_a_salute_kept_up_to_the_stroke_costs_nothing_of_it() -> None:
     assert (found.start, found.end) == pytest.approx((true.start, true.end), abs=0.1)
 
 
-def test_raising_the_hand_into_the_salute_is_not_taken_for_the_reach() -> None:
-    performance = perform(
-        [
-            Movement(moved(SALUTE_PLACE, 0.3, 1.2), 0.01),
-            Movement(SALUTE_PLACE, 0.5),
-            still(SALUTE_PLACE, HOLD),
-            Movement(TOP, 0.5),
-            Movement(circle(TOP), 1.6),
-            Movement(SALUTE_PLACE, 0.5),
-            still(SALUTE_PLACE, HOLD),
-        ]
-    )
+STIRRED = moved(SALUTE_PLACE, 0.05, 0.05)
+RAISED = [Movement(moved(SALUTE_PLACE, 0.3, 1.2), 0.01), Movement(SALUTE_PLACE, 0.5)]
+
+
+@pytest.mark.parametrize(
+    ("salute", "seen"),
+    [
+        ([*RAISED, still(SALUTE_PLACE, HOLD)], 0.3),
+        ([still(SALUTE_PLACE, 0.3), Movement(STIRRED, 0.15), still(STIRRED, 0.2)], 0.0),
+    ],
+    ids=["raised", "stirred"],
+)
+def test_a_hand_that_moves_before_or_while_it_salutes_sets_out_later(
+    salute: list[Movement], seen: float
+) -> None:
+    way = [Movement(TOP, 0.5), Movement(circle(TOP), 1.6), Movement(SALUTE_PLACE, 0.5)]
+    performance = perform([*salute, *way, still(SALUTE_PLACE, HOLD)])
     moments = performance.moments
-    found = find_stroke(performance.poses, Span(0.3, moments[3]), Span(moments[-2], moments[-1]))
+    found = find_stroke(performance.poses, Span(seen, moments[3]), Span(moments[-2], moments[-1]))
     assert (found.start, found.end) == pytest.approx((moments[4], moments[5]), abs=0.2)
+
+
+HOOK = np.vstack([moved(SALUTE_PLACE, 0.5, 0.0), moved(SALUTE_PLACE, 0.5, 0.5), SALUTE_PLACE])
+CORNERS = moved(SALUTE_PLACE, 0.5, 0.8), moved(SALUTE_PLACE, -0.3, 0.8), SALUTE_PLACE
+FAR = moved(SALUTE_PLACE, 1.5, 0.8)
+FINGERS_CHANGE = still(SALUTE_PLACE, 0.3)
+WITHOUT_REACHES = {
+    "a line there and back": [
+        Movement(moved(SALUTE_PLACE, 0.9, 0.3), 0.7),
+        Movement(SALUTE_PLACE, 0.7),
+    ],
+    "one flowing movement": [Movement(circle(SALUTE_PLACE), 2.0)],
+    # A hook, a pause and a wave: nothing here is a straight way to somewhere.
+    "bent": [
+        Movement(HOOK, 1.0),
+        still(SALUTE_PLACE, 0.2),
+        Movement(circle(SALUTE_PLACE, 0.3), 1.0),
+    ],
+    # The fingers change while the hand rests, which no reach lets them do.
+    "straight sides from salute to salute": [
+        FINGERS_CHANGE,
+        *(Movement(place, 0.7) for place in CORNERS),
+        FINGERS_CHANGE,
+    ],
+    "long and slow": [Movement(FAR, 3.0), Movement(circle(FAR), 1.6), Movement(SALUTE_PLACE, 3.0)],
+}
+
+
+@pytest.mark.parametrize("strokes", WITHOUT_REACHES.values(), ids=WITHOUT_REACHES)
+def test_what_has_no_reaches_is_kept_whole(strokes: list[Movement]) -> None:
+    salute = still(SALUTE_PLACE, HOLD)
+    performance = perform([salute, *strokes, salute])
+    first, last = salutes(performance)
+    assert stroke_of(performance) == Span(first.end, last.start)
+
+
+def test_hands_that_do_not_move_are_kept_whole() -> None:
+    performance = perform([still(SALUTE_PLACE, HOLD)] * 3, noise=0.01)
+    first, last = salutes(performance)
+    assert stroke_of(performance) == Span(first.end, last.start)
 
 
 def test_a_hand_that_drifts_while_it_salutes_has_not_set_out() -> None:
@@ -186,88 +231,6 @@ def test_two_hands_that_set_out_together_are_followed_together() -> None:
     assert (found.start, found.end) == pytest.approx((true.start, true.end), abs=0.2)
 
 
-def untouched(performance: Performance) -> bool:
-    first, last = salutes(performance)
-    return stroke_of(performance) == Span(first.end, last.start)
-
-
-def test_a_line_there_and_back_is_kept_whole() -> None:
-    there = moved(SALUTE_PLACE, 0.9, 0.3)
-    assert untouched(
-        perform(
-            [
-                still(SALUTE_PLACE, HOLD),
-                Movement(there, 0.7),
-                Movement(SALUTE_PLACE, 0.7),
-                still(SALUTE_PLACE, HOLD),
-            ]
-        )
-    )
-
-
-def test_one_flowing_movement_is_kept_whole() -> None:
-    assert untouched(
-        perform(
-            [
-                still(SALUTE_PLACE, HOLD),
-                Movement(circle(SALUTE_PLACE), 2.0),
-                still(SALUTE_PLACE, HOLD),
-            ]
-        )
-    )
-
-
-def test_a_bent_way_is_no_reach() -> None:
-    """A hook, a pause and a wave: nothing here is a straight way to somewhere."""
-    hook = np.vstack([moved(SALUTE_PLACE, 0.5, 0.0), moved(SALUTE_PLACE, 0.5, 0.5), SALUTE_PLACE])
-    back = circle(SALUTE_PLACE, 0.3)
-    assert untouched(
-        perform(
-            [
-                still(SALUTE_PLACE, HOLD),
-                Movement(hook, 1.0),
-                still(SALUTE_PLACE, 0.2),
-                Movement(back, 1.0),
-                still(SALUTE_PLACE, HOLD),
-            ]
-        )
-    )
-
-
-def test_a_hand_that_stirs_while_it_salutes_sets_out_later() -> None:
-    stirred = moved(SALUTE_PLACE, 0.05, 0.05)
-    performance = perform(
-        [
-            still(SALUTE_PLACE, 0.3),
-            Movement(stirred, 0.15),
-            still(stirred, 0.2),
-            Movement(TOP, 0.5),
-            Movement(circle(TOP), 1.6),
-            Movement(SALUTE_PLACE, 0.5),
-            still(SALUTE_PLACE, HOLD),
-        ]
-    )
-    moments = performance.moments
-    found = find_stroke(performance.poses, Span(0.0, moments[3]), Span(moments[-2], moments[-1]))
-    assert (found.start, found.end) == pytest.approx((moments[4], moments[5]), abs=0.2)
-
-
-def test_straight_sides_that_begin_and_end_at_the_salute_are_no_reaches() -> None:
-    """The fingers change while the hand rests, which no reach lets them do."""
-    corners = moved(SALUTE_PLACE, 0.5, 0.8), moved(SALUTE_PLACE, -0.3, 0.8)
-    changing = 0.3
-    performance = perform(
-        [
-            still(SALUTE_PLACE, HOLD),
-            still(SALUTE_PLACE, changing),
-            *(Movement(place, 0.7) for place in (*corners, SALUTE_PLACE)),
-            still(SALUTE_PLACE, changing),
-            still(SALUTE_PLACE, HOLD),
-        ]
-    )
-    assert untouched(performance)
-
-
 def test_a_short_reach_need_not_be_straight() -> None:
     beside = moved(SALUTE_PLACE, 0.2, -0.1)
     bent = np.array([moved(SALUTE_PLACE, 0.0, -0.2), beside])
@@ -285,25 +248,6 @@ def test_a_short_reach_need_not_be_straight() -> None:
     )
     found = stroke_of(performance)
     assert found.start == pytest.approx(performance.moments[3], abs=0.2)
-
-
-def test_a_long_slow_way_is_no_reach() -> None:
-    far = moved(SALUTE_PLACE, 1.5, 0.8)
-    assert untouched(
-        perform(
-            [
-                still(SALUTE_PLACE, HOLD),
-                Movement(far, 3.0),
-                Movement(circle(far), 1.6),
-                Movement(SALUTE_PLACE, 3.0),
-                still(SALUTE_PLACE, HOLD),
-            ]
-        )
-    )
-
-
-def test_hands_that_do_not_move_are_kept_whole() -> None:
-    assert untouched(perform([still(SALUTE_PLACE, HOLD)] * 3, noise=0.01))
 
 
 def test_a_hand_lost_on_its_way_keeps_that_way() -> None:

@@ -75,6 +75,7 @@ def test_a_vehicle_hears_a_signed_robot_that_starts_again_with_an_earlier_clock(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seconds: float
 ) -> None:
     """The vehicle is pymavlink's check of signatures, which rejects what goes back in time."""
+    monkeypatch.setattr(bridge, "HEARTBEAT_SECONDS", 0.02)
     file = tmp_path / "vehicle.json"
     changes = {"vehicle": {"key_file": "key"}, "cancel": [], "emergency": {}}
     gestures = {"circle": {"do": "hold"}}
