@@ -6,6 +6,7 @@ import { byId } from "../core/dom.js";
 import { percent, plural, readable } from "../core/format.js";
 import { isReadable, state } from "../core/state.js";
 import { attempt } from "../core/toasts.js";
+import { FACTORS } from "../languages/settings-dialog.js";
 import { html, nothing, optionsOf, render, until } from "../templates.js";
 import { tryOut } from "./intervention-trial.js";
 import { supportOf } from "./vote-support.js";
@@ -23,8 +24,6 @@ const CONFIDENCE_WORDS = {
   paper:
     "Confidence says how clearly the winner leads, by votes and by distance; the weight is that of the voters whose nearest gesture it is.",
 };
-
-const FACTORS = [0, 0.25, 0.5, 1, 2, 4];
 
 /** @type {(factor: number) => string} */
 const factorText = (factor) =>
@@ -163,20 +162,18 @@ function ballot(result) {
     render(decision(result), byId("votes"));
   };
   const text = whole ? "Hide" : "Show";
-  const line = html`<p class="dim">
-    ${plural(silent.length, "voter")} without weight
-    <button
-      type="button"
-      class="link"
-      aria-expanded=${whole}
-      aria-label="${text} the voters without weight"
-      @click=${turn}
-    >
-      ${text}
-    </button>
-  </p>`;
+  const toggle = html`<button
+    type="button"
+    class="link"
+    aria-expanded=${whole}
+    aria-label="${text} the voters without weight"
+    @click=${turn}
+  >
+    ${text}
+  </button>`;
+  const words = `${plural(silent.length, "voter")} without weight`;
   return html`<div>${table(result, whole ? rows : heard, columns)}</div>
-    ${silent.length ? line : nothing}`;
+    ${silent.length ? html`<p class="dim">${words} ${toggle}</p>` : nothing}`;
 }
 
 /** @type {{ of: string, figures: Promise<unknown> }} */
